@@ -1,14 +1,14 @@
 // touchtrial: parses the command line and runs one command.
-#include "app/commands.hpp"
+#include "app/commands/commands.hpp"
 #include "app/commit.hpp"
-#include "app/console.hpp"
-#include "app/passphrases.hpp"
 #include "app/reference/pages.hpp"
+#include "app/terminal/console.hpp"
+#include "app/terminal/passphrases.hpp"
 #include "core/errors.hpp"
 #include "core/nearest_name.hpp"
 #include "core/version.hpp"
 #include "protocols/registration/registration.hpp"
-#include "protocols/store/damage.hpp"
+#include "record/damage.hpp"
 
 #include <algorithm>
 #include <csignal>
@@ -186,7 +186,7 @@ int run_program(int argc, char** argv) noexcept {
     return complain(kBadInput, error.what());
   } catch (const StudyError& error) {
     return complain(kBadInput, error.what());
-  } catch (const store::DamagedStore& error) {
+  } catch (const record::DamagedStore& error) {
     return complain(kNotVerified, error.what());
   } catch (const VerificationError& error) {
     return complain(kNotVerified, error.what());

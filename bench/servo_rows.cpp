@@ -1,10 +1,10 @@
 // What the servo computes in a tick: a model's force, the kinematics of a Falcon, and all of it
 // together.
-#include "app/test_texture.hpp"
+#include "app/commands/test_texture.hpp"
 #include "bench/inputs.hpp"
 #include "bench/rows.hpp"
 #include "core/random.hpp"
-#include "device/falcon/falcon_kinematics.hpp"
+#include "device/drivers/falcon/falcon_kinematics.hpp"
 #include "device/servo/duration_histogram.hpp"
 #include "device/servo/flight_recorder.hpp"
 #include "device/servo/sample_ring.hpp"
@@ -14,8 +14,8 @@
 #include "engine/rendering/rendering_model.hpp"
 #include "engine/rendering/texture_field.hpp"
 #include "protocols/session/exploration.hpp"
-#include "protocols/store/trace.hpp"
-#include "tests/device/falcon/emulator/falcon_legs.hpp"
+#include "record/trace.hpp"
+#include "tests/device/drivers/falcon/emulator/falcon_legs.hpp"
 
 #include <algorithm>
 #include <array>
@@ -183,14 +183,14 @@ class ServiceClock final : public device::ServoClock {
 void encode_traces(device::SampleRing& ring, const std::atomic<bool>& ending) {
   constexpr std::size_t kSamplesOfTrace = 60'000;
   std::vector<device::ServoSample> batch(1024);
-  store::Trace trace;
+  record::Trace trace;
   while (!ending) {
     const std::size_t got = ring.pop(batch);
     for (std::size_t i = 0; i < got; ++i) {
       trace.samples.push_back({batch[i].position_mm, batch[i].force_n});
     }
     if (trace.samples.size() >= kSamplesOfTrace) {
-      static_cast<void>(store::encode_trace(trace));
+      static_cast<void>(record::encode_trace(trace));
       trace.samples.clear();
     }
     if (got == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));

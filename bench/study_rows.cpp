@@ -1,10 +1,9 @@
 // A whole simulated study.
-#include "app/study_inputs.hpp"
+#include "app/commands/study_inputs.hpp"
 #include "bench/rows.hpp"
 #include "core/random.hpp"
-#include "device/simulated/simulated_hand.hpp"
+#include "device/drivers/simulated/simulated_hand.hpp"
 #include "engine/pack/pack.hpp"
-#include "protocols/design/prepare.hpp"
 #include "protocols/registration/registration.hpp"
 #include "protocols/session/commitment.hpp"
 #include "protocols/session/exploration.hpp"
@@ -13,7 +12,8 @@
 #include "protocols/simulation/felt_exploration.hpp"
 #include "protocols/simulation/simulation.hpp"
 #include "protocols/simulation/subject_model.hpp"
-#include "protocols/store/study_store.hpp"
+#include "record/study_store.hpp"
+#include "study/prepare.hpp"
 #include "tests/support/temp_folder.hpp"
 
 #include <chrono>
@@ -33,18 +33,18 @@ namespace fs = std::filesystem;
 constexpr int kParticipants = 20;
 
 /// The classification study that comes with the program: 25 trials of 10 s.
-design::StudyKey study_key(const fs::path& folder) {
+study::StudyKey study_key(const fs::path& folder) {
   registration::register_protocols();
-  design::StudyKey key = design::simulated_study_key(
-      design::load_study(fs::path(TOUCHTRIAL_SOURCE_DIR) / "config/classification.json"));
+  study::StudyKey key = study::simulated_study_key(
+      study::load_study(fs::path(TOUCHTRIAL_SOURCE_DIR) / "config/classification.json"));
   key.pack_folder = folder / "pack";
-  design::prepare_pack(key, key.pack_folder, {});
+  study::prepare_pack(key, key.pack_folder, {});
   return key;
 }
 
 struct PreparedStudy {
   TempFolder folder{};
-  design::StudyKey key = study_key(folder.path());
+  study::StudyKey key = study_key(folder.path());
   engine::Pack pack{key.pack_folder};
 };
 
@@ -65,7 +65,7 @@ double simulate(int threads) {
   fs::remove(database);
   int trials = 0;
   {
-    store::StudyStore store = store::StudyStore::create(
+    record::StudyStore store = record::StudyStore::create(
         database, session::commitment_of(study.key, study.pack, true, false),
         std::chrono::nanoseconds(0), study.key.signer());
     trials =
@@ -77,7 +77,7 @@ double simulate(int threads) {
 /// As many explorations as the study has trials, tick by tick: the hand and the force of a stimulus
 /// and nothing else. No servo, limit, sense, trace or answer, and nobody learns before.
 void explore_alone() {
-  const design::StudyKey& key = prepared().key;
+  const study::StudyKey& key = prepared().key;
   const simulation::SubjectModel subject = app::subject_for({}, key.study, {});
   const session::StimulusSource source(prepared().pack, key);
   const simulation::SimulationOptions options;

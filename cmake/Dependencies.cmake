@@ -21,7 +21,7 @@ else()
 endif()
 pkg_check_modules(nlopt REQUIRED IMPORTED_TARGET GLOBAL nlopt)
 
-# For the module that sync and merge load (protocols/collect/postgres).
+# For the module that sync and merge load (record/merging/postgres).
 pkg_check_modules(libpq REQUIRED IMPORTED_TARGET GLOBAL libpq)
 
 pkg_check_modules(libusb REQUIRED IMPORTED_TARGET GLOBAL libusb-1.0)

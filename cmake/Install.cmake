@@ -6,10 +6,10 @@ include(CMakePackageConfigHelpers)
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME program)
 
 install(TARGETS touchtrial RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT program)
-# Where the program looks for it: protocols/collect/bundle_module.cpp.
+# Where the program looks for it: record/merging/bundle_module.cpp.
 install(TARGETS touchtrial_postgres LIBRARY DESTINATION lib/touchtrial COMPONENT postgres)
 
-# The ready studies, and what they name: `touchtrial examples` copies them (app/shipped_files.cpp).
+# The ready studies, and what they name: `touchtrial examples` copies them (app/commands/shipped_files.cpp).
 set(shipped "${CMAKE_INSTALL_DATADIR}/touchtrial")
 install(DIRECTORY config/ DESTINATION "${shipped}/config" COMPONENT program
         FILES_MATCHING PATTERN "*.json" PATTERN "udev" EXCLUDE PATTERN "desktop" EXCLUDE PATTERN "completion" EXCLUDE PATTERN "*.pack" EXCLUDE)

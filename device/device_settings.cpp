@@ -3,8 +3,8 @@
 #include "core/files.hpp"
 #include "core/strict_json.hpp"
 #include "core/user_folders.hpp"
-#include "device/registry.hpp"
-#include "device/scaled_device.hpp"
+#include "device/drivers/registry.hpp"
+#include "device/servo/scaled_device.hpp"
 
 #include <algorithm>
 

@@ -4,8 +4,8 @@
 #include "core/vec.hpp"
 #include "device/instruments/lab_streaming.hpp"
 #include "device/instruments/marker_line.hpp"
-#include "device/placed_device.hpp"
 #include "device/safety/safety_chain.hpp"
+#include "device/servo/placed_device.hpp"
 
 #include <array>
 #include <filesystem>

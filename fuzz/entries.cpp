@@ -1,16 +1,16 @@
 #include "fuzz/entries.hpp"
 
 #include "core/errors.hpp"
-#include "device/falcon/falcon_kinematics.hpp"
-#include "device/falcon/falcon_packet.hpp"
-#include "device/inverse3/service_messages.hpp"
+#include "device/drivers/falcon/falcon_kinematics.hpp"
+#include "device/drivers/falcon/falcon_packet.hpp"
+#include "device/drivers/inverse3/service_messages.hpp"
 #include "engine/image_file.hpp"
-#include "protocols/design/key_protection.hpp"
-#include "protocols/design/study.hpp"
 #include "protocols/registration/registration.hpp"
 #include "protocols/simulation/subject_model.hpp"
-#include "protocols/store/head_copy.hpp"
-#include "protocols/store/trace.hpp"
+#include "record/head_copy.hpp"
+#include "record/trace.hpp"
+#include "study/key_protection.hpp"
+#include "study/study.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -42,7 +42,7 @@ void accept_or_refuse(Read read) {
   }
 }
 
-bool equal(const store::Trace& a, const store::Trace& b) {
+bool equal(const record::Trace& a, const record::Trace& b) {
   if (a.rate_hz != b.rate_hz || a.samples.size() != b.samples.size()) return false;
   for (std::size_t i = 0; i < a.samples.size(); ++i) {
     if (!(a.samples[i].position_mm == b.samples[i].position_mm)) return false;
@@ -71,10 +71,10 @@ const Signer& fuzzing_signer() {
 }
 
 /// A record that was read is written, and read again.
-void check_head(const store::HeadRecord& record) {
+void check_head(const record::HeadRecord& record) {
   const std::vector<PublicKey> signers = {fuzzing_signer().public_half()};
-  const std::string copy = store::head_copy_of(record, fuzzing_signer(), "study.db.head");
-  require(store::read_head_copy(copy, signers).record == record, "a head survives being stored");
+  const std::string copy = record::head_copy_of(record, fuzzing_signer(), "study.db.head");
+  require(record::read_head_copy(copy, signers).record == record, "a head survives being stored");
 }
 
 /// Adds a bulk transfer without the FTDI's status bytes.
@@ -123,7 +123,7 @@ void read_as_image(ByteView bytes) {
 void read_as_study(ByteView bytes) {
   registration::register_protocols();
   accept_or_refuse([&] {
-    const design::Study study = design::parse_study(text_of(bytes), "folder", "study.json");
+    const study::Study study = study::parse_study(text_of(bytes), "folder", "study.json");
     require(!study.classes.empty() && !study.methods.empty(), "a study has classes and methods");
     require(study.scored_trials() > 0, "a study has trials");
   });
@@ -141,26 +141,26 @@ void read_as_subject(ByteView bytes) {
 void read_as_trace(ByteView bytes) {
   if (claims_a_long_trace(bytes)) return;
   accept_or_refuse([&] {
-    const store::Trace trace = store::decode_trace(bytes);
-    require(equal(store::decode_trace(store::encode_trace(trace)), trace),
+    const record::Trace trace = record::decode_trace(bytes);
+    require(equal(record::decode_trace(record::encode_trace(trace)), trace),
             "a trace survives being stored");
   });
 }
 
 void read_as_head(ByteView bytes) {
   const std::vector<PublicKey> signers = {fuzzing_signer().public_half()};
-  const store::HeadCopy copy = store::read_head_copy(text_of(bytes), signers);
+  const record::HeadCopy copy = record::read_head_copy(text_of(bytes), signers);
   require(copy.record.has_value() == copy.fault.empty(), "a copy has a record or a fault");
   accept_or_refuse([&] {
     if (copy.record) check_head(*copy.record);
   });
-  accept_or_refuse([&] { check_head(store::head_record_from(text_of(bytes), "its text")); });
+  accept_or_refuse([&] { check_head(record::head_record_from(text_of(bytes), "its text")); });
 }
 
 void read_as_protected(ByteView bytes) {
   accept_or_refuse([&] {
     const std::string text = text_of(bytes);
-    const auto signer = design::signer_in_clear(text, "study.key");
+    const auto signer = study::signer_in_clear(text, "study.key");
     if (!signer) return;
     require(text.find("\nsigns " + to_hex(ByteView(*signer)) + "\n") != std::string::npos,
             "a protected file names who signs with it");

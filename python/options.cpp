@@ -1,7 +1,7 @@
 #include "python/options.hpp"
 
 #include "core/errors.hpp"
-#include "protocols/design/study_options.hpp"
+#include "study/study_options.hpp"
 
 #include <stdexcept>
 
@@ -9,7 +9,7 @@ namespace touchtrial::python {
 
 engine::ExtractionOptions method_options(const std::string& method, std::uint64_t seed) {
   try {
-    engine::ExtractionOptions options = design::parse_method(method, "method");
+    engine::ExtractionOptions options = study::parse_method(method, "method");
     options.control_seed = seed;
     return options;
   } catch (const StudyError& error) {
@@ -19,7 +19,7 @@ engine::ExtractionOptions method_options(const std::string& method, std::uint64_
 
 engine::RenderingOptions rendering_options(const std::string& rendering) {
   try {
-    return design::parse_rendering(rendering, "rendering");
+    return study::parse_rendering(rendering, "rendering");
   } catch (const StudyError& error) {
     throw std::invalid_argument(error.what());
   }

@@ -1,11 +1,11 @@
 #include "engine/rendering/field_statistics.hpp"
 #include "engine/rendering/gains.hpp"
 #include "engine/rendering/rendering_model.hpp"
-#include "protocols/design/stimulus_field.hpp"
-#include "protocols/design/study_options.hpp"
 #include "python/arrays.hpp"
 #include "python/module.hpp"
 #include "python/options.hpp"
+#include "study/stimulus_field.hpp"
+#include "study/study_options.hpp"
 
 #include <array>
 #include <cstddef>
@@ -64,8 +64,8 @@ FieldSource source_of(const py::object& given) {
 engine::TextureField made_field(const FieldSource& source, const engine::ExtractionOptions& method,
                                 const engine::RenderingOptions& rendering) {
   if (source.image.empty()) return engine::make_texture_field(source.texture, rendering);
-  std::optional<design::TakenTexture> none;
-  return design::build_field(source.image, method, rendering, none, false).field;
+  std::optional<study::TakenTexture> none;
+  return study::build_field(source.image, method, rendering, none, false).field;
 }
 
 /// The gains of all fields together, as of a study's stimuli.
@@ -220,7 +220,7 @@ void add_rendering(py::module_& module) {
       .def_property_readonly(
           "rendering",
           [](const Field& field) {
-            const std::string text = design::written_rendering(field.options());
+            const std::string text = study::written_rendering(field.options());
             return py::module_::import("json").attr("loads")(text);
           },
           "The rendering options, every key of them.")

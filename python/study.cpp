@@ -1,12 +1,12 @@
 #include "analysis/exports/export_tables.hpp"
-#include "analysis/results.hpp"
-#include "analysis/sealed_sessions.hpp"
-#include "app/simulated_study.hpp"
-#include "app/study_inputs.hpp"
+#include "analysis/outcomes/sealed_sessions.hpp"
+#include "analysis/report/results.hpp"
+#include "app/commands/simulated_study.hpp"
+#include "app/commands/study_inputs.hpp"
 #include "core/errors.hpp"
-#include "protocols/design/key_protection.hpp"
 #include "python/arrays.hpp"
 #include "python/module.hpp"
+#include "study/key_protection.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -36,12 +36,11 @@ namespace fs = std::filesystem;
 class Passphrase {
  public:
   explicit Passphrase(std::optional<std::string> passphrase) : lock_(one_at_a_time()) {
-    design::ask_passphrases_with(
-        [passphrase = std::move(passphrase)](const fs::path&, int attempt) {
-          return attempt == 1 ? passphrase : std::nullopt;
-        });
+    study::ask_passphrases_with([passphrase = std::move(passphrase)](const fs::path&, int attempt) {
+      return attempt == 1 ? passphrase : std::nullopt;
+    });
   }
-  ~Passphrase() { design::ask_passphrases_with({}); }
+  ~Passphrase() { study::ask_passphrases_with({}); }
   Passphrase(const Passphrase&) = delete;
   Passphrase& operator=(const Passphrase&) = delete;
 
@@ -53,9 +52,10 @@ class Passphrase {
   std::lock_guard<std::mutex> lock_;
 };
 
-store::StudyStore opened(const std::string& database) {
-  store::StudyStore store = store::StudyStore::open(database, store::StudyStore::Access::read_only);
-  const store::StudyState state = store.state();
+record::StudyStore opened(const std::string& database) {
+  record::StudyStore store =
+      record::StudyStore::open(database, record::StudyStore::Access::read_only);
+  const record::StudyState state = store.state();
   if (state.unblinded) return store;
   throw StoreError(one_line(fs::path(database).filename().string()) + ": is " +
                    app::blind_words(state) +
@@ -91,7 +91,7 @@ class Study {
   }
 
   /// \throws std::out_of_range if the study shows no such trial
-  [[nodiscard]] store::Trace trace(int session, int trial) const {
+  [[nodiscard]] record::Trace trace(int session, int trial) const {
     const auto found =
         std::ranges::find_if(outcomes_.trials, [&](const analysis::TrialOutcome& one) {
           return one.row.session == session && one.row.trial == trial;
@@ -105,8 +105,8 @@ class Study {
   }
 
  private:
-  store::StudyStore store_;
-  design::StudyKey key_;
+  record::StudyStore store_;
+  study::StudyKey key_;
   analysis::Outcomes outcomes_;
   analysis::SessionKeys keys_;
   mutable std::mutex one_at_a_time_;  ///< guards the store
@@ -183,11 +183,11 @@ py::dict tables_of(const Study& study) {
 
 /// The rate, and an array (N, 6) that owns the samples.
 py::tuple trace_of(const Study& study, int session, int trial) {
-  store::Trace trace = [&] {
+  record::Trace trace = [&] {
     const py::gil_scoped_release others_run;
     return study.trace(session, trial);
   }();
-  static_assert(sizeof(store::TraceSample) == 6 * sizeof(double));
+  static_assert(sizeof(record::TraceSample) == 6 * sizeof(double));
   const auto [samples, base] = owned_by_python(std::move(trace.samples));
   const auto* first = samples->empty() ? nullptr : &samples->front().position_mm.x;
   return py::make_tuple(trace.rate_hz,

@@ -1,9 +1,9 @@
 #include "analysis/exports/dataset.hpp"
 
-#include "analysis/collection.hpp"
-#include "analysis/quality.hpp"
-#include "analysis/results.hpp"
-#include "analysis/text_figures.hpp"
+#include "analysis/outcomes/collection.hpp"
+#include "analysis/outcomes/quality.hpp"
+#include "analysis/report/results.hpp"
+#include "analysis/report/text_figures.hpp"
 
 #include <algorithm>
 #include <map>
@@ -267,11 +267,11 @@ std::string plain_label(const std::string& name) {
 }
 
 std::string about_study(const DatasetSource& study) {
-  const store::StudyCommitment& commitment = study.store.commitment();
-  const std::vector<store::SessionRow> sessions = study.store.sessions();
+  const record::StudyCommitment& commitment = study.store.commitment();
+  const std::vector<record::SessionRow> sessions = study.store.sessions();
   const auto counts =
       std::count_if(sessions.begin(), sessions.end(),
-                    [&](const store::SessionRow& row) { return session_counts(row, commitment); });
+                    [&](const record::SessionRow& row) { return session_counts(row, commitment); });
   std::string text;
   if (commitment.simulated) {
     text +=

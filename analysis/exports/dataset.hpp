@@ -3,7 +3,7 @@
 #pragma once
 
 #include "analysis/exports/said_tables.hpp"
-#include "analysis/outcomes.hpp"
+#include "analysis/outcomes/outcomes.hpp"
 
 #include <filesystem>
 #include <functional>
@@ -15,9 +15,9 @@ namespace touchtrial::analysis {
 
 /// A study and, after unblinding, its outcomes and its key: both or neither.
 struct DatasetSource {
-  const store::StudyStore& store;
+  const record::StudyStore& store;
   const Outcomes* outcomes = nullptr;
-  const design::StudyKey* key = nullptr;
+  const study::StudyKey* key = nullptr;
 };
 
 struct DatasetOptions {
@@ -28,7 +28,7 @@ struct DatasetOptions {
   bool stimuli = false;              ///< includes the study's images
   std::filesystem::path database{};  ///< a database to copy into the dataset; empty: none
   Typed typed = Typed::left_out;     ///< answers in words, notes and reasons, which may name people
-  std::vector<store::PersonalRecord> consents{};  ///< of the personal data, if they are known
+  std::vector<record::PersonalRecord> consents{};  ///< of the personal data, if they are known
   std::function<void(int done, int of)> progress{};
 };
 

@@ -5,10 +5,10 @@
 #include "analysis/exports/said_tables.hpp"
 #include "analysis/exports/study_tables.hpp"
 #include "analysis/exports/trial_tables.hpp"
-#include "analysis/incidents.hpp"
-#include "analysis/sealed_sessions.hpp"
+#include "analysis/outcomes/incidents.hpp"
+#include "analysis/outcomes/sealed_sessions.hpp"
 #include "core/errors.hpp"
-#include "protocols/store/payload_json.hpp"
+#include "record/payload_json.hpp"
 
 #include <algorithm>
 #include <array>
@@ -19,7 +19,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-using store::EventKind;
+using record::EventKind;
 
 /// The rows that have one of the values in a column.
 DataTable rows_with(DataTable table, const std::string& column, const std::set<DataCell>& values) {
@@ -30,15 +30,15 @@ DataTable rows_with(DataTable table, const std::string& column, const std::set<D
 }
 
 /// When the sessions of a participant were opened and closed.
-DataTable visits_of(const store::StudyStore& store, const std::vector<store::SessionRow>& rows) {
+DataTable visits_of(const record::StudyStore& store, const std::vector<record::SessionRow>& rows) {
   DataTable table{{"participant", "session", "opened_utc", "closed_utc", "simulated"}, {}};
   std::map<int, std::chrono::nanoseconds> opened;
   std::map<int, std::chrono::nanoseconds> closed;
-  for (const store::Event& event : store.events(0)) {
-    if (event.kind == EventKind::session_opened) opened[store::session_about(event)] = event.at;
-    if (event.kind == EventKind::session_closed) closed[store::session_about(event)] = event.at;
+  for (const record::Event& event : store.events(0)) {
+    if (event.kind == EventKind::session_opened) opened[record::session_about(event)] = event.at;
+    if (event.kind == EventKind::session_closed) closed[record::session_about(event)] = event.at;
   }
-  for (const store::SessionRow& row : rows) {
+  for (const record::SessionRow& row : rows) {
     const auto end = closed.find(row.session);
     table.rows.push_back({row.participant, std::int64_t{row.session},
                           utc_cell(opened.at(row.session), row.simulated),
@@ -49,10 +49,10 @@ DataTable visits_of(const store::StudyStore& store, const std::vector<store::Ses
 }
 
 /// One row for each consent, with what was given then.
-DataTable personal_table(const std::vector<store::PersonalRecord>& consents) {
+DataTable personal_table(const std::vector<record::PersonalRecord>& consents) {
   DataTable table{{"participant", "consent_version", "consented_utc", "age", "gender", "contact"},
                   {}};
-  for (const store::PersonalRecord& one : consents) {
+  for (const record::PersonalRecord& one : consents) {
     table.rows.push_back({one.participant, one.consent_version, one.consented_utc,
                           one.age ? DataCell(std::int64_t{*one.age}) : DataCell(), one.gender,
                           one.contact});
@@ -90,24 +90,24 @@ DataCell force_words(ForceOf source) {
 /// Gathers the two tables.
 class SafetyRecord {
  public:
-  SafetyRecord(const store::StudyStore& store, const design::StudyKey* key) {
+  SafetyRecord(const record::StudyStore& store, const study::StudyKey* key) {
     if (key != nullptr) {
       require_key_of(store, *key);
       keys_ = person_keys(store, *key);
     }
-    for (const store::SessionRow& row : store.sessions()) sessions_[row.session].row = row;
-    store.for_each(EventKind::closed, [&](const store::Event& stored) {
+    for (const record::SessionRow& row : store.sessions()) sessions_[row.session].row = row;
+    store.for_each(EventKind::closed, [&](const record::Event& stored) {
       Session& session = sessions_.at(stored.session);
-      const store::Event event = readable(stored, session.row);
+      const record::Event event = readable(stored, session.row);
       if (!event.sealed.empty()) return;
-      session.largest_force_n = store::closed_from_json(event.body).largest_force_n;
+      session.largest_force_n = record::closed_from_json(event.body).largest_force_n;
       session.force_of = session.largest_force_n ? ForceOf::session : ForceOf::none;
     });
     for (auto& [number, session] : sessions_) {
       if (session.force_of == ForceOf::unknown) open_forces(store, session);
     }
-    store.for_each_of(kSafetyKinds, [&](const store::Event& event) { add(event); });
-    for (const store::Event& event : store.events(0)) add(event);
+    store.for_each_of(kSafetyKinds, [&](const record::Event& event) { add(event); });
+    for (const record::Event& event : store.events(0)) add(event);
   }
 
   [[nodiscard]] DataTable sessions() const {
@@ -129,7 +129,7 @@ class SafetyRecord {
 
  private:
   struct Session {
-    store::SessionRow row;
+    record::SessionRow row;
     std::optional<double> largest_force_n{};
     ForceOf force_of = ForceOf::unknown;
     std::int64_t interruptions = 0;
@@ -139,29 +139,29 @@ class SafetyRecord {
 
   /// The largest force of a session that has not ended is sealed in its events, under the
   /// participant's key. Nothing else of them is kept.
-  void open_forces(const store::StudyStore& store, Session& session) const {
+  void open_forces(const record::StudyStore& store, Session& session) const {
     const auto own = keys_.find(session.row.session);
     if (own == keys_.end() || !own->second.participant) return;
     session.force_of = ForceOf::none;
-    for (const store::Event& stored : store.events(session.row.session)) {
+    for (const record::Event& stored : store.events(session.row.session)) {
       const bool is_trace = stored.kind == EventKind::trace_stored;
       if (!is_trace && stored.kind != EventKind::interrupted) continue;
-      const store::Event event = whole_event(stored, *own->second.participant).event;
-      const double force_n = is_trace ? store::trace_body_from_json(event.body).largest_force_n
-                                      : store::trial_from_json(event.body).largest_force_n;
+      const record::Event event = whole_event(stored, *own->second.participant).event;
+      const double force_n = is_trace ? record::trace_body_from_json(event.body).largest_force_n
+                                      : record::trial_from_json(event.body).largest_force_n;
       session.largest_force_n =
-          std::max(session.largest_force_n.value_or(0.0), store::in_tenths(force_n));
+          std::max(session.largest_force_n.value_or(0.0), record::in_tenths(force_n));
       session.force_of = ForceOf::so_far;
     }
   }
 
-  void add(const store::Event& stored) {
-    const auto found = sessions_.find(store::session_about(stored));
+  void add(const record::Event& stored) {
+    const auto found = sessions_.find(record::session_about(stored));
     if (found == sessions_.end()) return;
     Session& session = found->second;
-    const store::Event event = readable(stored, session.row);
+    const record::Event event = readable(stored, session.row);
     const std::optional<Incident> incident = incident_of(event, session.row);
-    if (!incident || !is_of_safety(*incident) || incident->code == store::kPauseReason) return;
+    if (!incident || !is_of_safety(*incident) || incident->code == record::kPauseReason) return;
     session.interruptions += event.kind == EventKind::interrupted ? 1 : 0;
     session.stops += event.kind == EventKind::stopped ? 1 : 0;
     session.deviations +=
@@ -175,14 +175,14 @@ class SafetyRecord {
 
   /// With its text, if the safety key opens it. Interruptions are never opened: their sealed part
   /// has what was felt.
-  [[nodiscard]] store::Event readable(const store::Event& event,
-                                      const store::SessionRow& row) const {
+  [[nodiscard]] record::Event readable(const record::Event& event,
+                                       const record::SessionRow& row) const {
     const auto own = keys_.find(row.session);
     if (own == keys_.end() || event.kind == EventKind::interrupted) return event;
     return readable_event(event, row, {.participant = {}, .safety = own->second.safety});
   }
 
-  std::map<int, store::PersonKeys> keys_;
+  std::map<int, record::PersonKeys> keys_;
   std::map<int, Session> sessions_;
   DataTable events_{{"participant", "session", "event", "kind", "at_s", "at_utc", "trial", "code",
                      "safety_fault", "device_fault", "text", "simulated"},
@@ -193,10 +193,10 @@ class SafetyRecord {
 
 std::vector<std::filesystem::path> export_participant(
     const DatasetSource& study, const std::string& participant,
-    const std::vector<store::PersonalRecord>& consents, const std::filesystem::path& folder) {
-  const store::StudyStore& store = study.store;
-  const store::StudyCommitment& commitment = store.commitment();
-  const std::vector<store::SessionRow> rows = store.sessions_of(participant);
+    const std::vector<record::PersonalRecord>& consents, const std::filesystem::path& folder) {
+  const record::StudyStore& store = study.store;
+  const record::StudyCommitment& commitment = store.commitment();
+  const std::vector<record::SessionRow> rows = store.sessions_of(participant);
   if (rows.empty() && consents.empty()) {
     throw StoreError(one_line("participant " + participant +
                               " has no session and no personal data; check the participant id"));
@@ -208,7 +208,7 @@ std::vector<std::filesystem::path> export_participant(
   };
   const std::set<DataCell> id = {participant};
   std::set<DataCell> sessions;
-  for (const store::SessionRow& row : rows) sessions.insert(std::int64_t{row.session});
+  for (const record::SessionRow& row : rows) sessions.insert(std::int64_t{row.session});
   const std::optional<Outcomes> outcomes =
       study.outcomes != nullptr ? std::optional(*study.outcomes) : std::nullopt;
   const Collection collection = collection_of(store, outcomes);
@@ -234,10 +234,10 @@ std::vector<std::filesystem::path> export_participant(
                       files);
 }
 
-std::vector<std::filesystem::path> export_safety(const store::StudyStore& store,
-                                                 const design::StudyKey* key,
+std::vector<std::filesystem::path> export_safety(const record::StudyStore& store,
+                                                 const study::StudyKey* key,
                                                  const std::filesystem::path& folder) {
-  const store::StudyCommitment& commitment = store.commitment();
+  const record::StudyCommitment& commitment = store.commitment();
   const SafetyRecord record(store, key);
   return write_export(folder, {commitment.study, commitment.study_id, "safety"},
                       {text_file("safety_sessions.csv", csv_text(record.sessions())),

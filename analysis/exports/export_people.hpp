@@ -3,7 +3,7 @@
 #pragma once
 
 #include "analysis/exports/dataset.hpp"
-#include "protocols/store/personal_data.hpp"
+#include "record/personal_data.hpp"
 
 #include <filesystem>
 #include <string>
@@ -23,7 +23,7 @@ namespace touchtrial::analysis {
 /// \throws FileError if the folder or a file cannot be written
 std::vector<std::filesystem::path> export_participant(
     const DatasetSource& study, const std::string& participant,
-    const std::vector<store::PersonalRecord>& consents, const std::filesystem::path& folder);
+    const std::vector<record::PersonalRecord>& consents, const std::filesystem::path& folder);
 
 /// Writes safety_sessions.csv and safety_events.csv: stops, faults, largest forces, reasons and
 /// deviations of all participants, also of those whose data were erased. Never holds an outcome.
@@ -31,8 +31,8 @@ std::vector<std::filesystem::path> export_participant(
 /// \return the files, in the order written
 /// \throws VerificationError if the key does not match the database, or a text does not open
 /// \throws FileError if the folder or a file cannot be written
-std::vector<std::filesystem::path> export_safety(const store::StudyStore& store,
-                                                 const design::StudyKey* key,
+std::vector<std::filesystem::path> export_safety(const record::StudyStore& store,
+                                                 const study::StudyKey* key,
                                                  const std::filesystem::path& folder);
 
 }  // namespace touchtrial::analysis

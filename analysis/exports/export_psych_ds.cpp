@@ -3,7 +3,7 @@
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/exports/study_tables.hpp"
 #include "analysis/exports/trial_tables.hpp"
-#include "analysis/json_figures.hpp"
+#include "analysis/report/json_figures.hpp"
 #include "core/version.hpp"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ Json variable_json(const std::string& column) {
   return variable;
 }
 
-std::string description_of(const store::StudyCommitment& commitment) {
+std::string description_of(const record::StudyCommitment& commitment) {
   return fmt::format(
       "{}{}Textures felt through a force-feedback device, one of {} named in each trial. "
       "Protocol: {}.",
@@ -42,7 +42,7 @@ std::string description_of(const store::StudyCommitment& commitment) {
 /// \param columns  of all data files; each is described once
 std::string psych_ds_description_json(const DatasetSource& study, const DatasetOptions& options,
                                       const std::vector<std::string>& columns) {
-  const store::StudyCommitment& commitment = study.store.commitment();
+  const record::StudyCommitment& commitment = study.store.commitment();
   const std::string stamp = commitment.simulated ? " (SIMULATED)" : "";
   Json object{
       {"@context", "https://schema.org/"}, {"@type", "Dataset"},
@@ -71,7 +71,7 @@ std::string psych_ds_readme(const DatasetSource& study) {
 /// The table of participants.csv without participants whose data were erased. Columns that have the
 /// name of a column of trials.csv but another meaning are renamed, because a variable of a dataset
 /// has one meaning.
-DataTable people_table(const store::StudyStore& store, const Collection& collection) {
+DataTable people_table(const record::StudyStore& store, const Collection& collection) {
   DataTable table = participants_table(store, collection);
   std::replace(table.columns.begin(), table.columns.end(), std::string("state"),
                std::string("session_state"));
@@ -100,7 +100,7 @@ std::string changes_text() {
 std::vector<std::filesystem::path> export_psych_ds(const DatasetSource& study,
                                                    const DatasetOptions& options,
                                                    const std::filesystem::path& folder) {
-  const store::StudyCommitment& commitment = study.store.commitment();
+  const record::StudyCommitment& commitment = study.store.commitment();
   const std::optional<Outcomes> outcomes =
       study.outcomes != nullptr ? std::optional(*study.outcomes) : std::nullopt;
   std::vector<ExportFile> files;

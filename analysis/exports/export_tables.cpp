@@ -1,15 +1,15 @@
 #include "analysis/exports/export_tables.hpp"
 
-#include "analysis/collection.hpp"
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/exports/said_tables.hpp"
 #include "analysis/exports/study_tables.hpp"
 #include "analysis/exports/trial_tables.hpp"
-#include "analysis/json_figures.hpp"
-#include "analysis/results.hpp"
-#include "analysis/sealed_sessions.hpp"
+#include "analysis/outcomes/collection.hpp"
+#include "analysis/outcomes/sealed_sessions.hpp"
+#include "analysis/report/json_figures.hpp"
+#include "analysis/report/results.hpp"
 #include "core/strict_json.hpp"
-#include "protocols/store/payload_json.hpp"
+#include "record/payload_json.hpp"
 
 #include <algorithm>
 #include <array>
@@ -28,9 +28,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// The contents of the folder, for readers who do not know the program.
-std::string contents_json(const store::StudyStore& store, bool blinded,
+std::string contents_json(const record::StudyStore& store, bool blinded,
                           const std::vector<ExportFile>& files) {
-  const store::StudyCommitment& commitment = store.commitment();
+  const record::StudyCommitment& commitment = store.commitment();
   Json contents{{"study", commitment.study}, {"protocol", commitment.protocol}};
   put_stamp(contents, commitment.simulated, simulated_devices(store.sessions()));
   contents["study_id"] = commitment.study_id;
@@ -43,30 +43,30 @@ std::string contents_json(const store::StudyStore& store, bool blinded,
 }
 
 /// The kinds of events that no other export lists one by one.
-constexpr std::array kKinds = {store::EventKind::participant_noted,
-                               store::EventKind::calibrated,
-                               store::EventKind::instructed,
-                               store::EventKind::practised,
-                               store::EventKind::interrupted,
-                               store::EventKind::break_taken,
-                               store::EventKind::paused,
-                               store::EventKind::stopped,
-                               store::EventKind::noted,
-                               store::EventKind::ticked,
-                               store::EventKind::deviated,
-                               store::EventKind::questioned,
-                               store::EventKind::explored_again,
-                               store::EventKind::block_restarted,
-                               store::EventKind::resumed};
+constexpr std::array kKinds = {record::EventKind::participant_noted,
+                               record::EventKind::calibrated,
+                               record::EventKind::instructed,
+                               record::EventKind::practised,
+                               record::EventKind::interrupted,
+                               record::EventKind::break_taken,
+                               record::EventKind::paused,
+                               record::EventKind::stopped,
+                               record::EventKind::noted,
+                               record::EventKind::ticked,
+                               record::EventKind::deviated,
+                               record::EventKind::questioned,
+                               record::EventKind::explored_again,
+                               record::EventKind::block_restarted,
+                               record::EventKind::resumed};
 
 /// The detail of an interruption. Empty for other events, and for interruptions in virtual time.
-store::InterruptionDetail detail_of(const store::OpenedEvent& opened) {
-  if (opened.event.kind != store::EventKind::interrupted || opened.secret.empty()) return {};
-  return store::interruption_from_json(opened.secret);
+record::InterruptionDetail detail_of(const record::OpenedEvent& opened) {
+  if (opened.event.kind != record::EventKind::interrupted || opened.secret.empty()) return {};
+  return record::interruption_from_json(opened.secret);
 }
 
-store::OpenedEvent whole(const store::Event& event, const store::SessionRow& row,
-                         const store::PersonKeys& keys) {
+record::OpenedEvent whole(const record::Event& event, const record::SessionRow& row,
+                          const record::PersonKeys& keys) {
   if (!belongs_to_file_chain(event.kind)) return whole_event(event, *keys.participant);
   return {.event = readable_event(event, row, keys), .secret = {}};
 }
@@ -111,9 +111,9 @@ std::vector<ExportFile> csv_files(const std::vector<ResultTable>& tables,
 
 }  // namespace
 
-std::vector<ResultTable> exported_tables(const store::StudyStore& store,
+std::vector<ResultTable> exported_tables(const record::StudyStore& store,
                                          const std::optional<Outcomes>& outcomes,
-                                         const std::vector<store::PersonalRecord>& consents) {
+                                         const std::vector<record::PersonalRecord>& consents) {
   const bool simulated = store.commitment().simulated;
   const Collection collection = collection_of(store, outcomes);
   std::vector<ResultTable> tables = {{"trials.csv", trials_table(store, outcomes)},
@@ -130,12 +130,12 @@ std::vector<ResultTable> exported_tables(const store::StudyStore& store,
   return tables;
 }
 
-std::vector<std::filesystem::path> export_csv(const store::StudyStore& store,
+std::vector<std::filesystem::path> export_csv(const record::StudyStore& store,
                                               const std::optional<Outcomes>& outcomes,
                                               const std::filesystem::path& folder,
-                                              const std::vector<store::PersonalRecord>& consents,
+                                              const std::vector<record::PersonalRecord>& consents,
                                               const std::string& start) {
-  const store::StudyCommitment& commitment = store.commitment();
+  const record::StudyCommitment& commitment = store.commitment();
   std::vector<ExportFile> files = csv_files(exported_tables(store, outcomes, consents), start);
   if (outcomes)
     files.push_back(text_file("study_file.json", without_comments(outcomes->design.text)));
@@ -143,33 +143,32 @@ std::vector<std::filesystem::path> export_csv(const store::StudyStore& store,
   return write_export(folder, {commitment.study, commitment.study_id, "csv"}, files);
 }
 
-std::vector<std::filesystem::path> export_said(const store::StudyStore& store,
-                                               const Outcomes& outcomes,
-                                               const std::filesystem::path& folder,
-                                               const std::vector<store::PersonalRecord>& consents) {
-  const store::StudyCommitment& commitment = store.commitment();
+std::vector<std::filesystem::path> export_said(
+    const record::StudyStore& store, const Outcomes& outcomes, const std::filesystem::path& folder,
+    const std::vector<record::PersonalRecord>& consents) {
+  const record::StudyCommitment& commitment = store.commitment();
   return write_export(folder, {commitment.study, commitment.study_id, "r, what was said"},
                       csv_files(said_tables(store, outcomes, consents)));
 }
 
-std::vector<ExportFile> event_files(const store::StudyStore& store, const design::StudyKey& key,
+std::vector<ExportFile> event_files(const record::StudyStore& store, const study::StudyKey& key,
                                     const Outcomes& outcomes, const std::string& prefix) {
-  std::map<int, const store::SessionRow*> shown;
+  std::map<int, const record::SessionRow*> shown;
   for (const SessionOutcome& session : outcomes.sessions) shown[session.row.session] = &session.row;
-  const std::map<int, store::PersonKeys> keys = person_keys(store, key);
+  const std::map<int, record::PersonKeys> keys = person_keys(store, key);
   DataTable table{{"participant", "session", "event", "kind", "at_s", "at_utc", "body",
                    "safety_fault", "device_fault", "flight", "simulated"},
                   {}};
   std::vector<ExportFile> files;
-  store.for_each_of(kKinds, [&](const store::Event& stored) {
-    const auto session = shown.find(store::session_about(stored));
+  store.for_each_of(kKinds, [&](const record::Event& stored) {
+    const auto session = shown.find(record::session_about(stored));
     if (session == shown.end()) return;
-    const store::SessionRow& row = *session->second;
-    const store::PersonKeys& own = keys.at(row.session);
+    const record::SessionRow& row = *session->second;
+    const record::PersonKeys& own = keys.at(row.session);
     if (!own.participant) return;
-    const store::OpenedEvent opened = whole(stored, row, own);
-    const store::Event& event = opened.event;
-    store::InterruptionDetail detail = detail_of(opened);
+    const record::OpenedEvent opened = whole(stored, row, own);
+    const record::Event& event = opened.event;
+    record::InterruptionDetail detail = detail_of(opened);
     const bool in_session = event.session > 0;
     std::string flight;
     if (detail.ticks > 0) {
@@ -187,20 +186,20 @@ std::vector<ExportFile> event_files(const store::StudyStore& store, const design
   return files;
 }
 
-std::vector<std::filesystem::path> export_events(const store::StudyStore& store,
-                                                 const design::StudyKey& key,
+std::vector<std::filesystem::path> export_events(const record::StudyStore& store,
+                                                 const study::StudyKey& key,
                                                  const Outcomes& outcomes,
                                                  const std::filesystem::path& folder) {
   const std::vector<ExportFile> files = event_files(store, key, outcomes);
-  const store::StudyCommitment& commitment = store.commitment();
+  const record::StudyCommitment& commitment = store.commitment();
   return write_export(folder, {commitment.study, commitment.study_id, "events"}, files);
 }
 
-std::filesystem::path export_json(const store::StudyStore& store,
+std::filesystem::path export_json(const record::StudyStore& store,
                                   const std::optional<Outcomes>& outcomes,
                                   const std::filesystem::path& folder,
-                                  const std::vector<store::PersonalRecord>& consents) {
-  const store::StudyCommitment& commitment = store.commitment();
+                                  const std::vector<record::PersonalRecord>& consents) {
+  const record::StudyCommitment& commitment = store.commitment();
   Json document{{"study", commitment.study}, {"protocol", commitment.protocol}};
   put_stamp(document, commitment.simulated, simulated_devices(store.sessions()));
   document["study_id"] = commitment.study_id;

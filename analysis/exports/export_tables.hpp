@@ -3,9 +3,9 @@
 #pragma once
 
 #include "analysis/exports/export_folder.hpp"
-#include "analysis/outcomes.hpp"
-#include "analysis/results.hpp"
-#include "protocols/store/personal_data.hpp"
+#include "analysis/outcomes/outcomes.hpp"
+#include "analysis/report/results.hpp"
+#include "record/personal_data.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -20,8 +20,8 @@ inline constexpr const char* kByteOrderMark = "\xEF\xBB\xBF";
 /// \param outcomes  of this store; nothing before unblinding
 /// \param consents  of the personal data, if they are known
 [[nodiscard]] std::vector<ResultTable> exported_tables(
-    const store::StudyStore& store, const std::optional<Outcomes>& outcomes,
-    const std::vector<store::PersonalRecord>& consents = {});
+    const record::StudyStore& store, const std::optional<Outcomes>& outcomes,
+    const std::vector<record::PersonalRecord>& consents = {});
 
 /// Writes trials.csv, participants.csv, deviations.csv, servo.csv, said_tables and study.csv. With
 /// outcomes it also writes the tables of the protocol's analysis (for example,
@@ -34,17 +34,17 @@ inline constexpr const char* kByteOrderMark = "\xEF\xBB\xBF";
 /// \return the files, in the order written
 /// \throws FileError if the folder or a file cannot be written
 std::vector<std::filesystem::path> export_csv(
-    const store::StudyStore& store, const std::optional<Outcomes>& outcomes,
-    const std::filesystem::path& folder, const std::vector<store::PersonalRecord>& consents = {},
+    const record::StudyStore& store, const std::optional<Outcomes>& outcomes,
+    const std::filesystem::path& folder, const std::vector<record::PersonalRecord>& consents = {},
     const std::string& start = {});
 
 /// Writes said_tables beside those of the protocol's `export_model`.
 /// \return the files, in the order written
 /// \throws FileError if the folder or a file cannot be written
-std::vector<std::filesystem::path> export_said(const store::StudyStore& store,
+std::vector<std::filesystem::path> export_said(const record::StudyStore& store,
                                                const Outcomes& outcomes,
                                                const std::filesystem::path& folder,
-                                               const std::vector<store::PersonalRecord>& consents);
+                                               const std::vector<record::PersonalRecord>& consents);
 
 /// Writes events.csv and one file for each flight record. Contains the sessions whose outcomes may
 /// be shown, without those of participants whose data were erased. Requires unblinding, because the
@@ -53,16 +53,16 @@ std::vector<std::filesystem::path> export_said(const store::StudyStore& store,
 /// \return the files, in the order written
 /// \throws VerificationError, naming the event, if a sealed part does not open
 /// \throws FileError if the folder or a file cannot be written
-std::vector<std::filesystem::path> export_events(const store::StudyStore& store,
-                                                 const design::StudyKey& key,
+std::vector<std::filesystem::path> export_events(const record::StudyStore& store,
+                                                 const study::StudyKey& key,
                                                  const Outcomes& outcomes,
                                                  const std::filesystem::path& folder);
 
 /// The files that export_events writes.
 /// \param prefix  of every file's name
 /// \throws VerificationError, naming the event, if a sealed part does not open
-[[nodiscard]] std::vector<ExportFile> event_files(const store::StudyStore& store,
-                                                  const design::StudyKey& key,
+[[nodiscard]] std::vector<ExportFile> event_files(const record::StudyStore& store,
+                                                  const study::StudyKey& key,
                                                   const Outcomes& outcomes,
                                                   const std::string& prefix = {});
 
@@ -70,9 +70,9 @@ std::vector<std::filesystem::path> export_events(const store::StudyStore& store,
 /// export, with their columns as keys. A missing value is null; times are in seconds. Arguments and
 /// errors are those of export_csv.
 /// \return the file
-std::filesystem::path export_json(const store::StudyStore& store,
+std::filesystem::path export_json(const record::StudyStore& store,
                                   const std::optional<Outcomes>& outcomes,
                                   const std::filesystem::path& folder,
-                                  const std::vector<store::PersonalRecord>& consents = {});
+                                  const std::vector<record::PersonalRecord>& consents = {});
 
 }  // namespace touchtrial::analysis

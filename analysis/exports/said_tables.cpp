@@ -1,7 +1,7 @@
 #include "analysis/exports/said_tables.hpp"
 
 #include "core/named.hpp"
-#include "protocols/store/marks.hpp"
+#include "record/marks.hpp"
 
 #include <array>
 #include <map>
@@ -10,15 +10,15 @@
 namespace touchtrial::analysis {
 namespace {
 
-const char* name_of_kind(design::QuestionKind kind) {
-  using enum design::QuestionKind;
-  static constexpr auto kNames = std::to_array<Named<design::QuestionKind>>(
+const char* name_of_kind(study::QuestionKind kind) {
+  using enum study::QuestionKind;
+  static constexpr auto kNames = std::to_array<Named<study::QuestionKind>>(
       {{"choice", choice}, {"number", number}, {"text", text}});
   return name_in(kNames, kind).data();
 }
 
 /// Of an answer whose question nobody knows, whether it was typed is all that is known.
-DataCell kind_cell(const QuestionAnswer& answer, const design::Question* question) {
+DataCell kind_cell(const QuestionAnswer& answer, const study::Question* question) {
   if (question != nullptr) return std::string(name_of_kind(question->kind));
   return answer.number ? DataCell() : DataCell(std::string("text"));
 }
@@ -37,7 +37,7 @@ DataTable answers_table(const Outcomes& outcomes, Typed typed) {
   const std::string& language = outcomes.design.session.language;
   for (const QuestionAnswer& answer : outcomes.answers) {
     if (typed == Typed::left_out && may_name_somebody(answer)) continue;
-    const design::Question* const question = question_of(outcomes.asked, answer);
+    const study::Question* const question = question_of(outcomes.asked, answer);
     table.rows.push_back({answer.participant, std::int64_t{answer.session}, answer.questionnaire,
                           answer.question, kind_cell(answer, question),
                           question == nullptr ? "" : in_language(question->text, language),
@@ -50,13 +50,13 @@ DataTable answers_table(const Outcomes& outcomes, Typed typed) {
 std::vector<DataCell> incident_cells(const Incident& incident) {
   return {
       incident.participant,  std::int64_t{incident.session},
-      incident.event,        std::string(store::name_of(incident.kind)),
+      incident.event,        std::string(record::name_of(incident.kind)),
       cell_of(incident.at),  incident.trial ? DataCell(std::int64_t{*incident.trial}) : DataCell(),
       incident.code,         incident.safety_fault,
       incident.device_fault, incident.text};
 }
 
-DataTable incidents_table(const store::StudyStore& store, const std::optional<Outcomes>& outcomes,
+DataTable incidents_table(const record::StudyStore& store, const std::optional<Outcomes>& outcomes,
                           Typed typed) {
   DataTable table{{"participant", "session", "event", "incident", "at_s", "trial", "code",
                    "safety_fault", "device_fault", "text", "simulated"},
@@ -76,7 +76,7 @@ DataTable marks_table(const Outcomes& outcomes) {
   for (const InstrumentMark& mark : outcomes.marks) {
     table.rows.push_back({mark.participant, std::int64_t{mark.session},
                           mark.trial > 0 ? DataCell(std::int64_t{mark.trial}) : DataCell(),
-                          std::string(name_of(static_cast<store::Mark>(mark.code))),
+                          std::string(name_of(static_cast<record::Mark>(mark.code))),
                           std::int64_t{mark.code}, mark.at, cell_of(mark.latency),
                           cell_of(mark.lsl_s), cell_of(mark.lsl_uncertainty_s),
                           flag(outcomes.simulated)});
@@ -84,15 +84,15 @@ DataTable marks_table(const Outcomes& outcomes) {
   return table;
 }
 
-DataTable consents_table(const store::StudyStore& store,
-                         const std::vector<store::PersonalRecord>& consents) {
+DataTable consents_table(const record::StudyStore& store,
+                         const std::vector<record::PersonalRecord>& consents) {
   std::set<std::string> known;
-  for (const store::SessionRow& row : store.sessions()) {
+  for (const record::SessionRow& row : store.sessions()) {
     if (!row.erased) known.insert(row.participant);
   }
   DataTable table{{"participant", "consent", "consent_version", "simulated"}, {}};
   std::map<std::string, std::int64_t> numbers;
-  for (const store::PersonalRecord& one : consents) {
+  for (const record::PersonalRecord& one : consents) {
     if (!known.contains(one.participant)) continue;
     table.rows.push_back({one.participant, ++numbers[one.participant], one.consent_version,
                           flag(store.commitment().simulated)});
@@ -106,9 +106,9 @@ ExportFile said_file(const std::string& name, const DataTable& table, bool has_w
                    has_words ? FileMode::owner_only : FileMode::everyone);
 }
 
-std::vector<ResultTable> said_tables(const store::StudyStore& store,
+std::vector<ResultTable> said_tables(const record::StudyStore& store,
                                      const std::optional<Outcomes>& outcomes,
-                                     const std::vector<store::PersonalRecord>& consents) {
+                                     const std::vector<record::PersonalRecord>& consents) {
   std::vector<ResultTable> tables;
   if (outcomes) tables.push_back({"answers.csv", answers_table(*outcomes), true});
   if (outcomes && !outcomes->marks.empty()) {

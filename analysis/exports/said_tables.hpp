@@ -2,13 +2,13 @@
 /// consents. Columns: docs/data-dictionary.md, "Exports".
 #pragma once
 
-#include "analysis/answers.hpp"
 #include "analysis/exports/data_table.hpp"
 #include "analysis/exports/export_folder.hpp"
-#include "analysis/incidents.hpp"
-#include "analysis/outcomes.hpp"
-#include "analysis/results.hpp"
-#include "protocols/store/personal_data.hpp"
+#include "analysis/outcomes/answers.hpp"
+#include "analysis/outcomes/incidents.hpp"
+#include "analysis/outcomes/outcomes.hpp"
+#include "analysis/report/results.hpp"
+#include "record/personal_data.hpp"
 
 #include <optional>
 #include <string>
@@ -29,14 +29,14 @@ enum class Typed { shown, left_out };
 
 /// One row for each incident. Without outcomes, times and texts are sealed, and their cells empty.
 /// \param typed  left_out: without texts
-[[nodiscard]] DataTable incidents_table(const store::StudyStore& store,
+[[nodiscard]] DataTable incidents_table(const record::StudyStore& store,
                                         const std::optional<Outcomes>& outcomes,
                                         Typed typed = Typed::shown);
 
 /// One row for each consent of a participant who has a session and is not erased: the version that
 /// was signed, and how many came before. Neither the day nor anything else of the personal data.
-[[nodiscard]] DataTable consents_table(const store::StudyStore& store,
-                                       const std::vector<store::PersonalRecord>& consents);
+[[nodiscard]] DataTable consents_table(const record::StudyStore& store,
+                                       const std::vector<record::PersonalRecord>& consents);
 
 /// A table as CSV.
 /// \param has_words  it has what people said: for its reader alone
@@ -51,7 +51,7 @@ enum class Typed { shown, left_out };
 /// answers.csv (with outcomes), marks.csv where instruments were told of sessions, incidents.csv,
 /// and consents.csv if there are any.
 [[nodiscard]] std::vector<ResultTable> said_tables(
-    const store::StudyStore& store, const std::optional<Outcomes>& outcomes,
-    const std::vector<store::PersonalRecord>& consents);
+    const record::StudyStore& store, const std::optional<Outcomes>& outcomes,
+    const std::vector<record::PersonalRecord>& consents);
 
 }  // namespace touchtrial::analysis

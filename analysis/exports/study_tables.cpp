@@ -1,6 +1,6 @@
 #include "analysis/exports/study_tables.hpp"
 
-#include "analysis/collection.hpp"
+#include "analysis/outcomes/collection.hpp"
 #include "core/strict_json.hpp"
 #include "core/utc.hpp"
 
@@ -33,20 +33,20 @@ DataCell counted_in(const SessionRecord& record) {
   return std::int64_t{record.*kNumber};
 }
 
-template <std::string store::StationRecord::*kText>
+template <std::string record::StationRecord::*kText>
 DataCell station_text(const SessionRecord& record) {
   if (!record.station) return std::monostate{};
   return (*record.station).*kText;
 }
 
-template <double store::StationRecord::*kNumber>
+template <double record::StationRecord::*kNumber>
 DataCell station_number(const SessionRecord& record) {
   if (!record.station) return std::monostate{};
   return (*record.station).*kNumber;
 }
 
 /// Three numbers with blanks between them.
-template <std::array<double, 3> store::StationRecord::*kAxes>
+template <std::array<double, 3> record::StationRecord::*kAxes>
 DataCell station_axes(const SessionRecord& record) {
   if (!record.station) return std::monostate{};
   const std::array<double, 3>& axes = (*record.station).*kAxes;
@@ -94,14 +94,14 @@ constexpr RecordColumn kRecordColumns[] = {
        return std::int64_t{record.row.station};
      }},
     {"device_serial", [](const SessionRecord& record) -> DataCell { return record.device_serial; }},
-    {"device_model", station_text<&store::StationRecord::model>},
-    {"device_firmware", station_text<&store::StationRecord::firmware>},
-    {"device_max_force_n", station_number<&store::StationRecord::max_force_n>},
-    {"device_force_scale", station_axes<&store::StationRecord::force_scale>},
-    {"device_length_scale", station_axes<&store::StationRecord::length_scale>},
-    {"certificate", station_text<&store::StationRecord::calibration>},
-    {"servo_hz", station_number<&store::StationRecord::rate_hz>},
-    {"scheduling", station_text<&store::StationRecord::scheduling>},
+    {"device_model", station_text<&record::StationRecord::model>},
+    {"device_firmware", station_text<&record::StationRecord::firmware>},
+    {"device_max_force_n", station_number<&record::StationRecord::max_force_n>},
+    {"device_force_scale", station_axes<&record::StationRecord::force_scale>},
+    {"device_length_scale", station_axes<&record::StationRecord::length_scale>},
+    {"certificate", station_text<&record::StationRecord::calibration>},
+    {"servo_hz", station_number<&record::StationRecord::rate_hz>},
+    {"scheduling", station_text<&record::StationRecord::scheduling>},
     {"visual",
      [](const SessionRecord& record) -> DataCell {
        if (!record.station) return std::monostate{};
@@ -148,7 +148,7 @@ std::string decided_after_look(const LookRecord& looked, int session) {
   return fmt::format("{}", fmt::join(decided, "; "));
 }
 
-std::vector<DataCell> session_cells(const store::SessionRow& row, const store::StudyState& state,
+std::vector<DataCell> session_cells(const record::SessionRow& row, const record::StudyState& state,
                                     const LookRecord& looked, const std::set<int>& counted) {
   const bool shown = !state.unblinded || state.reports(row.session);
   return {row.participant,
@@ -197,10 +197,10 @@ void add_labels(DataTable& table, const Outcomes& outcomes) {
 
 }  // namespace
 
-DataTable study_table(const store::StudyStore& store, const std::optional<Outcomes>& outcomes,
+DataTable study_table(const record::StudyStore& store, const std::optional<Outcomes>& outcomes,
                       const Collection& collection) {
-  const store::StudyCommitment& commitment = store.commitment();
-  const store::StudyState state = store.state();
+  const record::StudyCommitment& commitment = store.commitment();
+  const record::StudyState state = store.state();
   DataTable table{{"key", "of", "value"}, {}};
   const auto add = [&](const char* key, DataCell value) {
     table.rows.push_back({std::string(key), std::monostate{}, std::move(value)});
@@ -222,25 +222,25 @@ DataTable study_table(const store::StudyStore& store, const std::optional<Outcom
   return table;
 }
 
-DataTable participants_table(const store::StudyStore& store, const Collection& collection) {
+DataTable participants_table(const record::StudyStore& store, const Collection& collection) {
   DataTable table{
       {"participant", "session", "enrolment", "state", "excluded", "withdrawn", "erased", "pilot",
        "simulated", "counted", "device", "replaced_by", "after_look", "shown"},
       {}};
   std::map<int, const SessionRecord*> records;
   for (const SessionRecord& record : collection.sessions) records[record.row.session] = &record;
-  const store::StudyState state = store.state();
+  const record::StudyState state = store.state();
   const LookRecord looked = look_record(store, {});
   for (const RecordColumn& column : kRecordColumns) {
     if (state.unblinded || !column.after_unblinding) table.columns.emplace_back(column.name);
   }
-  const std::vector<store::SessionRow> rows = store.sessions();
-  std::vector<store::SessionRow> shown;
-  std::ranges::copy_if(rows, std::back_inserter(shown), [&](const store::SessionRow& row) {
+  const std::vector<record::SessionRow> rows = store.sessions();
+  std::vector<record::SessionRow> shown;
+  std::ranges::copy_if(rows, std::back_inserter(shown), [&](const record::SessionRow& row) {
     return !state.unblinded || state.reports(row.session);
   });
   const std::set<int> counted = counted_sessions(shown, store.commitment());
-  for (const store::SessionRow& row : rows) {
+  for (const record::SessionRow& row : rows) {
     table.rows.push_back(session_cells(row, state, looked, counted));
     add_record(table.rows.back(), *records.at(row.session), state.unblinded);
   }
@@ -304,7 +304,7 @@ DataTable looks_table(const Outcomes& outcomes) {
   return table;
 }
 
-Collection collection_of(const store::StudyStore& store, const std::optional<Outcomes>& outcomes) {
+Collection collection_of(const record::StudyStore& store, const std::optional<Outcomes>& outcomes) {
   return outcomes ? outcomes->collection : load_collection(store);
 }
 

@@ -2,9 +2,9 @@
 /// "Exports".
 #pragma once
 
-#include "analysis/collection.hpp"
 #include "analysis/exports/data_table.hpp"
-#include "analysis/outcomes.hpp"
+#include "analysis/outcomes/collection.hpp"
+#include "analysis/outcomes/outcomes.hpp"
 
 #include <optional>
 
@@ -13,14 +13,14 @@ namespace touchtrial::analysis {
 /// The study as a whole. Each row has a key, the item that it belongs to (the class of an
 /// exemplar), and a value. Classes, exemplars and methods appear in their order, and only with
 /// outcomes.
-[[nodiscard]] DataTable study_table(const store::StudyStore& store,
+[[nodiscard]] DataTable study_table(const record::StudyStore& store,
                                     const std::optional<Outcomes>& outcomes,
                                     const Collection& collection);
 
 /// One row for each session; `counted` is 1 if the session's trials enter the report. For
 /// participants whose data were erased, the cells about practice, resumptions, reasons and
 /// equipment are empty.
-[[nodiscard]] DataTable participants_table(const store::StudyStore& store,
+[[nodiscard]] DataTable participants_table(const record::StudyStore& store,
                                            const Collection& collection);
 
 /// Adds `visit` to a table with a column `session`, and `group`, if the study has several visits or
@@ -37,7 +37,7 @@ void add_visit_and_group(DataTable& table, const Collection& collection);
 [[nodiscard]] DataTable looks_table(const Outcomes& outcomes);
 
 /// The collection of the outcomes; without outcomes, the collection that the store holds in clear.
-[[nodiscard]] Collection collection_of(const store::StudyStore& store,
+[[nodiscard]] Collection collection_of(const record::StudyStore& store,
                                        const std::optional<Outcomes>& outcomes);
 
 }  // namespace touchtrial::analysis

@@ -1,7 +1,7 @@
 #include "analysis/exports/trial_tables.hpp"
 
 #include "analysis/exports/study_tables.hpp"
-#include "analysis/results.hpp"
+#include "analysis/report/results.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@ namespace {
 
 /// A trial with a chosen level presents several planes, and no single stimulus.
 bool has_stimulus(const TrialView& trial) {
-  return trial.outcome->kind != design::PresentationKind::catch_trial && !trial.outcome->chosen;
+  return trial.outcome->kind != study::PresentationKind::catch_trial && !trial.outcome->chosen;
 }
 
 DataCell response_of(const TrialView& trial) {
@@ -23,15 +23,15 @@ DataCell response_of(const TrialView& trial) {
 /// Empty for a trial that did not end, so that the mean of the column is an accuracy.
 DataCell correctness_of(const TrialView& trial) {
   if (!has_stimulus(trial) && !trial.outcome->chosen) return std::monostate{};
-  const store::TrialState state = trial.row.state;
-  if (state != store::TrialState::answered && state != store::TrialState::timed_out)
+  const record::TrialState state = trial.row.state;
+  if (state != record::TrialState::answered && state != record::TrialState::timed_out)
     return std::monostate{};
   return flag(trial.outcome->correct());
 }
 
 /// A trial with several planes: of which class and method its track is.
 bool is_of_track(const TrialView& trial) {
-  return trial.outcome->chosen && trial.outcome->kind == design::PresentationKind::scored;
+  return trial.outcome->chosen && trial.outcome->kind == study::PresentationKind::scored;
 }
 
 DataCell method_of(const TrialView& trial) {
@@ -56,11 +56,11 @@ DataCell gain_of(const TrialView& trial) {
 
 DataCell kind_of(const TrialView& trial) {
   switch (trial.outcome->kind) {
-    case design::PresentationKind::lead_in:
+    case study::PresentationKind::lead_in:
       return std::string(trial.outcome->chosen ? "control" : "lead-in");
-    case design::PresentationKind::catch_trial:
+    case study::PresentationKind::catch_trial:
       return std::string("catch");
-    case design::PresentationKind::scored:
+    case study::PresentationKind::scored:
       break;
   }
   return std::string("scored");
@@ -70,13 +70,13 @@ DataCell state_of(const TrialView& trial) {
   return std::string(name_of(trial.row.state));
 }
 
-template <std::optional<int> store::TrialRow::*kNumber>
+template <std::optional<int> record::TrialRow::*kNumber>
 DataCell number_of(const TrialView& trial) {
   if (!(trial.row.*kNumber)) return std::monostate{};
   return std::int64_t{*(trial.row.*kNumber)};
 }
 
-template <double store::TrialMeasures::*kMeasure>
+template <double record::TrialMeasures::*kMeasure>
 DataCell measured(const TrialView& trial) {
   if (trial.outcome == nullptr || !trial.outcome->measures) return std::monostate{};
   return (*trial.outcome->measures).*kMeasure;
@@ -93,7 +93,7 @@ DataCell limited_ticks_of(const TrialView& trial) {
 }
 
 /// Whether the hand was within one of its windows; missing without a trace.
-template <bool store::HandWindows::*kWindow>
+template <bool record::HandWindows::*kWindow>
 DataCell within(const TrialView& trial) {
   if (!trial.row.has_trace()) return std::monostate{};
   return flag(trial.row.hand.*kWindow);
@@ -116,15 +116,15 @@ constexpr std::array<TrialColumn, 37> kTrialColumns{{
     {"exemplar", true, exemplar_of},
     {"response", true, response_of},
     {"correct", true, correctness_of},
-    {"confidence", true, number_of<&store::TrialRow::confidence>},
+    {"confidence", true, number_of<&record::TrialRow::confidence>},
     {"reaction_time_s", true,
      [](const TrialView& t) { return time_or_nothing(t.row.reaction_time()); }},
     {"from_contact_s", true,
      [](const TrialView& t) { return time_or_nothing(t.row.from_contact()); }},
-    {"contact_s", false, measured<&store::TrialMeasures::contact_s>},
-    {"path_mm", false, measured<&store::TrialMeasures::path_mm>},
-    {"force_rms_n", false, measured<&store::TrialMeasures::force_rms_n>},
-    {"saturated_share", false, measured<&store::TrialMeasures::saturated_share>},
+    {"contact_s", false, measured<&record::TrialMeasures::contact_s>},
+    {"path_mm", false, measured<&record::TrialMeasures::path_mm>},
+    {"force_rms_n", false, measured<&record::TrialMeasures::force_rms_n>},
+    {"saturated_share", false, measured<&record::TrialMeasures::saturated_share>},
     {"valid", false, validity_of},
     {"presented_at_s", true, [](const TrialView& t) -> DataCell { return t.row.presented_at; }},
     {"simulated", false, [](const TrialView& t) { return flag(t.simulated); }},
@@ -138,13 +138,13 @@ constexpr std::array<TrialColumn, 37> kTrialColumns{{
        if (!t.row.contact_at) return std::monostate{};
        return *t.row.contact_at - t.row.presented_at;
      }},
-    {"position", true, number_of<&store::TrialRow::position>},
-    {"first_position", true, number_of<&store::TrialRow::first_position>},
+    {"position", true, number_of<&record::TrialRow::position>},
+    {"first_position", true, number_of<&record::TrialRow::first_position>},
     {"valid_in_clear", false, [](const TrialView& t) { return flag(t.row.valid); }},
-    {"contact_ok", false, within<&store::HandWindows::contact>},
-    {"path_ok", false, within<&store::HandWindows::path>},
-    {"force_ok", false, within<&store::HandWindows::force>},
-    {"speed_ok", false, within<&store::HandWindows::speed>},
+    {"contact_ok", false, within<&record::HandWindows::contact>},
+    {"path_ok", false, within<&record::HandWindows::path>},
+    {"force_ok", false, within<&record::HandWindows::force>},
+    {"speed_ok", false, within<&record::HandWindows::speed>},
     {"within_limits", true, limits_of},
     {"limited_ticks", true, limited_ticks_of},
     {"samples", true, [](const TrialView& t) -> DataCell { return t.row.samples; }},
@@ -169,14 +169,14 @@ DataTable trials_header(const std::vector<TrialColumn>& columns, bool unblinded)
   return table;
 }
 
-DataTable blinded_trials(const store::StudyStore& store) {
+DataTable blinded_trials(const record::StudyStore& store) {
   const std::vector<TrialColumn> columns = trial_columns_of(nullptr);
   DataTable table = trials_header(columns, false);
-  std::map<int, store::SessionRow> shown;
-  for (const store::SessionRow& session : store.sessions()) {
+  std::map<int, record::SessionRow> shown;
+  for (const record::SessionRow& session : store.sessions()) {
     if (!session.erased) shown[session.session] = session;
   }
-  for (const store::TrialRow& row : store.trials()) {
+  for (const record::TrialRow& row : store.trials()) {
     const auto session = shown.find(row.session);
     if (session == shown.end()) continue;
     add_trial(table, columns, {session->second.participant, row, session->second.simulated});
@@ -222,7 +222,7 @@ const std::string& image_of(const Outcomes& study, const TrialOutcome& trial) {
   return study.exemplars[trial.stimulus.class_index][trial.stimulus.exemplar];
 }
 
-DataTable trials_table(const store::StudyStore& store, const std::optional<Outcomes>& outcomes) {
+DataTable trials_table(const record::StudyStore& store, const std::optional<Outcomes>& outcomes) {
   if (outcomes) return trials_that_are(true, *outcomes);
   DataTable table = blinded_trials(store);
   const Prescription study = prescription_from_json(store.commitment().configuration);

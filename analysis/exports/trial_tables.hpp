@@ -3,7 +3,7 @@
 #pragma once
 
 #include "analysis/exports/data_table.hpp"
-#include "analysis/outcomes.hpp"
+#include "analysis/outcomes/outcomes.hpp"
 
 #include <optional>
 #include <span>
@@ -15,7 +15,7 @@ namespace touchtrial::analysis {
 /// The source of a cell. `study` and `outcome` are null before unblinding.
 struct TrialView {
   const std::string& participant;
-  const store::TrialRow& row;
+  const record::TrialRow& row;
   bool simulated = false;
   const Outcomes* study = nullptr;
   const TrialOutcome* outcome = nullptr;
@@ -48,7 +48,7 @@ struct TrialColumn {
 /// stimuli, answers and times, and the columns that could tell stimuli apart by how they felt
 /// (contact_s, path_mm, force_rms_n, saturated_share) are empty. The last columns are those of
 /// add_visit_and_group.
-[[nodiscard]] DataTable trials_table(const store::StudyStore& store,
+[[nodiscard]] DataTable trials_table(const record::StudyStore& store,
                                      const std::optional<Outcomes>& outcomes);
 
 /// The trials that are not scored: lead-ins and catch trials, with the columns of trials_table.

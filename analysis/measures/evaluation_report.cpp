@@ -1,7 +1,7 @@
 #include "analysis/measures/evaluation_report.hpp"
 
-#include "analysis/json_figures.hpp"
-#include "analysis/text_table.hpp"
+#include "analysis/report/json_figures.hpp"
+#include "analysis/report/text_table.hpp"
 
 #include <array>
 #include <cstddef>

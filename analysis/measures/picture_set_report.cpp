@@ -1,7 +1,7 @@
-#include "analysis/json_figures.hpp"
 #include "analysis/measures/picture_set.hpp"
-#include "analysis/text_figures.hpp"
-#include "analysis/text_table.hpp"
+#include "analysis/report/json_figures.hpp"
+#include "analysis/report/text_figures.hpp"
+#include "analysis/report/text_table.hpp"
 
 #include <fmt/format.h>
 

@@ -3,8 +3,8 @@
 #include "analysis/paper/paper_claims.hpp"
 #include "analysis/paper/paper_intervals.hpp"
 #include "analysis/paper/published.hpp"
+#include "analysis/report/text_figures.hpp"
 #include "analysis/statistics/proportion.hpp"
-#include "analysis/text_figures.hpp"
 
 #include <algorithm>
 #include <array>

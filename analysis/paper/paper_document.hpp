@@ -3,9 +3,9 @@
 /// program's own pictures.
 #pragma once
 
-#include "analysis/page/document.hpp"
 #include "analysis/paper/paper_measures.hpp"
 #include "analysis/paper/paper_pictures.hpp"
+#include "analysis/report/page/document.hpp"
 
 #include <string>
 

@@ -1,6 +1,6 @@
-#include "analysis/json_figures.hpp"
 #include "analysis/paper/paper_claims.hpp"
 #include "analysis/paper/paper_document.hpp"
+#include "analysis/report/json_figures.hpp"
 #include "core/version.hpp"
 
 #include <cstddef>

@@ -1,9 +1,9 @@
 #include "analysis/paper/paper_pictures.hpp"
 
-#include "analysis/figures/style.hpp"
-#include "analysis/page/picture_tiles.hpp"
 #include "analysis/paper/published.hpp"
-#include "analysis/text_table.hpp"
+#include "analysis/report/figures/style.hpp"
+#include "analysis/report/page/picture_tiles.hpp"
+#include "analysis/report/text_table.hpp"
 #include "core/text.hpp"
 #include "engine/extraction.hpp"
 #include "engine/pictures/colour_image.hpp"

@@ -1,9 +1,9 @@
 /// \file The figures of the source paper, drawn for any pictures.
 #pragma once
 
-#include "analysis/figures/figure.hpp"
-#include "analysis/page/document.hpp"
 #include "analysis/paper/paper_measures.hpp"
+#include "analysis/report/figures/figure.hpp"
+#include "analysis/report/page/document.hpp"
 
 #include <span>
 

@@ -17,13 +17,12 @@ class AccuracyEvidence final : public FitEvidence {
  public:
   /// \param accuracies  by class, 0 .. 1
   AccuracyEvidence(const std::vector<double>& accuracies, std::vector<PictureLayout> layouts,
-                   const std::vector<design::StimulusIndex>& stimuli)
+                   const std::vector<study::StimulusIndex>& stimuli)
       : accuracies_(accuracies),
         layouts_(std::move(layouts)),
         stimuli_(stimuli),
         stimuli_of_class_(accuracies.size(), 0) {
-    for (const design::StimulusIndex& stimulus : stimuli_)
-      ++stimuli_of_class_[stimulus.class_index];
+    for (const study::StimulusIndex& stimulus : stimuli_) ++stimuli_of_class_[stimulus.class_index];
   }
 
   [[nodiscard]] std::span<const PictureLayout> layouts() const noexcept override {
@@ -35,13 +34,13 @@ class AccuracyEvidence final : public FitEvidence {
   [[nodiscard]] std::vector<double> accuracies_of(const AnswerTable& table) const;
 
  private:
-  [[nodiscard]] double share_of(const design::StimulusIndex& stimulus) const noexcept {
+  [[nodiscard]] double share_of(const study::StimulusIndex& stimulus) const noexcept {
     return 1.0 / (static_cast<double>(layouts_.size()) * stimuli_of_class_[stimulus.class_index]);
   }
 
   const std::vector<double>& accuracies_;
   std::vector<PictureLayout> layouts_;
-  const std::vector<design::StimulusIndex>& stimuli_;
+  const std::vector<study::StimulusIndex>& stimuli_;
   std::vector<int> stimuli_of_class_;
 };
 

@@ -171,7 +171,7 @@ struct AnswerModel::State {
   simulation::FeltKnowledge knowledge;
   std::vector<std::string> classes;
   AnswerModelOptions options;
-  std::vector<design::StimulusIndex> stimuli;
+  std::vector<study::StimulusIndex> stimuli;
   std::vector<std::vector<engine::FeltFeatures>> felt;  ///< by stimulus
   std::vector<NoisePoints> points;                      ///< by stimulus
   std::vector<std::vector<PersonGroup>> person;         ///< by stimulus, of each line
@@ -282,7 +282,7 @@ const std::vector<std::string>& AnswerModel::classes() const noexcept {
   return state_->classes;
 }
 
-const std::vector<design::StimulusIndex>& AnswerModel::stimuli() const noexcept {
+const std::vector<study::StimulusIndex>& AnswerModel::stimuli() const noexcept {
   return state_->stimuli;
 }
 
@@ -316,9 +316,9 @@ AnswerTable AnswerModel::answers(const simulation::SubjectModel& subject,
   return table;
 }
 
-AnswerModel answer_model_of(const design::StudyKey& key, const engine::Pack& pack,
+AnswerModel answer_model_of(const study::StudyKey& key, const engine::Pack& pack,
                             const simulation::SubjectModel& subject,
-                            const FeltStudyOptions& options, const design::Progress& progress) {
+                            const FeltStudyOptions& options, const study::Progress& progress) {
   subject.check_labels(key.study);
   const session::StimulusSource source(pack, key.study.rendering);
   const simulation::LabelledFields fields(key, source);
@@ -328,26 +328,26 @@ AnswerModel answer_model_of(const design::StudyKey& key, const engine::Pack& pac
       fields, key.study, subject,
       {.explorations = options.explorations, .seed = options.seed, .jobs = options.jobs}, progress);
   std::vector<std::string> classes;
-  for (const design::StudyClass& one : key.study.classes) classes.push_back(one.label);
+  for (const study::StudyClass& one : key.study.classes) classes.push_back(one.label);
   return {knowledge,
           bank,
           std::move(classes),
           {.directions = options.directions, .seed = options.seed, .jobs = options.jobs}};
 }
 
-std::vector<design::StimulusIndex> stimuli_of(const design::StudyKey& key) {
-  std::vector<design::StimulusIndex> stimuli;
-  for (const design::KeyedStimulus& keyed : key.stimuli) stimuli.push_back(keyed.stimulus);
+std::vector<study::StimulusIndex> stimuli_of(const study::StudyKey& key) {
+  std::vector<study::StimulusIndex> stimuli;
+  for (const study::KeyedStimulus& keyed : key.stimuli) stimuli.push_back(keyed.stimulus);
   std::ranges::sort(stimuli);
   return stimuli;
 }
 
-std::vector<PictureLayout> layouts_of(const design::Study& study, int participants) {
+std::vector<PictureLayout> layouts_of(const study::Study& study, int participants) {
   std::vector<PictureLayout> layouts;
-  const design::StudyKey key = design::simulated_study_key(study);
+  const study::StudyKey key = study::simulated_study_key(study);
   for (int number = 1; number <= participants; ++number) {
     PictureLayout layout =
-        design::make_schedule(study, key.draw_of(number, design::Draws::rehearsal)).layout;
+        study::make_schedule(study, key.draw_of(number, study::Draws::rehearsal)).layout;
     if (std::ranges::find(layouts, layout) == layouts.end()) layouts.push_back(std::move(layout));
   }
   return layouts;

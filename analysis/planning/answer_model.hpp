@@ -3,11 +3,11 @@
 #pragma once
 
 #include "engine/pack/pack.hpp"
-#include "protocols/design/prepare.hpp"
-#include "protocols/design/study_key.hpp"
 #include "protocols/simulation/felt_bank.hpp"
 #include "protocols/simulation/felt_knowledge.hpp"
 #include "protocols/simulation/subject_model.hpp"
+#include "study/prepare.hpp"
+#include "study/study_key.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -102,7 +102,7 @@ class AnswerModel {
                                     BankPart part = {}) const;
 
   [[nodiscard]] const std::vector<std::string>& classes() const noexcept;
-  [[nodiscard]] const std::vector<design::StimulusIndex>& stimuli() const noexcept;
+  [[nodiscard]] const std::vector<study::StimulusIndex>& stimuli() const noexcept;
 
  private:
   struct State;
@@ -123,15 +123,15 @@ struct FeltStudyOptions {
 /// Trains the subject, feels a bank of explorations, and makes the model. Cost: as FeltBank.
 /// \throws StudyError if the subject names a class that the study does not have
 /// \throws FileError if the pack lacks a stimulus
-[[nodiscard]] AnswerModel answer_model_of(const design::StudyKey& key, const engine::Pack& pack,
+[[nodiscard]] AnswerModel answer_model_of(const study::StudyKey& key, const engine::Pack& pack,
                                           const simulation::SubjectModel& subject,
                                           const FeltStudyOptions& options,
-                                          const design::Progress& progress = {});
+                                          const study::Progress& progress = {});
 
 /// \return the study's stimuli, in the order of banks
-[[nodiscard]] std::vector<design::StimulusIndex> stimuli_of(const design::StudyKey& key);
+[[nodiscard]] std::vector<study::StimulusIndex> stimuli_of(const study::StudyKey& key);
 
 /// \return the different layouts of the first participants
-[[nodiscard]] std::vector<PictureLayout> layouts_of(const design::Study& study, int participants);
+[[nodiscard]] std::vector<PictureLayout> layouts_of(const study::Study& study, int participants);
 
 }  // namespace touchtrial::planning

@@ -15,8 +15,8 @@ int place_of_layout(std::vector<PictureLayout>& layouts, const PictureLayout& la
   return place;
 }
 
-std::size_t place_of_stimulus(const std::vector<design::StimulusIndex>& stimuli,
-                              const design::StimulusIndex& stimulus) {
+std::size_t place_of_stimulus(const std::vector<study::StimulusIndex>& stimuli,
+                              const study::StimulusIndex& stimulus) {
   const auto found = std::ranges::lower_bound(stimuli, stimulus);
   if (found == stimuli.end() || *found != stimulus) {
     throw StudyError("the database presents a stimulus that its study does not have");
@@ -33,8 +33,8 @@ Confusions empty_confusions(const FitCounts& counts) {
 }  // namespace
 
 FitCounts count_answers(const analysis::Outcomes& outcomes,
-                        const std::map<int, design::Schedule>& schedules,
-                        const std::vector<design::StimulusIndex>& stimuli) {
+                        const std::map<int, study::Schedule>& schedules,
+                        const std::vector<study::StimulusIndex>& stimuli) {
   FitCounts counts;
   counts.classes = outcomes.classes;
   counts.methods = outcomes.methods;
@@ -42,7 +42,7 @@ FitCounts count_answers(const analysis::Outcomes& outcomes,
   std::map<int, std::size_t> person_of_session;
   const std::size_t cells = stimuli.size() * counts.classes.size();
   for (const analysis::TrialOutcome& trial : outcomes.trials) {
-    if (!trial.counted || trial.kind != design::PresentationKind::scored) continue;
+    if (!trial.counted || trial.kind != study::PresentationKind::scored) continue;
     if (!trial.response) {
       ++counts.no_response;
       continue;
@@ -85,7 +85,7 @@ Confusions observed_confusions(const FitCounts& counts, std::span<const CountedP
   const std::size_t classes = counts.classes.size();
   for (const CountedPerson& person : people) {
     for (std::size_t i = 0; i < person.counts.size(); ++i) {
-      const design::StimulusIndex& stimulus = counts.stimuli[i / classes];
+      const study::StimulusIndex& stimulus = counts.stimuli[i / classes];
       table[stimulus.method][stimulus.class_index][i % classes] += person.counts[i];
     }
   }
@@ -98,7 +98,7 @@ Confusions expected_confusions(const FitCounts& counts, const AnswerTable& table
   for (const CountedPerson& person : counts.people) {
     for (std::size_t place = 0; place < counts.stimuli.size(); ++place) {
       const double presented = presentations(person.counts, place * classes, classes);
-      const design::StimulusIndex& stimulus = counts.stimuli[place];
+      const study::StimulusIndex& stimulus = counts.stimuli[place];
       const auto answers = table.answers(person.layout, static_cast<int>(place));
       for (std::size_t c = 0; c < classes; ++c) {
         expected[stimulus.method][stimulus.class_index][c] += presented * answers[c];

@@ -2,9 +2,9 @@
 /// how likely they are given probabilities of answers.
 #pragma once
 
-#include "analysis/outcomes.hpp"
+#include "analysis/outcomes/outcomes.hpp"
 #include "analysis/planning/answer_model.hpp"
-#include "protocols/design/schedule.hpp"
+#include "study/schedule.hpp"
 
 #include <map>
 #include <span>
@@ -20,10 +20,10 @@ struct CountedPerson {
 };
 
 struct FitCounts {
-  std::vector<std::string> classes;            ///< labels
-  std::vector<std::string> methods;            ///< of the study
-  std::vector<design::StimulusIndex> stimuli;  ///< in the bank's order
-  std::vector<PictureLayout> layouts;          ///< each once
+  std::vector<std::string> classes;           ///< labels
+  std::vector<std::string> methods;           ///< of the study
+  std::vector<study::StimulusIndex> stimuli;  ///< in the bank's order
+  std::vector<PictureLayout> layouts;         ///< each once
   std::vector<CountedPerson> people;
   int trials = 0;       ///< with an answer
   int no_response = 0;  ///< counted trials without an answer, which are left out
@@ -35,8 +35,8 @@ struct FitCounts {
 /// \param stimuli  of the study, sorted
 /// \throws StudyError if no trial remains
 [[nodiscard]] FitCounts count_answers(const analysis::Outcomes& outcomes,
-                                      const std::map<int, design::Schedule>& schedules,
-                                      const std::vector<design::StimulusIndex>& stimuli);
+                                      const std::map<int, study::Schedule>& schedules,
+                                      const std::vector<study::StimulusIndex>& stimuli);
 
 /// Numbers by layout and cell of a table, [layout][stimulus x classes + answer].
 using Cells = std::vector<std::vector<double>>;

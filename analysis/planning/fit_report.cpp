@@ -1,7 +1,7 @@
 #include "analysis/planning/fit_report.hpp"
 
-#include "analysis/text_figures.hpp"
-#include "analysis/text_table.hpp"
+#include "analysis/report/text_figures.hpp"
+#include "analysis/report/text_table.hpp"
 #include "core/strict_json.hpp"
 #include "protocols/simulation/subject_model.hpp"
 

@@ -1,9 +1,9 @@
 #include "analysis/planning/level_report.hpp"
 
 #include "core/strict_json.hpp"
-#include "protocols/design/protocol.hpp"
 #include "protocols/simulation/felt_floor.hpp"
 #include "protocols/simulation/subject_model.hpp"
+#include "study/protocol.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -83,7 +83,7 @@ std::string band_cell(const PlaneLevels& levels, std::size_t band) {
 }
 
 template <typename CellOf>
-void add_rows(analysis::Table& table, const design::Study& study, const StimulusLevels& levels,
+void add_rows(analysis::Table& table, const study::Study& study, const StimulusLevels& levels,
               std::size_t columns, const CellOf& cell_of) {
   const auto row = [&](const std::string& name, const PlaneLevels& own) {
     std::vector<analysis::Cell> cells{name};
@@ -106,7 +106,7 @@ std::string gain_needed(const StimulusLevels& levels, const std::string& device)
   return fmt::format("x {:.2f}", std::pow(10.0, (simulation::kMinLevelDb - low_db) / 20.0));
 }
 
-analysis::Table table_in_all(const design::Study& study, const StimulusLevels& levels) {
+analysis::Table table_in_all(const study::Study& study, const StimulusLevels& levels) {
   analysis::Table table{"levels",
                         levels.simulated_pilots ? "Levels above simulated pilots' threshold, dB"
                         : levels.provisional    ? "Provisional levels above the threshold, dB"
@@ -135,7 +135,7 @@ analysis::Table table_in_all(const design::Study& study, const StimulusLevels& l
   return table;
 }
 
-analysis::Table table_by_bands(const design::Study& study, const StimulusLevels& levels) {
+analysis::Table table_by_bands(const study::Study& study, const StimulusLevels& levels) {
   analysis::Table table{
       "levels-by-band",
       "Power by frequency above the curve, or the blank plane where that is stronger, dB",
@@ -159,7 +159,7 @@ std::vector<double> differences_db(const PlaneLevels& one, const PlaneLevels& ot
 
 /// The two stimuli of different classes whose levels are nearest, by the curve that tells them
 /// apart best.
-std::string nearest_words(const design::Study& study, const StimulusLevels& levels,
+std::string nearest_words(const study::Study& study, const StimulusLevels& levels,
                           const std::string& device) {
   double nearest_db = 1e9;
   std::string words;
@@ -247,7 +247,7 @@ struct LevelAlone {
   double right;
 };
 
-std::vector<LevelAlone> by_level_alone(const design::Study& study, const StimulusLevels& levels) {
+std::vector<LevelAlone> by_level_alone(const study::Study& study, const StimulusLevels& levels) {
   std::vector<LevelAlone> found;
   if (study.classes.size() < 2 || study.protocol->interval_plan(study)) return found;
   const StrengthSense sense;
@@ -266,7 +266,7 @@ std::vector<LevelAlone> by_level_alone(const design::Study& study, const Stimulu
   return found;
 }
 
-std::string level_alone_words(const design::Study& study, const StimulusLevels& levels) {
+std::string level_alone_words(const study::Study& study, const StimulusLevels& levels) {
   const std::vector<LevelAlone> all = by_level_alone(study, levels);
   std::string words;
   for (const std::string& device : devices_of(levels)) {
@@ -312,7 +312,7 @@ Json json_of(const PlaneLevels& levels) {
   return list;
 }
 
-Json json_of_differences(const design::Study& study, const StimulusLevels& levels) {
+Json json_of_differences(const study::Study& study, const StimulusLevels& levels) {
   Json list = Json::array();
   if (levels.stimuli.size() > kMostCompared) return list;
   for (std::size_t a = 0; a < levels.stimuli.size(); ++a) {
@@ -329,7 +329,7 @@ Json json_of_differences(const design::Study& study, const StimulusLevels& level
   return list;
 }
 
-Json json_by_level_alone(const design::Study& study, const StimulusLevels& levels) {
+Json json_by_level_alone(const study::Study& study, const StimulusLevels& levels) {
   Json list = Json::array();
   for (const LevelAlone& one : by_level_alone(study, levels)) {
     list.push_back({{"device", one.device},
@@ -340,10 +340,10 @@ Json json_by_level_alone(const design::Study& study, const StimulusLevels& level
   return list;
 }
 
-Json json_of_all(const design::Study& study, const StimulusLevels& levels) {
+Json json_of_all(const study::Study& study, const StimulusLevels& levels) {
   Json stimuli = Json::array();
   for (std::size_t i = 0; i < levels.stimuli.size(); ++i) {
-    const design::StimulusIndex& index = levels.stimuli[i];
+    const study::StimulusIndex& index = levels.stimuli[i];
     stimuli.push_back({{"class", study.classes[index.class_index].label},
                        {"exemplar", index.exemplar + 1},
                        {"method", study.methods[index.method].label},
@@ -381,7 +381,7 @@ class ResultsAndMore : public analysis::Results {
 
 class LevelledResults final : public ResultsAndMore {
  public:
-  LevelledResults(std::unique_ptr<const analysis::Results> results, design::Study study,
+  LevelledResults(std::unique_ptr<const analysis::Results> results, study::Study study,
                   StimulusLevels levels)
       : ResultsAndMore(std::move(results), levels_section(study, levels)),
         study_(std::move(study)),
@@ -394,13 +394,13 @@ class LevelledResults final : public ResultsAndMore {
   }
 
  private:
-  design::Study study_;
+  study::Study study_;
   StimulusLevels levels_;
 };
 
 }  // namespace
 
-analysis::Section levels_section(const design::Study& study, const StimulusLevels& levels) {
+analysis::Section levels_section(const study::Study& study, const StimulusLevels& levels) {
   analysis::Section section{"levels", kTitle, {}};
   const std::vector<std::string> warnings = level_warnings(study, levels);
   if (!warnings.empty()) section.blocks.emplace_back(analysis::Warnings{warnings});
@@ -426,15 +426,15 @@ std::string levels_json(const PlaneLevels& levels) {
   return json_of(levels).dump();
 }
 
-std::string differences_json(const design::Study& study, const StimulusLevels& levels) {
+std::string differences_json(const study::Study& study, const StimulusLevels& levels) {
   return json_of_differences(study, levels).dump();
 }
 
-std::string all_levels_json(const design::Study& study, const StimulusLevels& levels) {
+std::string all_levels_json(const study::Study& study, const StimulusLevels& levels) {
   return json_of_all(study, levels).dump();
 }
 
-std::vector<std::string> level_warnings(const design::Study& study, const StimulusLevels& levels) {
+std::vector<std::string> level_warnings(const study::Study& study, const StimulusLevels& levels) {
   // A level that the study states is held by its gains, and thresholds are there to be found.
   if (study.device.empty() || study.level || study.protocol->interval_plan(study)) return {};
   const std::string device = devices_of(levels).front();
@@ -469,7 +469,7 @@ std::string range_words(const PlaneLevels& levels) {
 }
 
 std::unique_ptr<const analysis::Results> with_levels(
-    std::unique_ptr<const analysis::Results> results, const design::Study& study,
+    std::unique_ptr<const analysis::Results> results, const study::Study& study,
     StimulusLevels levels) {
   return std::make_unique<LevelledResults>(std::move(results), study, std::move(levels));
 }

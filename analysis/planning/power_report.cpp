@@ -1,10 +1,10 @@
 #include "analysis/planning/power_report.hpp"
 
 #include "analysis/planning/primary_test.hpp"
+#include "analysis/report/text_figures.hpp"
+#include "analysis/report/text_table.hpp"
 #include "analysis/statistics/chance_test.hpp"
 #include "analysis/statistics/descriptive.hpp"
-#include "analysis/text_figures.hpp"
-#include "analysis/text_table.hpp"
 #include "core/named.hpp"
 #include "core/strict_json.hpp"
 

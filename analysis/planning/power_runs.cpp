@@ -5,7 +5,7 @@
 #include "core/parallel.hpp"
 #include "core/random.hpp"
 #include "core/strict_json.hpp"
-#include "device/simulated/simulated_hand.hpp"
+#include "device/drivers/simulated/simulated_hand.hpp"
 
 #include <algorithm>
 #include <filesystem>

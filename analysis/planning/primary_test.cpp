@@ -4,7 +4,7 @@
 #include "analysis/statistics/paired_tests.hpp"
 #include "core/errors.hpp"
 #include "core/strict_json.hpp"
-#include "protocols/design/protocol.hpp"
+#include "study/protocol.hpp"
 
 #include <algorithm>
 
@@ -13,7 +13,7 @@
 namespace touchtrial::planning {
 namespace {
 
-int method_of(const design::Study& study, const std::string& label) {
+int method_of(const study::Study& study, const std::string& label) {
   for (int i = 0; i < study.presented_methods(); ++i) {
     if (study.methods[i].label == label) return i;
   }
@@ -21,7 +21,7 @@ int method_of(const design::Study& study, const std::string& label) {
                    "; it presents: " + study.presented_labels());
 }
 
-PrimaryTest pair_test(const design::Study& study, const std::optional<MethodLabels>& methods) {
+PrimaryTest pair_test(const study::Study& study, const std::optional<MethodLabels>& methods) {
   std::optional<PrimaryTest> test =
       analysis::identification::primary_question(study, study.presented_methods());
   if (!methods) {
@@ -43,12 +43,12 @@ PrimaryTest pair_test(const design::Study& study, const std::optional<MethodLabe
 }
 
 bool is_difference(const PrimaryTest& test) {
-  return test.estimand == design::Estimand::difference;
+  return test.estimand == study::Estimand::difference;
 }
 
 /// The largest p within the level that these differences could have.
 double attainable_of(const PrimaryTest& test, const std::vector<double>& values) {
-  if (test.test != design::RegisteredTest::sign_flip) return test.alpha;
+  if (test.test != study::RegisteredTest::sign_flip) return test.alpha;
   if (test.sides == analysis::Sides::two) {
     return analysis::sign_flip_attainable(values, test.alpha);
   }
@@ -57,9 +57,8 @@ double attainable_of(const PrimaryTest& test, const std::vector<double>& values)
 
 }  // namespace
 
-PrimaryTest primary_test_of(const design::Study& study,
-                            const std::optional<MethodLabels>& methods) {
-  design::require_choice_of_classes(study, "power");
+PrimaryTest primary_test_of(const study::Study& study, const std::optional<MethodLabels>& methods) {
+  study::require_choice_of_classes(study, "power");
   if (study.presented_methods() > 1) return pair_test(study, methods);
   if (methods) {
     throw UsageError("--methods: the study presents one method; leave the option out");
@@ -79,11 +78,11 @@ PrimaryTest with_margin(PrimaryTest test, double margin) {
   test.margin = margin;
   test.smallest_effect.reset();
   test.sides = analysis::Sides::one;
-  if (test.test == design::RegisteredTest::sign_flip) test.test = design::RegisteredTest::t;
+  if (test.test == study::RegisteredTest::sign_flip) test.test = study::RegisteredTest::t;
   return test;
 }
 
-std::string words_of(const PrimaryTest& test, const design::Study& study) {
+std::string words_of(const PrimaryTest& test, const study::Study& study) {
   const std::string& first = study.methods[test.first].label;
   std::string what = is_difference(test) ? "accuracy with " + first + " less that with " +
                                                study.methods[test.second].label

@@ -2,9 +2,9 @@
 /// Source: docs/planning.md, "The primary test"; docs/statistics.md.
 #pragma once
 
-#include "analysis/outcomes.hpp"
-#include "protocols/design/study.hpp"
+#include "analysis/outcomes/outcomes.hpp"
 #include "protocols/identification/analysis/primary.hpp"
+#include "study/study.hpp"
 
 #include <optional>
 #include <string>
@@ -24,7 +24,7 @@ using PrimaryTest = analysis::identification::PrimaryQuestion;
 /// \param methods  of a comparison, first minus second; required if it has more than two
 /// \throws UsageError if they are not two of the study's methods, if they are missing, or if the
 ///   study presents one method only
-[[nodiscard]] PrimaryTest primary_test_of(const design::Study& study,
+[[nodiscard]] PrimaryTest primary_test_of(const study::Study& study,
                                           const std::optional<MethodLabels>& methods);
 
 /// The same question by a margin in place of an effect: whether the first method is as good.
@@ -33,7 +33,7 @@ using PrimaryTest = analysis::identification::PrimaryQuestion;
 
 /// \return for instance "mean accuracy with adaptive against chance: one-sample t test over
 ///   participants, one-sided, level 0.05"
-[[nodiscard]] std::string words_of(const PrimaryTest& test, const design::Study& study);
+[[nodiscard]] std::string words_of(const PrimaryTest& test, const study::Study& study);
 /// What PowerRun::estimate is where two methods are compared.
 inline constexpr std::string_view kDifferenceWords = "difference of accuracies";
 /// \return what PowerRun::estimate is: "accuracy" or kDifferenceWords

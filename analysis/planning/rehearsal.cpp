@@ -17,12 +17,12 @@ std::string_view name_of(Hypothesis hypothesis) {
   return hypothesis == Hypothesis::null ? "null" : "population";
 }
 
-analysis::Outcomes nobody_yet(const design::Study& study) {
+analysis::Outcomes nobody_yet(const study::Study& study) {
   analysis::Outcomes outcomes;
   outcomes.study = study.name;
   outcomes.simulated = true;
   outcomes.design = study;
-  for (const design::StudyClass& one : study.classes) outcomes.classes.push_back(one.label);
+  for (const study::StudyClass& one : study.classes) outcomes.classes.push_back(one.label);
   outcomes.choices = outcomes.classes;
   for (int i = 0; i < study.presented_methods(); ++i) {
     outcomes.methods.push_back(study.methods[i].label);
@@ -37,7 +37,7 @@ analysis::SessionOutcome completed_session(int number, int session_number, int v
   session.row.visit = visit;
   session.row.participant = participant_name(number);
   session.row.enrolment = number;
-  session.row.state = store::SessionState::completed;
+  session.row.state = record::SessionState::completed;
   session.row.simulated = true;
   session.counted = true;
   session.order_block = order_block;
@@ -45,15 +45,15 @@ analysis::SessionOutcome completed_session(int number, int session_number, int v
 }
 
 analysis::TrialOutcome answered_trial(int number, int session, int visit,
-                                      const design::Presentation& presentation,
-                                      const design::Schedule& schedule, int position) {
+                                      const study::Presentation& presentation,
+                                      const study::Schedule& schedule, int position) {
   analysis::TrialOutcome trial;
   trial.participant = participant_name(number);
   trial.visit = visit;
   trial.row.session = session;
   trial.row.trial = presentation.trial;
   trial.row.block = presentation.block;
-  trial.row.state = store::TrialState::answered;
+  trial.row.state = record::TrialState::answered;
   trial.row.position = position;
   trial.stimulus = presentation.stimulus;
   trial.kind = presentation.kind;

@@ -2,9 +2,9 @@
 /// simulated people has in common. Source: docs/planning.md.
 #pragma once
 
-#include "analysis/outcomes.hpp"
-#include "protocols/design/schedule.hpp"
-#include "protocols/design/study.hpp"
+#include "analysis/outcomes/outcomes.hpp"
+#include "study/schedule.hpp"
+#include "study/study.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -43,7 +43,7 @@ class Rehearsal {
 };
 
 /// The outcomes of a study without participants.
-[[nodiscard]] analysis::Outcomes nobody_yet(const design::Study& study);
+[[nodiscard]] analysis::Outcomes nobody_yet(const study::Study& study);
 /// A session that was held to its end.
 /// \param order_block  analysis::SessionOutcome
 [[nodiscard]] analysis::SessionOutcome completed_session(int number, int session_number, int visit,
@@ -51,8 +51,8 @@ class Rehearsal {
 /// A scored trial that was answered.
 /// \param position  of the answer, in the schedule's layout
 [[nodiscard]] analysis::TrialOutcome answered_trial(int number, int session, int visit,
-                                                    const design::Presentation& presentation,
-                                                    const design::Schedule& schedule, int position);
+                                                    const study::Presentation& presentation,
+                                                    const study::Schedule& schedule, int position);
 /// Another picture than that at a position, each equally likely.
 /// \pre pictures >= 2
 [[nodiscard]] int another_position(int position, std::size_t pictures, RandomStream& random);

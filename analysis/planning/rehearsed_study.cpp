@@ -22,8 +22,8 @@ std::uint64_t training_seed(std::uint64_t seed, int training) {
   return RandomStream(seed, "power: training", static_cast<std::uint64_t>(training)).bits();
 }
 
-std::vector<design::StimulusIndex> stimuli_of_method(const design::Study& study, int method) {
-  std::vector<design::StimulusIndex> stimuli;
+std::vector<study::StimulusIndex> stimuli_of_method(const study::Study& study, int method) {
+  std::vector<study::StimulusIndex> stimuli;
   for (int c = 0; c < static_cast<int>(study.classes.size()); ++c) {
     for (int e = 0; e < static_cast<int>(study.classes[c].images.size()); ++e) {
       stimuli.push_back({c, e, method});
@@ -34,19 +34,19 @@ std::vector<design::StimulusIndex> stimuli_of_method(const design::Study& study,
 
 }  // namespace
 
-void require_answers(const design::Study& study, const simulation::SubjectModel& subject) {
+void require_answers(const study::Study& study, const simulation::SubjectModel& subject) {
   const bool in_time = subject.explore_s < study.trials.explore_limit_s;
-  if (in_time || study.trials.on_timeout != design::OnTimeout::no_response) return;
+  if (in_time || study.trials.on_timeout != study::OnTimeout::no_response) return;
   throw StudyError(one_line(fmt::format(
       "{}: /explore_s: {} s is not less than the study's explore_limit_s ({} s), after which "
       "it takes no answer (on_timeout \"no-response\"); nobody would ever answer: explore for less",
       subject.source, subject.explore_s, study.trials.explore_limit_s)));
 }
 
-BankedFeelings::BankedFeelings(const simulation::LabelledFields& fields, const design::Study& study,
+BankedFeelings::BankedFeelings(const simulation::LabelledFields& fields, const study::Study& study,
                                const simulation::SubjectModel& subject,
                                const BankedFeelingsOptions& options,
-                               const design::Progress& progress)
+                               const study::Progress& progress)
     : bank_(fields, study, subject, {options.explorations, options.seed, options.jobs}, progress) {
   for (int i = 0; i < options.trainings; ++i) {
     trainings_.push_back(
@@ -60,7 +60,7 @@ std::shared_ptr<const simulation::FeltKnowledge> BankedFeelings::knowledge(
   return trainings_[random.below(trainings_.size())];
 }
 
-engine::FeltFeatures BankedFeelings::felt(const design::StimulusIndex& stimulus,
+engine::FeltFeatures BankedFeelings::felt(const study::StimulusIndex& stimulus,
                                           const FeltTrial& trial) const {
   // With 64 random bits, the bias of the modulo is negligible.
   const auto explorations = static_cast<std::uint64_t>(bank_.explorations());
@@ -75,7 +75,7 @@ struct RehearsedStudy::Answering {
   std::uint64_t study_seed;
 };
 
-RehearsedStudy::RehearsedStudy(const design::Study& study, const simulation::SubjectModel& subject,
+RehearsedStudy::RehearsedStudy(const study::Study& study, const simulation::SubjectModel& subject,
                                const PrimaryTest& test, const Feelings& feelings,
                                int most_participants)
     : subject_(subject),
@@ -85,7 +85,7 @@ RehearsedStudy::RehearsedStudy(const design::Study& study, const simulation::Sub
       of_method_(stimuli_of_method(study, test.first)),
       empty_(nobody_yet(study)) {
   require_answers(study, subject);
-  const design::StudyKey key = design::simulated_study_key(study);
+  const study::StudyKey key = study::simulated_study_key(study);
   for (int i = 0; i < most_participants * visits_; ++i) {
     schedules_.push_back(planned_visit(study, key, 1 + i / visits_, 1 + i % visits_));
   }
@@ -104,17 +104,16 @@ void RehearsedStudy::set_margin() {
   margin_loss_ = *test_.margin / accuracy;
 }
 
-RehearsedStudy::PlannedSchedule RehearsedStudy::planned_visit(const design::Study& study,
-                                                              const design::StudyKey& key,
+RehearsedStudy::PlannedSchedule RehearsedStudy::planned_visit(const study::Study& study,
+                                                              const study::StudyKey& key,
                                                               int number, int visit) const {
   PlannedSchedule planned;
   planned.schedule =
-      design::make_schedule(study, key.draw_of(number, design::Draws::rehearsal, visit));
+      study::make_schedule(study, key.draw_of(number, study::Draws::rehearsal, visit));
   for (const int class_index : planned.schedule.layout) {
     planned.pictures.push_back(study.classes[class_index].label);
   }
-  planned.order_block =
-      design::order_block_of(study, key.stations, number, design::Draws::rehearsal);
+  planned.order_block = study::order_block_of(study, key.stations, number, study::Draws::rehearsal);
   planned.course = simulation::course_of(study, planned.schedule);
   for (std::size_t i = 0; i < planned.course.size(); ++i) {
     const int every = study.trials.break_every;
@@ -138,13 +137,12 @@ double RehearsedStudy::accuracy_of(int people) const {
   return right.share().value_or(0.0);
 }
 
-design::StimulusIndex RehearsedStudy::felt_stimulus(const design::StimulusIndex& presented,
-                                                    Hypothesis hypothesis,
-                                                    std::uint64_t draw) const {
+study::StimulusIndex RehearsedStudy::felt_stimulus(const study::StimulusIndex& presented,
+                                                   Hypothesis hypothesis,
+                                                   std::uint64_t draw) const {
   if (hypothesis == Hypothesis::population && !test_.margin) return presented;
-  if (test_.estimand == design::Estimand::mean_accuracy)
-    return of_method_[draw % of_method_.size()];
-  design::StimulusIndex felt = presented;
+  if (test_.estimand == study::Estimand::mean_accuracy) return of_method_[draw % of_method_.size()];
+  study::StimulusIndex felt = presented;
   if (felt.method == test_.first || felt.method == test_.second) {
     felt.method = draw % 2 == 0 ? test_.first : test_.second;
   }
@@ -171,7 +169,7 @@ struct RehearsedStudy::Person {
 };
 
 int RehearsedStudy::lost(int position, double loss, Person& person, int right,
-                         const design::Schedule& schedule) {
+                         const study::Schedule& schedule) {
   if (loss <= 0.0 || schedule.layout[position] != right) return position;
   if (person.losses->uniform() >= loss) return position;
   return another_position(position, schedule.layout.size(), *person.losses);
@@ -200,8 +198,8 @@ void RehearsedStudy::add_visit(Person& person, int visit, const Answering& answe
   FeltTrial trial{answering.study_seed, person.number,
                   simulation::SimulatedParticipant::trials_before(visit), 0};
   for (std::size_t i = 0; i < planned.course.size(); ++i) {
-    const design::Presentation& presentation = planned.schedule.presentations[i];
-    const bool is_scored = presentation.kind == design::PresentationKind::scored;
+    const study::Presentation& presentation = planned.schedule.presentations[i];
+    const bool is_scored = presentation.kind == study::PresentationKind::scored;
     simulation::TrialPlace place = planned.course[i];
     const int begun = static_cast<int>(i) + 1;
     if (planned.break_before[i]) condition.rest(begun - 1);
@@ -212,7 +210,7 @@ void RehearsedStudy::add_visit(Person& person, int visit, const Answering& answe
     if (!place.carries_over) condition.forget();
     // What is not scored is answered only if the next answer leans on it.
     if (!is_scored && !(answering.subject.serial.is_on() && place.carries_over)) continue;
-    const design::StimulusIndex felt =
+    const study::StimulusIndex felt =
         felt_stimulus(presentation.stimulus, answering.hypothesis, instead);
     RandomStream random = simulation::stream_of_trial(trial.study_seed, simulation::kAnswerPurpose,
                                                       trial.participant, trial.nth);

@@ -3,7 +3,7 @@
 /// feelings come from. Source: docs/planning.md, "The fast path".
 #pragma once
 
-#include "analysis/outcomes.hpp"
+#include "analysis/outcomes/outcomes.hpp"
 #include "analysis/planning/primary_test.hpp"
 #include "analysis/planning/rehearsal.hpp"
 #include "engine/perception/felt_features.hpp"
@@ -27,7 +27,7 @@ struct FeltTrial {
   int participant = 0;           ///< number, from 1
   std::uint64_t nth = 0;         ///< the participant's presentation, from 1
   std::uint64_t draw = 0;        ///< the presentation's own random bits
-  double gain_db = 0.0;          ///< design::Presentation::gain_db
+  double gain_db = 0.0;          ///< study::Presentation::gain_db
 };
 
 /// What participants learn and feel: functions of the arguments alone. Thread-safe.
@@ -42,7 +42,7 @@ class Feelings {
   [[nodiscard]] virtual std::shared_ptr<const simulation::FeltKnowledge> knowledge(
       std::uint64_t study_seed) const = 0;
   /// What a stimulus feels like in a presentation, before noise.
-  [[nodiscard]] virtual engine::FeltFeatures felt(const design::StimulusIndex& stimulus,
+  [[nodiscard]] virtual engine::FeltFeatures felt(const study::StimulusIndex& stimulus,
                                                   const FeltTrial& trial) const = 0;
 };
 
@@ -59,13 +59,13 @@ class BankedFeelings final : public Feelings {
  public:
   /// \param study  of the fields
   /// \param progress  called from one thread at a time
-  BankedFeelings(const simulation::LabelledFields& fields, const design::Study& study,
+  BankedFeelings(const simulation::LabelledFields& fields, const study::Study& study,
                  const simulation::SubjectModel& subject, const BankedFeelingsOptions& options,
-                 const design::Progress& progress = {});
+                 const study::Progress& progress = {});
 
   [[nodiscard]] std::shared_ptr<const simulation::FeltKnowledge> knowledge(
       std::uint64_t study_seed) const override;
-  [[nodiscard]] engine::FeltFeatures felt(const design::StimulusIndex& stimulus,
+  [[nodiscard]] engine::FeltFeatures felt(const study::StimulusIndex& stimulus,
                                           const FeltTrial& trial) const override;
 
  private:
@@ -75,7 +75,7 @@ class BankedFeelings final : public Feelings {
 
 /// Refuses people who explore until the time is up in a study that then takes no answer.
 /// \throws StudyError naming the subject's file
-void require_answers(const design::Study& study, const simulation::SubjectModel& subject);
+void require_answers(const study::Study& study, const simulation::SubjectModel& subject);
 
 /// Makes outcomes of one study again and again. Refers to study, subject and feelings, which must
 /// outlive it. Thread-safe once constructed.
@@ -84,7 +84,7 @@ class RehearsedStudy final : public Rehearsal {
   /// \param most_participants  of any simulated study, >= 1: the number of schedules that are made
   /// \throws StudyError if the study's orders are impossible, or if participants explore so long
   ///   that they would never answer; UsageError if the margin is more than the methods' accuracy
-  RehearsedStudy(const design::Study& study, const simulation::SubjectModel& subject,
+  RehearsedStudy(const study::Study& study, const simulation::SubjectModel& subject,
                  const PrimaryTest& test, const Feelings& feelings, int most_participants);
 
   /// Outcomes of participants with the numbers and enrolment numbers 1 .. `participants`. With
@@ -96,7 +96,7 @@ class RehearsedStudy final : public Rehearsal {
  private:
   /// What does not change from study to study.
   struct PlannedSchedule {
-    design::Schedule schedule;
+    study::Schedule schedule;
     std::vector<std::string> pictures;  ///< labels, by position
     int order_block = -1;               ///< analysis::SessionOutcome
     simulation::TrialCourse course;     ///< by presentation
@@ -105,20 +105,18 @@ class RehearsedStudy final : public Rehearsal {
   struct Answering;
   struct Person;
 
-  [[nodiscard]] PlannedSchedule planned_visit(const design::Study& study,
-                                              const design::StudyKey& key, int number,
-                                              int visit) const;
+  [[nodiscard]] PlannedSchedule planned_visit(const study::Study& study, const study::StudyKey& key,
+                                              int number, int visit) const;
   void add_participant(int number, const Answering& answering, analysis::Outcomes& outcomes) const;
   void add_visit(Person& person, int visit, const Answering& answering,
                  analysis::Outcomes& outcomes) const;
   /// Misses a right answer with a probability.
   /// \param right  class
   [[nodiscard]] static int lost(int position, double loss, Person& person, int right,
-                                const design::Schedule& schedule);
+                                const study::Schedule& schedule);
   /// \param draw  random bits
-  [[nodiscard]] design::StimulusIndex felt_stimulus(const design::StimulusIndex& presented,
-                                                    Hypothesis hypothesis,
-                                                    std::uint64_t draw) const;
+  [[nodiscard]] study::StimulusIndex felt_stimulus(const study::StimulusIndex& presented,
+                                                   Hypothesis hypothesis, std::uint64_t draw) const;
 
   /// The population's accuracy with the test's first method.
   [[nodiscard]] double accuracy_of(int people) const;
@@ -129,8 +127,8 @@ class RehearsedStudy final : public Rehearsal {
   const Feelings& feelings_;
   int visits_;                ///< of each participant
   double margin_loss_ = 0.0;  ///< share of right answers missed with the first method, if worse
-  std::vector<PlannedSchedule> schedules_;        ///< of each participant in turn, by visit
-  std::vector<design::StimulusIndex> of_method_;  ///< every stimulus of the test's first method
+  std::vector<PlannedSchedule> schedules_;       ///< of each participant in turn, by visit
+  std::vector<study::StimulusIndex> of_method_;  ///< every stimulus of the test's first method
   analysis::Outcomes empty_;
 };
 

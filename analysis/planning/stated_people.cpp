@@ -2,7 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/random.hpp"
-#include "protocols/design/study_key.hpp"
+#include "study/study_key.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ namespace touchtrial::planning {
 namespace {
 
 bool of_two_methods(const PrimaryTest& test) {
-  return test.estimand == design::Estimand::difference;
+  return test.estimand == study::Estimand::difference;
 }
 
 /// The range of a person's quantity.
@@ -107,16 +107,16 @@ std::string words_of(const StatedPeople& people) {
       people.accuracy ? fmt::format(", everybody's accuracy {}", *people.accuracy) : std::string());
 }
 
-StatedRehearsal::StatedRehearsal(const design::Study& study, const StatedPeople& people,
+StatedRehearsal::StatedRehearsal(const study::Study& study, const StatedPeople& people,
                                  const PrimaryTest& test, int most_participants)
     : people_(people), test_(test), visits_(study.visits.count), empty_(nobody_yet(study)) {
   require_possible(people, test);
-  const design::StudyKey key = design::simulated_study_key(study);
+  const study::StudyKey key = study::simulated_study_key(study);
   for (int number = 1; number <= most_participants; ++number) {
     for (int visit = 1; visit <= visits_; ++visit) {
       planned_.push_back(
-          {design::make_schedule(study, key.draw_of(number, design::Draws::rehearsal, visit)),
-           design::order_block_of(study, key.stations, number, design::Draws::rehearsal)});
+          {study::make_schedule(study, key.draw_of(number, study::Draws::rehearsal, visit)),
+           study::order_block_of(study, key.stations, number, study::Draws::rehearsal)});
     }
   }
 }
@@ -137,8 +137,8 @@ analysis::Outcomes StatedRehearsal::outcomes(int participants, Hypothesis hypoth
       const PlannedVisit& planned = planned_[static_cast<std::size_t>(session) - 1];
       outcomes.sessions.push_back(completed_session(number, session, visit, planned.order_block));
       const std::vector<int>& layout = planned.schedule.layout;
-      for (const design::Presentation& one : planned.schedule.presentations) {
-        if (one.kind != design::PresentationKind::scored) continue;
+      for (const study::Presentation& one : planned.schedule.presentations) {
+        if (one.kind != study::PresentationKind::scored) continue;
         const auto right =
             static_cast<int>(std::ranges::find(layout, one.stimulus.class_index) - layout.begin());
         const bool is_right = random.uniform() < share_right(person, one.stimulus.method, test_);

@@ -5,7 +5,7 @@
 
 #include "analysis/planning/primary_test.hpp"
 #include "analysis/planning/rehearsal.hpp"
-#include "protocols/design/study.hpp"
+#include "study/study.hpp"
 
 #include <optional>
 #include <string>
@@ -44,7 +44,7 @@ class StatedRehearsal final : public Rehearsal {
   /// \param most_participants  of any simulated study, >= 1: the number of schedules that are made
   /// \throws UsageError as require_possible does, also for people under the null; StudyError if the
   ///   study's orders are impossible
-  StatedRehearsal(const design::Study& study, const StatedPeople& people, const PrimaryTest& test,
+  StatedRehearsal(const study::Study& study, const StatedPeople& people, const PrimaryTest& test,
                   int most_participants);
 
   [[nodiscard]] analysis::Outcomes outcomes(int participants, Hypothesis hypothesis,
@@ -52,7 +52,7 @@ class StatedRehearsal final : public Rehearsal {
 
  private:
   struct PlannedVisit {
-    design::Schedule schedule;
+    study::Schedule schedule;
     int order_block = -1;  ///< analysis::SessionOutcome
   };
 

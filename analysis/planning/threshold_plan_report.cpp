@@ -1,7 +1,7 @@
 #include "analysis/planning/power_report.hpp"
 #include "analysis/planning/threshold_plan.hpp"
-#include "analysis/text_figures.hpp"
-#include "analysis/text_table.hpp"
+#include "analysis/report/text_figures.hpp"
+#include "analysis/report/text_table.hpp"
 #include "core/strict_json.hpp"
 
 #include <cmath>

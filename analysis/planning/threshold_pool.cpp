@@ -6,8 +6,8 @@
 #include "protocols/session/session_runner.hpp"
 #include "protocols/simulation/population.hpp"
 #include "protocols/simulation/trial_course.hpp"
-#include "protocols/store/session_recorder.hpp"
-#include "protocols/threshold/design/threshold.hpp"
+#include "protocols/threshold/study/threshold.hpp"
+#include "record/session_recorder.hpp"
 
 #include <cstddef>
 #include <memory>
@@ -20,22 +20,22 @@
 namespace touchtrial::planning {
 namespace {
 
-using design::threshold::ThresholdOptions;
 using procedures::Censored;
 using procedures::Threshold;
 using procedures::TrackTrial;
+using study::threshold::ThresholdOptions;
 
 /// The trials of each track.
 using TracksOfPerson = std::vector<std::vector<TrackTrial>>;
 
 /// An order that keeps what its tracks heard.
-class NotedOrder final : public design::AdaptiveOrder {
+class NotedOrder final : public study::AdaptiveOrder {
  public:
-  NotedOrder(std::unique_ptr<design::AdaptiveOrder> order, TracksOfPerson& tracks)
+  NotedOrder(std::unique_ptr<study::AdaptiveOrder> order, TracksOfPerson& tracks)
       : order_(std::move(order)), tracks_(tracks) {}
 
-  void choose(design::Presentation& presentation) const override { order_->choose(presentation); }
-  void answer(const design::Presentation& shown, int choice) override {
+  void choose(study::Presentation& presentation) const override { order_->choose(presentation); }
+  void answer(const study::Presentation& shown, int choice) override {
     order_->answer(shown, choice);
     if (!shown.chosen || shown.chosen->track < 1) return;
     tracks_[static_cast<std::size_t>(shown.chosen->track - 1)].push_back(
@@ -43,18 +43,18 @@ class NotedOrder final : public design::AdaptiveOrder {
   }
 
  private:
-  std::unique_ptr<design::AdaptiveOrder> order_;
+  std::unique_ptr<study::AdaptiveOrder> order_;
   TracksOfPerson& tracks_;
 };
 
-design::Study with_trials(const design::Study& study, int trials) {
-  auto options = std::make_shared<ThresholdOptions>(design::threshold::options_of(study));
+study::Study with_trials(const study::Study& study, int trials) {
+  auto options = std::make_shared<ThresholdOptions>(study::threshold::options_of(study));
   options->track.trials = trials;
   options->control_trials = 0;
-  design::Study changed = study;
+  study::Study changed = study;
   changed.options = options;
   try {
-    static_cast<void>(procedures::Block(design::threshold::block_settings(changed), Digest{}));
+    static_cast<void>(procedures::Block(study::threshold::block_settings(changed), Digest{}));
   } catch (const std::invalid_argument& error) {
     throw UsageError(
         fmt::format("--trials: {} are impossible for this study: {}; give another number", trials,
@@ -65,7 +65,7 @@ design::Study with_trials(const design::Study& study, int trials) {
 
 /// What the sessions of a pool share.
 struct PoolSetting {
-  const design::StudyKey& key;
+  const study::StudyKey& key;
   const session::StimulusSource& source;
   const simulation::SubjectModel& subject;
   const simulation::Population& population;
@@ -74,14 +74,14 @@ struct PoolSetting {
 /// \return whether the session reached its end
 bool hold_session(const PoolSetting& setting, int number, int visit,
                   simulation::SimulatedParticipant& participant, TracksOfPerson& tracks) {
-  const design::StudyKey& key = setting.key;
-  const design::ScheduleDraw draw = key.draw_of(number, design::Draws::rehearsal, visit);
-  const design::Schedule schedule = design::make_schedule(key.study, draw);
-  store::BufferedEvents unread;
+  const study::StudyKey& key = setting.key;
+  const study::ScheduleDraw draw = key.draw_of(number, study::Draws::rehearsal, visit);
+  const study::Schedule schedule = study::make_schedule(key.study, draw);
+  record::BufferedEvents unread;
   session::Session session(
-      schedule, key.study.trials, store::SessionRecorder(number, SecretKey{}, unread), {},
-      std::make_unique<NotedOrder>(design::adaptive_order(key.study, draw), tracks));
-  store::SessionOpening opening;
+      schedule, key.study.trials, record::SessionRecorder(number, SecretKey{}, unread), {},
+      std::make_unique<NotedOrder>(study::adaptive_order(key.study, draw), tracks));
+  record::SessionOpening opening;
   opening.participant = fmt::format("P{:03}", number);
   opening.enrolment = number;
   opening.visit = visit;
@@ -89,7 +89,7 @@ bool hold_session(const PoolSetting& setting, int number, int visit,
   opening.seal = key.seal;
   opening.device = simulation::recorded_device(setting.subject);
   opening.simulated = true;
-  session.open({}, opening, design::schedule_to_json(schedule, key));
+  session.open({}, opening, study::schedule_to_json(schedule, key));
   participant.come_to(visit, simulation::course_of(key.study, schedule));
   static_cast<void>(
       session::run_session_in_virtual_time(session, key, setting.source, participant));
@@ -98,8 +98,8 @@ bool hold_session(const PoolSetting& setting, int number, int visit,
 
 /// \return nothing if a session ended early
 std::optional<TracksOfPerson> tracks_of_person(const PoolSetting& setting, int number) {
-  const design::Study& study = setting.key.study;
-  TracksOfPerson tracks(design::threshold::block_settings(study).tracks.size());
+  const study::Study& study = setting.key.study;
+  TracksOfPerson tracks(study::threshold::block_settings(study).tracks.size());
   const auto participant = setting.population.participant(number);
   for (int visit = 1; visit <= study.visits.count; ++visit) {
     if (!hold_session(setting, number, visit, *participant, tracks)) return std::nullopt;
@@ -148,18 +148,18 @@ void add_person(ThresholdPool& pool, const std::vector<Threshold>& thresholds,
 
 }  // namespace
 
-ThresholdPool simulated_thresholds(const design::StudyKey& key,
+ThresholdPool simulated_thresholds(const study::StudyKey& key,
                                    const session::StimulusSource& source,
                                    const simulation::SubjectModel& subject, int trials,
                                    const ThresholdPoolOptions& options,
-                                   const design::Progress& progress) {
-  const ThresholdOptions& registered = design::threshold::options_of(key.study);
-  if (registered.question == design::threshold::Question::same_different) {
+                                   const study::Progress& progress) {
+  const ThresholdOptions& registered = study::threshold::options_of(key.study);
+  if (registered.question == study::threshold::Question::same_different) {
     throw UsageError(one_line(key.study.source +
                               ": asks for same or different, which gives a d' at each level and no "
                               "threshold; power needs another question"));
   }
-  design::StudyKey changed = key;
+  study::StudyKey changed = key;
   changed.study = with_trials(key.study, trials);
   const std::unique_ptr<const simulation::Population> population =
       simulation::population_of({changed, source, subject, options.seed, options.jobs});
@@ -170,14 +170,14 @@ ThresholdPool simulated_thresholds(const design::StudyKey& key,
   int done = 0;
   in_parallel(options.jobs, found.size(), [&](std::size_t i) {
     const auto tracks = tracks_of_person(setting, static_cast<int>(i) + 1);
-    const auto& track = design::threshold::options_of(changed.study).track;
+    const auto& track = study::threshold::options_of(changed.study).track;
     if (tracks) found[i] = thresholds_of(*tracks, track);
     const std::lock_guard lock(counting);
     if (progress) progress(++done, options.people);
   });
   ThresholdPool pool{.trials = trials, .standards = {}, .people = {}};
-  for (const auto& standard : design::threshold::standards_of(key.study)) {
-    pool.standards.push_back(design::threshold::words_of(key.study, standard));
+  for (const auto& standard : study::threshold::standards_of(key.study)) {
+    pool.standards.push_back(study::threshold::words_of(key.study, standard));
   }
   for (const auto& thresholds : found) {
     if (thresholds) {

@@ -2,10 +2,10 @@
 /// Source: docs/planning.md, "Power of threshold studies".
 #pragma once
 
-#include "protocols/design/prepare.hpp"
-#include "protocols/design/study_key.hpp"
 #include "protocols/session/stimulus_source.hpp"
 #include "protocols/simulation/subject_model.hpp"
+#include "study/prepare.hpp"
+#include "study/study_key.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -40,10 +40,10 @@ struct ThresholdPoolOptions {
 /// \param progress  called after each participant, from one thread at a time
 /// \throws UsageError if the procedure cannot have so many trials, or the question has no
 ///   thresholds
-[[nodiscard]] ThresholdPool simulated_thresholds(const design::StudyKey& key,
+[[nodiscard]] ThresholdPool simulated_thresholds(const study::StudyKey& key,
                                                  const session::StimulusSource& source,
                                                  const simulation::SubjectModel& subject,
                                                  int trials, const ThresholdPoolOptions& options,
-                                                 const design::Progress& progress = {});
+                                                 const study::Progress& progress = {});
 
 }  // namespace touchtrial::planning

@@ -5,7 +5,7 @@
 #include "core/random.hpp"
 #include "core/strict_json.hpp"
 #include "core/text.hpp"
-#include "protocols/threshold/design/threshold.hpp"
+#include "protocols/threshold/study/threshold.hpp"
 
 #include <array>
 #include <cstddef>
@@ -18,11 +18,11 @@
 namespace touchtrial::planning {
 namespace {
 
-using design::threshold::Question;
-using design::threshold::ThresholdOptions;
 using nlohmann::ordered_json;
 using procedures::Marginal;
 using procedures::Posterior;
+using study::threshold::Question;
+using study::threshold::ThresholdOptions;
 
 Belief belief_in(const Marginal& marginal, double mode) {
   return {procedures::mean_of(marginal), procedures::sd_of(marginal), mode};
@@ -89,7 +89,7 @@ ordered_json walked_grid_json(const TrackWalk& walk) {
 
 }  // namespace
 
-void require_thresholds(const design::Study& study, const std::string& command) {
+void require_thresholds(const study::Study& study, const std::string& command) {
   if (study.protocol_name() == "threshold") return;
   throw UsageError(
       one_line(fmt::format("{}: has the protocol {}, whose trials no procedure chooses; "
@@ -98,11 +98,11 @@ void require_thresholds(const design::Study& study, const std::string& command) 
                            study.source, study.protocol_name(), command)));
 }
 
-TrackWalk walked(const design::Study& study, int track, const std::vector<bool>& answers) {
+TrackWalk walked(const study::Study& study, int track, const std::vector<bool>& answers) {
   require_thresholds(study, "procedure");
-  const ThresholdOptions& options = design::threshold::options_of(study);
+  const ThresholdOptions& options = study::threshold::options_of(study);
   const std::vector<procedures::TrackSettings> tracks =
-      design::threshold::block_settings(study).tracks;
+      study::threshold::block_settings(study).tracks;
   if (track < 1 || static_cast<std::size_t>(track) > tracks.size()) {
     throw UsageError(
         one_line(fmt::format("--track: {} is not a track of {}, which has {}; give 1{}", track,
@@ -113,8 +113,8 @@ TrackWalk walked(const design::Study& study, int track, const std::vector<bool>&
   const std::size_t standard = index / static_cast<std::size_t>(options.tracks_each);
   TrackWalk walk;
   walk.track = track;
-  walk.words = design::threshold::words_of(study, design::threshold::standards_of(study)[standard]);
-  walk.unit = design::threshold::unit_of_level(options);
+  walk.words = study::threshold::words_of(study, study::threshold::standards_of(study)[standard]);
+  walk.unit = study::threshold::unit_of_level(options);
   walk.settings = tracks[index];
   walk.answers = answers;
   if (answers.size() > static_cast<std::size_t>(walk.settings.trials)) {

@@ -2,9 +2,9 @@
 /// Source: docs/thresholds.md, "The command".
 #pragma once
 
-#include "protocols/design/study.hpp"
 #include "protocols/procedures/posterior.hpp"
 #include "protocols/procedures/procedure.hpp"
+#include "study/study.hpp"
 
 #include <string>
 #include <vector>
@@ -43,7 +43,7 @@ struct TrackWalk {
 /// \param track  from 1
 /// \throws UsageError if the study is not one of thresholds, the track is not there, or there are
 ///   more answers than trials
-[[nodiscard]] TrackWalk walked(const design::Study& study, int track,
+[[nodiscard]] TrackWalk walked(const study::Study& study, int track,
                                const std::vector<bool>& answers);
 
 [[nodiscard]] std::string track_walk_json(const TrackWalk& walk);
@@ -51,6 +51,6 @@ struct TrackWalk {
 /// Refuses a study of another protocol than thresholds.
 /// \param command  that needs one
 /// \throws UsageError
-void require_thresholds(const design::Study& study, const std::string& command);
+void require_thresholds(const study::Study& study, const std::string& command);
 
 }  // namespace touchtrial::planning

@@ -1,12 +1,12 @@
 #include "analysis/sheet/stimulus_sheet.hpp"
 
-#include "analysis/page/picture_tiles.hpp"
+#include "analysis/report/page/picture_tiles.hpp"
 #include "core/errors.hpp"
 #include "engine/image_file.hpp"
 #include "engine/metrics/picture_statistics.hpp"
 #include "engine/pictures/colour_image.hpp"
 #include "engine/rendering/field_statistics.hpp"
-#include "protocols/design/stimulus_field.hpp"
+#include "study/stimulus_field.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -77,18 +77,18 @@ GreyImage enhanced_picture(Plane<float> texture) {
 /// Adds stimuli of one pack to the sheet.
 class Stimuli {
  public:
-  Stimuli(const design::StudyKey& key, const engine::Pack& pack) : key_(key), pack_(pack) {}
+  Stimuli(const study::StudyKey& key, const engine::Pack& pack) : key_(key), pack_(pack) {}
 
-  void add(const design::KeyedStimulus& keyed, Table& table, Tiles& tiles) const {
-    const design::StimulusIndex& stimulus = keyed.stimulus;
-    const design::StudyClass& of =
+  void add(const study::KeyedStimulus& keyed, Table& table, Tiles& tiles) const {
+    const study::StimulusIndex& stimulus = keyed.stimulus;
+    const study::StudyClass& of =
         key_.study.classes[static_cast<std::size_t>(stimulus.class_index)];
     const auto exemplar = static_cast<std::size_t>(stimulus.exemplar);
     const GreyImage image = engine::read_grey_image(key_.study.folder / of.images[exemplar]);
     const engine::PackEntry& entry = checked_entry(keyed, image, of.images[exemplar]);
     const engine::MappedField field = pack_.map(keyed.code);
     Plane<float> plane =
-        engine::extract_texture<float>(image, design::method_of(key_.study, stimulus)).texture;
+        engine::extract_texture<float>(image, study::method_of(key_.study, stimulus)).texture;
     const GreyImage texture = engine::texture_picture(plane);
     const auto [force, n_per_grey] = engine::lateral_field(field.view(), entry.gains);
     const engine::ArrowPatch patch = middle_of_patch(engine::strongest_patch(force), kPatchSide_px);
@@ -119,11 +119,11 @@ class Stimuli {
   }
 
  private:
-  [[nodiscard]] const engine::PackEntry& checked_entry(const design::KeyedStimulus& keyed,
+  [[nodiscard]] const engine::PackEntry& checked_entry(const study::KeyedStimulus& keyed,
                                                        const GreyImage& image,
                                                        const std::filesystem::path& name) const {
     const engine::PackEntry& entry = pack_.entry(keyed.code);
-    if (!design::is_made_from(entry, key_, image, keyed.stimulus)) {
+    if (!study::is_made_from(entry, key_, image, keyed.stimulus)) {
       refuse("field " + keyed.code + " was not made from " +
              one_line((key_.study.folder / name).string()) + " as it is now");
     }
@@ -131,7 +131,7 @@ class Stimuli {
     return entry;
   }
 
-  const design::StudyKey& key_;
+  const study::StudyKey& key_;
   const engine::Pack& pack_;
 };
 
@@ -148,7 +148,7 @@ Picture picture_of(const Tiles& tiles, std::size_t number) {
 
 }  // namespace
 
-Document make_stimulus_sheet(const design::StudyKey& key, const engine::Pack& pack,
+Document make_stimulus_sheet(const study::StudyKey& key, const engine::Pack& pack,
                              const std::function<void(int done, int of)>& progress) {
   if (key.stimuli.size() > kMaxSheetStimuli) {
     throw UsageError(fmt::format(
@@ -171,17 +171,17 @@ Document make_stimulus_sheet(const design::StudyKey& key, const engine::Pack& pa
   std::size_t done = 0;
   std::size_t pictures = 0;
   for (std::size_t method = 0; method < key.study.methods.size(); ++method) {
-    std::vector<design::KeyedStimulus> own;
+    std::vector<study::KeyedStimulus> own;
     std::ranges::copy_if(key.stimuli, std::back_inserter(own),
-                         [&](const design::KeyedStimulus& one) {
+                         [&](const study::KeyedStimulus& one) {
                            return one.stimulus.method == static_cast<int>(method);
                          });
     if (own.empty()) continue;
-    std::ranges::sort(own, {}, &design::KeyedStimulus::stimulus);
+    std::ranges::sort(own, {}, &study::KeyedStimulus::stimulus);
     Table table = empty_table(method);
     std::vector<Block> drawn;
     Tiles tiles = no_tiles;
-    for (const design::KeyedStimulus& one : own) {
+    for (const study::KeyedStimulus& one : own) {
       stimuli.add(one, table, tiles);
       if (progress) progress(static_cast<int>(++done), static_cast<int>(key.stimuli.size()));
       if (tiles.cells.size() < kStimuliOfPicture && &one != &own.back()) continue;

@@ -2,9 +2,9 @@
 /// picture and its strength. It unblinds whoever reads it.
 #pragma once
 
-#include "analysis/page/document.hpp"
+#include "analysis/report/page/document.hpp"
 #include "engine/pack/pack.hpp"
-#include "protocols/design/study_key.hpp"
+#include "study/study_key.hpp"
 
 #include <functional>
 
@@ -21,7 +21,7 @@ inline constexpr std::size_t kMaxSheetStimuli = 500;
 /// \throws UsageError if there are more than kMaxSheetStimuli
 /// \throws FileError if an image or a field cannot be read
 [[nodiscard]] Document make_stimulus_sheet(
-    const design::StudyKey& key, const engine::Pack& pack,
+    const study::StudyKey& key, const engine::Pack& pack,
     const std::function<void(int done, int of)>& progress = {});
 
 }  // namespace touchtrial::analysis

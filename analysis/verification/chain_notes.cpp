@@ -2,8 +2,8 @@
 
 #include "core/errors.hpp"
 #include "core/utc.hpp"
-#include "protocols/store/damage.hpp"
-#include "protocols/store/payload_json.hpp"
+#include "record/damage.hpp"
+#include "record/payload_json.hpp"
 
 #include <chrono>
 #include <optional>
@@ -18,7 +18,7 @@ using std::chrono::seconds;
 
 constexpr seconds kUnnoted{1};
 
-void add_clock_notes(std::vector<std::string>& notes, std::span<const store::Event> chain,
+void add_clock_notes(std::vector<std::string>& notes, std::span<const record::Event> chain,
                      const std::string& name) {
   for (std::size_t i = 1; i < chain.size(); ++i) {
     const auto before = chain[i - 1].at;
@@ -35,12 +35,12 @@ void add_clock_notes(std::vector<std::string>& notes, std::span<const store::Eve
 }
 
 /// Where the second head file was moved to.
-void add_moves(std::vector<std::string>& notes, std::span<const store::Event> chain,
+void add_moves(std::vector<std::string>& notes, std::span<const record::Event> chain,
                const std::string& name) {
   std::optional<std::string> before;
-  for (const store::Event& event : chain) {
-    if (event.kind != store::EventKind::heads_kept) continue;
-    const std::string also = store::body_of(event, store::heads_from_json).also;
+  for (const record::Event& event : chain) {
+    if (event.kind != record::EventKind::heads_kept) continue;
+    const std::string also = record::body_of(event, record::heads_from_json).also;
     if (before) {
       notes.push_back(
           one_line(fmt::format("{}, event {}: the second head file is {} from then on", name,
@@ -50,11 +50,11 @@ void add_moves(std::vector<std::string>& notes, std::span<const store::Event> ch
   }
 }
 
-void add_losses(std::vector<std::string>& notes, std::span<const store::Event> chain,
+void add_losses(std::vector<std::string>& notes, std::span<const record::Event> chain,
                 const std::string& name) {
-  for (const store::Event& event : chain) {
-    if (event.kind != store::EventKind::loss_accepted) continue;
-    const store::LossBody loss = store::body_of(event, store::loss_from_json);
+  for (const record::Event& event : chain) {
+    if (event.kind != record::EventKind::loss_accepted) continue;
+    const record::LossBody loss = record::body_of(event, record::loss_from_json);
     notes.push_back(one_line(fmt::format("{}, event {}: a loss was accepted ({}): {}", name,
                                          event.sequence, loss.reason, loss.missing)));
   }
@@ -62,10 +62,10 @@ void add_losses(std::vector<std::string>& notes, std::span<const store::Event> c
 
 }  // namespace
 
-std::vector<std::string> chain_notes(const store::StudyStore& store) {
+std::vector<std::string> chain_notes(const record::StudyStore& store) {
   std::vector<std::string> notes;
   const bool has_clock = !store.commitment().simulated;
-  const auto add = [&](std::span<const store::Event> chain, const std::string& name) {
+  const auto add = [&](std::span<const record::Event> chain, const std::string& name) {
     if (has_clock) add_clock_notes(notes, chain, name);
     add_losses(notes, chain, name);
     add_moves(notes, chain, name);

@@ -3,7 +3,7 @@
 /// accepted, and where the second head file was moved to.
 #pragma once
 
-#include "protocols/store/study_store.hpp"
+#include "record/study_store.hpp"
 
 #include <string>
 #include <vector>
@@ -14,6 +14,6 @@ namespace touchtrial::analysis {
 /// Steps of the clock of up to a second are left out, as two programs that record at once may cause
 /// them, and so are those of simulated studies, whose times mean nothing.
 /// \throws StoreError if a chain cannot be read
-[[nodiscard]] std::vector<std::string> chain_notes(const store::StudyStore& store);
+[[nodiscard]] std::vector<std::string> chain_notes(const record::StudyStore& store);
 
 }  // namespace touchtrial::analysis

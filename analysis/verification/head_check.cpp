@@ -2,8 +2,8 @@
 
 #include "core/errors.hpp"
 #include "core/text.hpp"
-#include "protocols/store/damage.hpp"
-#include "protocols/store/payload_json.hpp"
+#include "record/damage.hpp"
+#include "record/payload_json.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// By the station's name.
-using StationChains = std::multimap<std::string, std::vector<store::Event>>;
+using StationChains = std::multimap<std::string, std::vector<record::Event>>;
 
 void add(std::string& text, const std::string& more) {
   text += (text.empty() ? "" : "; ") + one_line(more);
@@ -26,8 +26,8 @@ void add(std::string& text, const std::string& more) {
 
 /// The head file of one station's database.
 /// \return what the collected study lacks of it; empty: nothing
-std::string lack_of_station(const store::HeadReading& reading, const StationChains& chains) {
-  const store::HeadRecord& known = reading.record;
+std::string lack_of_station(const record::HeadReading& reading, const StationChains& chains) {
+  const record::HeadRecord& known = reading.record;
   const auto found = std::ranges::find_if(
       chains, [&](const auto& station) { return station.second.front().hash == known.database; });
   if (found == chains.end()) {
@@ -54,49 +54,49 @@ std::string HeadCheck::words() const {
   if (!lacks.empty()) return "NOT AS IT WAS LEFT: " + lacks;
   if (!vouched) return gone.empty() ? "no head file was compared" : gone;
   return fmt::format("up to head {} (event {}, {} acknowledged), by {}{}",
-                     store::spoken_head(*vouched), vouched->file.length,
+                     record::spoken_head(*vouched), vouched->file.length,
                      counted(vouched->acknowledged, "answer"), counted(compared, "head file"),
                      gone.empty() ? "" : "; " + gone);
 }
 
-HeadCheck check_heads(const store::StudyStore& store, const fs::path& database,
+HeadCheck check_heads(const record::StudyStore& store, const fs::path& database,
                       std::span<const fs::path> given) {
   HeadCheck check;
   try {
-    std::vector<store::KnownHead> heads = store::known_heads(store, database);
+    std::vector<record::KnownHead> heads = record::known_heads(store, database);
     std::ptrdiff_t stand_ins = 0;
     for (const fs::path& named : given) {
       const fs::path file = fs::weakly_canonical(named);
-      const auto is_same = [&](const store::KnownHead& head) {
+      const auto is_same = [&](const record::KnownHead& head) {
         return fs::weakly_canonical(head.file) == file;
       };
       if (std::ranges::any_of(heads, is_same)) continue;
-      heads.push_back({file, store::HeadFile(file).reading(head_signers(store.commitment()))});
+      heads.push_back({file, record::HeadFile(file).reading(head_signers(store.commitment()))});
       if (!heads.back().reading) throw FileError("there is no " + named.string());
       ++stand_ins;
     }
-    for (const store::KnownHead& head : heads) {
+    for (const record::KnownHead& head : heads) {
       if (!head.reading) continue;
       ++check.compared;
-      const store::HeadRecord& known = head.reading->record;
+      const record::HeadRecord& known = head.reading->record;
       if (!head.reading->damage.empty()) {
         check.notes.push_back(one_line(head.file.string() + ": " + head.reading->damage));
       }
       if (!check.vouched || known.file.length > check.vouched->file.length) check.vouched = known;
-      const std::vector<store::Loss> missing = store::losses(known, store);
+      const std::vector<record::Loss> missing = record::losses(known, store);
       if (missing.empty()) continue;
-      add(check.lacks, head.file.string() + ": " + listed(missing, "; ", &store::Loss::what));
+      add(check.lacks, head.file.string() + ": " + listed(missing, "; ", &record::Loss::what));
     }
-    std::erase_if(heads, [](const store::KnownHead& head) { return head.reading.has_value(); });
+    std::erase_if(heads, [](const record::KnownHead& head) { return head.reading.has_value(); });
     // A copy of a head file that lies elsewhere now stands in for it.
     if (std::ssize(heads) <= stand_ins) return check;
     check.gone = listed(heads, " and ",
-                        [](const store::KnownHead& head) { return one_line(head.file.string()); });
+                        [](const record::KnownHead& head) { return one_line(head.file.string()); });
     check.gone += heads.size() == 1 ? " is gone" : " are gone";
     check.gone +=
         ", which the database has on record; bring back what knows its end, or give `touchtrial "
         "verify` a copy with --head-file, or the last head with --head";
-  } catch (const store::DamagedStore&) {
+  } catch (const record::DamagedStore&) {
     throw;
   } catch (const Error& error) {
     // A damaged chain does not tell which head files there are.
@@ -105,22 +105,22 @@ HeadCheck check_heads(const store::StudyStore& store, const fs::path& database,
   return check;
 }
 
-StationsCheck check_stations(const store::StudyStore& store,
+StationsCheck check_stations(const record::StudyStore& store,
                              const std::map<std::string, PublicKey>& signers,
                              std::span<const fs::path> given) {
   StationsCheck check;
   StationChains chains;
   std::vector<PublicKey> trusted = {store.commitment().investigator};
   for (int station = 1; station <= store.stations(); ++station) {
-    std::vector<store::Event> chain = store.station_chain(station);
-    const auto identity = store::body_of(chain.front(), store::commitment_from_json).station;
+    std::vector<record::Event> chain = store.station_chain(station);
+    const auto identity = record::body_of(chain.front(), record::commitment_from_json).station;
     chains.emplace(identity ? identity->name : std::to_string(station), std::move(chain));
   }
   for (const auto& [name, signer] : signers) trusted.push_back(signer);
   std::set<std::string> vouched;
   for (const fs::path& file : given) {
     try {
-      const auto reading = store::HeadFile(file).reading(trusted);
+      const auto reading = record::HeadFile(file).reading(trusted);
       if (!reading) throw FileError("there is no " + file.string());
       vouched.insert(reading->record.station);
       if (const std::string lack = lack_of_station(*reading, chains); !lack.empty()) {

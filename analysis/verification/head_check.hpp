@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/public_keys.hpp"
-#include "protocols/store/head_file.hpp"
-#include "protocols/store/study_store.hpp"
+#include "record/head_file.hpp"
+#include "record/study_store.hpp"
 
 #include <filesystem>
 #include <map>
@@ -22,7 +22,7 @@ struct HeadCheck {
   std::string gone;
   int compared = 0;  ///< head files
   /// Of the head file that knows the longest chain: the database's end was vouched for up to there.
-  std::optional<store::HeadRecord> vouched{};
+  std::optional<record::HeadRecord> vouched{};
   std::vector<std::string> notes{};  ///< what is worth knowing and no fault
 
   /// Both faults, one after the other; empty: there is none.
@@ -34,7 +34,7 @@ struct HeadCheck {
 /// Holds a database against the head files that lie beside it or are on record.
 /// \param given  further head files, which may stand in for those that are gone
 /// \throws DamagedStore if the database cannot be read
-[[nodiscard]] HeadCheck check_heads(const store::StudyStore& store,
+[[nodiscard]] HeadCheck check_heads(const record::StudyStore& store,
                                     const std::filesystem::path& database,
                                     std::span<const std::filesystem::path> given = {});
 
@@ -48,7 +48,7 @@ struct StationsCheck {
 /// \param signers  public halves of all stations that the study's key lists, by name
 /// \param given  head files of stations' databases
 /// \throws StoreError if the database cannot be read
-[[nodiscard]] StationsCheck check_stations(const store::StudyStore& store,
+[[nodiscard]] StationsCheck check_stations(const record::StudyStore& store,
                                            const std::map<std::string, PublicKey>& signers,
                                            std::span<const std::filesystem::path> given);
 

@@ -1,7 +1,7 @@
 #include "analysis/verification/session_course.hpp"
 
 #include "core/errors.hpp"
-#include "protocols/store/payload_json.hpp"
+#include "record/payload_json.hpp"
 
 #include <string>
 
@@ -9,57 +9,57 @@
 
 namespace touchtrial::analysis {
 
-SessionCourse::SessionCourse(const design::Study& study, const design::ScheduleDraw& draw,
+SessionCourse::SessionCourse(const study::Study& study, const study::ScheduleDraw& draw,
                              bool opened)
     : study_(study),
       opened_(opened),
       course_(
-          design::make_schedule(study, draw), study.trials.on_interruption,
+          study::make_schedule(study, draw), study.trials.on_interruption,
           [&study, draw](int block, int restarts_before, int first_trial) {
-            return design::restarted_block(study, draw, block, restarts_before, first_trial);
+            return study::restarted_block(study, draw, block, restarts_before, first_trial);
           },
-          design::adaptive_order(study, draw)) {
-  if (course_.is_adaptive()) places_ = design::make_schedule(study, draw);
+          study::adaptive_order(study, draw)) {
+  if (course_.is_adaptive()) places_ = study::make_schedule(study, draw);
 }
 
-void SessionCourse::fail(const store::Event& event, const std::string& why) const {
+void SessionCourse::fail(const record::Event& event, const std::string& why) const {
   throw VerificationError(
       fmt::format("session {}, event {}: {}", event.session, event.sequence, why));
 }
 
-void SessionCourse::fail(const store::Event& event, int trial, const std::string& why) const {
+void SessionCourse::fail(const record::Event& event, int trial, const std::string& why) const {
   throw VerificationError(fmt::format("session {}, trial {}: {}", event.session, trial, why));
 }
 
-void SessionCourse::follow(const store::Event& event) {
+void SessionCourse::follow(const record::Event& event) {
   switch (event.kind) {
-    case store::EventKind::presented:
+    case record::EventKind::presented:
       return present(event);
-    case store::EventKind::first_contact:
-    case store::EventKind::answered:
-    case store::EventKind::timed_out:
-    case store::EventKind::interrupted:
-    case store::EventKind::explored_again:
+    case record::EventKind::first_contact:
+    case record::EventKind::answered:
+    case record::EventKind::timed_out:
+    case record::EventKind::interrupted:
+    case record::EventKind::explored_again:
       return follow_trial(event);
-    case store::EventKind::block_restarted:
+    case record::EventKind::block_restarted:
       return restart_block(event);
-    case store::EventKind::paused:
+    case record::EventKind::paused:
       is_paused_ = true;
       return;
-    case store::EventKind::resumed:
+    case record::EventKind::resumed:
       return take_up(event);
-    case store::EventKind::stopped:
+    case record::EventKind::stopped:
       is_stopped_ = true;
       return;
-    case store::EventKind::closed:
+    case record::EventKind::closed:
       return close(event);
     default:
       return;  // remarks, practice and traces may occur anywhere
   }
 }
 
-void SessionCourse::present(const store::Event& event) {
-  const store::TrialBody body = store::trial_from_json(event.body);
+void SessionCourse::present(const record::Event& event) {
+  const record::TrialBody body = record::trial_from_json(event.body);
   if (!course_.has(body.trial)) fail(event, body.trial, "was presented but not scheduled");
   if (course_.was_given_up(body.trial)) {
     fail(event, body.trial, "was presented under its old number after its block was restarted");
@@ -76,7 +76,7 @@ void SessionCourse::present(const store::Event& event) {
          fmt::format("was presented while trial {} was under way", course_.current()->trial));
   }
   if (course_.is_over()) fail(event, body.trial, "was presented after all that was due");
-  const design::Presentation& next = *course_.current();
+  const study::Presentation& next = *course_.current();
   if (next.trial != body.trial) {
     fail(event, body.trial, fmt::format("was presented where trial {} was due", next.trial));
   }
@@ -88,24 +88,24 @@ void SessionCourse::present(const store::Event& event) {
   ++presentations_;
 }
 
-void SessionCourse::require_under_way(const store::Event& event, int trial) const {
+void SessionCourse::require_under_way(const record::Event& event, int trial) const {
   const std::string name(name_of(event.kind));
   if (!is_under_way_ || course_.current()->trial != trial) {
     fail(event, trial, name + ", but not under way");
   }
-  if (event.kind == store::EventKind::interrupted) return;
+  if (event.kind == record::EventKind::interrupted) return;
   if (is_paused_) fail(event, trial, name + " while the session was paused");
   if (is_spoilt_) fail(event, trial, name + " although the program had ended during it");
 }
 
-void SessionCourse::follow_trial(const store::Event& event) {
-  const int trial = store::trial_from_json(event.body).trial;
+void SessionCourse::follow_trial(const record::Event& event) {
+  const int trial = record::trial_from_json(event.body).trial;
   require_under_way(event, trial);
-  const bool is_over_without_answer = event.kind == store::EventKind::timed_out &&
-                                      study_.trials.on_timeout == design::OnTimeout::no_response;
-  if (event.kind == store::EventKind::interrupted) {
-    if (store::trial_from_json(event.body).reason != store::kPauseReason) course_.spoil();
-  } else if (event.kind == store::EventKind::answered) {
+  const bool is_over_without_answer = event.kind == record::EventKind::timed_out &&
+                                      study_.trials.on_timeout == study::OnTimeout::no_response;
+  if (event.kind == record::EventKind::interrupted) {
+    if (record::trial_from_json(event.body).reason != record::kPauseReason) course_.spoil();
+  } else if (event.kind == record::EventKind::answered) {
     answer(event);
   } else if (is_over_without_answer) {
     course_.finish(std::nullopt);
@@ -116,8 +116,8 @@ void SessionCourse::follow_trial(const store::Event& event) {
   is_spoilt_ = false;
 }
 
-void SessionCourse::answer(const store::Event& event) {
-  const store::AnswerBody body = store::answer_from_json(event.body);
+void SessionCourse::answer(const record::Event& event) {
+  const record::AnswerBody body = record::answer_from_json(event.body);
   // Blocks follow from the number of answers: in place of one that was erased, any will do.
   if (!opened_) return course_.finish(0);
   require_chosen(event, body);
@@ -129,12 +129,13 @@ void SessionCourse::answer(const store::Event& event) {
   course_.finish(body.position);
 }
 
-void SessionCourse::require_chosen(const store::Event& event, const store::AnswerBody& body) const {
-  const std::optional<design::ChosenLevel>& due = course_.current()->chosen;
-  std::optional<design::ChosenLevel> shown;
+void SessionCourse::require_chosen(const record::Event& event,
+                                   const record::AnswerBody& body) const {
+  const std::optional<study::ChosenLevel>& due = course_.current()->chosen;
+  std::optional<study::ChosenLevel> shown;
   if (body.track && body.level && body.target) shown = {*body.track, *body.level, *body.target};
   if (shown == due) return;
-  const auto words = [](const std::optional<design::ChosenLevel>& chosen) {
+  const auto words = [](const std::optional<study::ChosenLevel>& chosen) {
     return chosen ? fmt::format("track {}, level {}, target {}", chosen->track, chosen->level,
                                 chosen->target)
                   : std::string("no level");
@@ -143,14 +144,14 @@ void SessionCourse::require_chosen(const store::Event& event, const store::Answe
        fmt::format("presented {} where the procedure chooses {}", words(shown), words(due)));
 }
 
-void SessionCourse::restart_block(const store::Event& event) {
-  const store::BlockBody body = store::block_from_json(event.body);
+void SessionCourse::restart_block(const record::Event& event) {
+  const record::BlockBody body = record::block_from_json(event.body);
   if (course_.block_to_restart() != body.block) {
     fail(event, fmt::format("block {} was restarted, but nothing in it was interrupted, or the "
                             "study does not restart blocks",
                             body.block));
   }
-  const design::BlockRestart again = course_.drawn_again(body.block);
+  const study::BlockRestart again = course_.drawn_again(body.block);
   if (body.first_trial != again.first_trial()) {
     fail(event, fmt::format("block {} was restarted with trial {}, not {}", body.block,
                             body.first_trial, again.first_trial()));
@@ -158,9 +159,9 @@ void SessionCourse::restart_block(const store::Event& event) {
   course_.restart(again);
 }
 
-void SessionCourse::take_up(const store::Event& event) {
+void SessionCourse::take_up(const record::Event& event) {
   constexpr double kSecondsInHour = 3600.0;
-  const store::ResumedBody body = store::resumed_from_json(event.body);
+  const record::ResumedBody body = record::resumed_from_json(event.body);
   if (body.after == "pause") {
     if (!is_paused_) fail(event, "the session was resumed, but not paused");
   } else if (body.away_s > study_.trials.resume_within_h * kSecondsInHour) {
@@ -172,8 +173,8 @@ void SessionCourse::take_up(const store::Event& event) {
   is_paused_ = false;
 }
 
-void SessionCourse::close(const store::Event& event) const {
-  if (!store::closed_from_json(event.body).complete) return;
+void SessionCourse::close(const record::Event& event) const {
+  if (!record::closed_from_json(event.body).complete) return;
   if (is_stopped_) fail(event, "the session is complete, but was stopped");
   if (course_.block_to_restart()) {
     fail(event, fmt::format("the session is complete, but block {} was not restarted",

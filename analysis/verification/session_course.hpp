@@ -1,9 +1,9 @@
 /// \file Checks that a session's presentations and their order agree with its study.
 #pragma once
 
-#include "protocols/design/course.hpp"
-#include "protocols/store/event.hpp"
-#include "protocols/store/payload.hpp"
+#include "record/event.hpp"
+#include "record/payload.hpp"
+#include "study/course.hpp"
 
 #include <optional>
 #include <string>
@@ -19,16 +19,16 @@ class SessionCourse {
   /// \param opened  the answers are opened, and so what an adaptive order chose can be checked; of
   ///   an erased session, only where each presentation stands
   /// \throws StudyError if the study has no order for this enrolment number
-  SessionCourse(const design::Study& study, const design::ScheduleDraw& draw, bool opened = true);
+  SessionCourse(const study::Study& study, const study::ScheduleDraw& draw, bool opened = true);
 
   /// Checks the session's next event.
   /// \throws VerificationError, naming the session and its event or trial, if the event cannot
   ///   follow the earlier ones
-  void follow(const store::Event& event);
+  void follow(const record::Event& event);
 
   /// The schedule with which the session began, followed by the restarted blocks. Of an adaptive
   /// order, its places.
-  [[nodiscard]] const design::Schedule& scheduled() const noexcept {
+  [[nodiscard]] const study::Schedule& scheduled() const noexcept {
     return places_ ? *places_ : course_.schedule();
   }
   /// Whether the answers decide what comes next.
@@ -36,21 +36,21 @@ class SessionCourse {
   [[nodiscard]] int presentations() const noexcept { return presentations_; }
 
  private:
-  [[noreturn]] void fail(const store::Event& event, const std::string& why) const;
-  [[noreturn]] void fail(const store::Event& event, int trial, const std::string& why) const;
-  void follow_trial(const store::Event& event);
-  void present(const store::Event& event);
-  void answer(const store::Event& event);
-  void require_chosen(const store::Event& event, const store::AnswerBody& body) const;
-  void require_under_way(const store::Event& event, int trial) const;
-  void restart_block(const store::Event& event);
-  void take_up(const store::Event& event);
-  void close(const store::Event& event) const;
+  [[noreturn]] void fail(const record::Event& event, const std::string& why) const;
+  [[noreturn]] void fail(const record::Event& event, int trial, const std::string& why) const;
+  void follow_trial(const record::Event& event);
+  void present(const record::Event& event);
+  void answer(const record::Event& event);
+  void require_chosen(const record::Event& event, const record::AnswerBody& body) const;
+  void require_under_way(const record::Event& event, int trial) const;
+  void restart_block(const record::Event& event);
+  void take_up(const record::Event& event);
+  void close(const record::Event& event) const;
 
-  const design::Study& study_;
+  const study::Study& study_;
   bool opened_;
-  design::Course course_;
-  std::optional<design::Schedule> places_;  ///< of an adaptive order, as sealed at the opening
+  study::Course course_;
+  std::optional<study::Schedule> places_;  ///< of an adaptive order, as sealed at the opening
   bool is_under_way_ = false;  ///< the course's current presentation waits for its answer
   bool is_spoilt_ = false;     ///< the program ended during the current presentation
   bool is_paused_ = false;

@@ -3,8 +3,8 @@
 #include "analysis/verification/head_check.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "protocols/design/prepare.hpp"
-#include "protocols/store/damage.hpp"
+#include "record/damage.hpp"
+#include "study/prepare.hpp"
 
 #include <algorithm>
 #include <array>
@@ -42,7 +42,7 @@ Opened<File> opened(Open open) {
   }
 }
 
-Opened<design::StudyKey> open_key(const StudyFiles& files) {
+Opened<study::StudyKey> open_key(const StudyFiles& files) {
   if (!files.key_named && files.key.empty()) {
     return {std::nullopt, CheckState::not_checked, "needs the key; name it with --key"};
   }
@@ -50,13 +50,13 @@ Opened<design::StudyKey> open_key(const StudyFiles& files) {
     return {std::nullopt, CheckState::not_checked,
             "there is no " + one_line(files.key.string()) + "; name the key with --key"};
   }
-  return opened<design::StudyKey>([&] { return design::load_study_key(files.key); });
+  return opened<study::StudyKey>([&] { return study::load_study_key(files.key); });
 }
 
-bool has_code_of(const design::StudyKey& key, const engine::Pack& pack) {
+bool has_code_of(const study::StudyKey& key, const engine::Pack& pack) {
   const auto& entries = pack.manifest().entries;
   return std::any_of(
-      key.stimuli.begin(), key.stimuli.end(), [&](const design::KeyedStimulus& stimulus) {
+      key.stimuli.begin(), key.stimuli.end(), [&](const study::KeyedStimulus& stimulus) {
         return std::any_of(entries.begin(), entries.end(), [&](const engine::PackEntry& entry) {
           return entry.code == stimulus.code;
         });
@@ -67,17 +67,17 @@ bool has_code_of(const design::StudyKey& key, const engine::Pack& pack) {
 /// or to an edited simulated study, which has the same identity because it has the same seed. Codes
 /// of other studies are random, so a pack with one of the key's codes belongs to this study,
 /// whatever identity it states.
-bool was_made_anew(const store::StudyStore& store, const design::StudyKey& key,
+bool was_made_anew(const record::StudyStore& store, const study::StudyKey& key,
                    const engine::Pack& pack) {
-  const store::StudyCommitment& commitment = store.commitment();
+  const record::StudyCommitment& commitment = store.commitment();
   const bool is_of_other = pack.manifest().study_id != commitment.study_id;
   if (!key.simulated) return is_of_other && !has_code_of(key, pack);
   return is_of_other || pack.digest() != commitment.pack;
 }
 
-Opened<engine::Pack> find_pack(const store::StudyStore& store, const design::StudyKey& key,
+Opened<engine::Pack> find_pack(const record::StudyStore& store, const study::StudyKey& key,
                                const fs::path& database) {
-  const fs::path place = design::pack_in_reach(key, database);
+  const fs::path place = study::pack_in_reach(key, database);
   const std::string folder = one_line(place.string());
   const auto leave = [](const std::string& why) {
     return Opened<engine::Pack>{std::nullopt, CheckState::not_checked,
@@ -98,8 +98,8 @@ Opened<engine::Pack> find_pack(const store::StudyStore& store, const design::Stu
   return pack;
 }
 
-Opened<engine::Pack> open_pack(const StudyFiles& files, const store::StudyStore& store,
-                               const std::optional<design::StudyKey>& key) {
+Opened<engine::Pack> open_pack(const StudyFiles& files, const record::StudyStore& store,
+                               const std::optional<study::StudyKey>& key) {
   if (!files.pack.empty()) return opened<engine::Pack>([&] { return engine::Pack(files.pack); });
   if (key) return find_pack(store, *key, files.database);
   return {std::nullopt, CheckState::not_checked, "needs the key, or --pack"};
@@ -116,7 +116,7 @@ void put(Verification& verification, const char* name, const Opened<File>& opene
 /// What the database lacks and its head files know, and head files that are gone. Made only where
 /// there are or were head files.
 /// \param head  that was written down; if it is the end of the chain, no head file is missed
-void add_heads(const store::StudyStore& store, const StudyFiles& files, const std::string& head,
+void add_heads(const record::StudyStore& store, const StudyFiles& files, const std::string& head,
                Verification& verification) {
   HeadCheck heads = check_heads(store, files.database, files.heads);
   const bool is_end = !head.empty() && to_hex(store.file_head().hash).starts_with(head);
@@ -133,16 +133,16 @@ void add_heads(const store::StudyStore& store, const StudyFiles& files, const st
 
 /// What a collected study lacks of its stations. Only their head files can tell whether somebody
 /// came to a station that is not there, or after the events that are.
-void add_stations(const store::StudyStore& store, const StudyFiles& files,
-                  const std::optional<design::StudyKey>& key, Verification& verification) {
+void add_stations(const record::StudyStore& store, const StudyFiles& files,
+                  const std::optional<study::StudyKey>& key, Verification& verification) {
   if (!key && files.heads.empty()) {
     verification.checks.push_back({"stations", CheckState::not_checked, "needs the key"});
     return;
   }
   if (key && key->stations.size() < 2 && files.heads.empty()) return;  // parts of one station
   std::map<std::string, PublicKey> signers;
-  for (const design::Station& station : key ? key->stations : std::vector<design::Station>()) {
-    signers[station.name] = design::station_key(*key, station.name).signer().public_half();
+  for (const study::Station& station : key ? key->stations : std::vector<study::Station>()) {
+    signers[station.name] = study::station_key(*key, station.name).signer().public_half();
   }
   const StationsCheck stations = check_stations(store, signers, files.heads);
   Check check{"stations", CheckState::passed, "all that their head files know"};
@@ -160,7 +160,7 @@ void add_stations(const store::StudyStore& store, const StudyFiles& files,
   verification.checks.push_back(std::move(check));
 }
 
-Verification of_damaged(const store::DamagedStore& error) {
+Verification of_damaged(const record::DamagedStore& error) {
   constexpr std::array kOthers{"key",       "seal",     "configuration", "schedule",
                                "responses", "payloads", "traces",        "pack"};
   Verification verification;
@@ -175,9 +175,9 @@ Verification of_damaged(const store::DamagedStore& error) {
 }  // namespace
 
 Verification verify_files(const StudyFiles& files, const std::string& head) try {
-  const store::StudyStore store =
-      store::StudyStore::open(files.database, store::StudyStore::Access::read_only);
-  const Opened<design::StudyKey> key = open_key(files);
+  const record::StudyStore store =
+      record::StudyStore::open(files.database, record::StudyStore::Access::read_only);
+  const Opened<study::StudyKey> key = open_key(files);
   const Opened<engine::Pack> pack = open_pack(files, store, key.file);
   Verification verification =
       verify_study(store, key.file ? &*key.file : nullptr, pack.file ? &*pack.file : nullptr, head);
@@ -189,7 +189,7 @@ Verification verify_files(const StudyFiles& files, const std::string& head) try 
     add_stations(store, files, key.file, verification);
   }
   return verification;
-} catch (const store::DamagedStore& error) {
+} catch (const record::DamagedStore& error) {
   return of_damaged(error);
 }
 

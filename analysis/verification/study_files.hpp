@@ -19,7 +19,7 @@ struct StudyFiles {
   /// Further head files than those that lie beside the database or are on record; of a collected
   /// study, those of the stations' databases.
   std::vector<std::filesystem::path> heads{};
-  /// Empty: the one of design::pack_in_reach, if it exists and belongs to this study.
+  /// Empty: the one of study::pack_in_reach, if it exists and belongs to this study.
   std::filesystem::path pack;
 };
 

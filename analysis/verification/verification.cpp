@@ -1,16 +1,16 @@
 #include "analysis/verification/verification.hpp"
 
-#include "analysis/outcomes.hpp"
-#include "analysis/sealed_sessions.hpp"
-#include "analysis/text_figures.hpp"
+#include "analysis/outcomes/outcomes.hpp"
+#include "analysis/outcomes/sealed_sessions.hpp"
+#include "analysis/report/text_figures.hpp"
 #include "analysis/verification/chain_notes.hpp"
 #include "analysis/verification/session_course.hpp"
 #include "core/errors.hpp"
 #include "core/named.hpp"
-#include "protocols/design/protocol.hpp"
-#include "protocols/design/signed_pack.hpp"
-#include "protocols/store/damage.hpp"
-#include "protocols/store/payload_json.hpp"
+#include "record/damage.hpp"
+#include "record/payload_json.hpp"
+#include "study/protocol.hpp"
+#include "study/signed_pack.hpp"
 
 #include <algorithm>
 #include <array>
@@ -27,13 +27,13 @@ namespace {
 
 // Every check below returns a description of what it checked, and throws an Error if that fails.
 
-std::string check_chain(const store::StudyStore& store) {
+std::string check_chain(const record::StudyStore& store) {
   if (const auto fault = store.first_fault()) throw VerificationError(shown(*fault));
   return fmt::format("the file's chain and those of {}, their traces and tables",
                      counted(static_cast<std::int64_t>(store.sessions().size()), "session"));
 }
 
-std::string check_key(const store::StudyStore& store, const design::StudyKey& key) {
+std::string check_key(const record::StudyStore& store, const study::StudyKey& key) {
   const std::string& study_id = store.commitment().study_id;
   if (key.study_id != study_id) {
     throw VerificationError(fmt::format("is the key of study {}, the database is of study {}",
@@ -42,11 +42,11 @@ std::string check_key(const store::StudyStore& store, const design::StudyKey& ke
   return "the key of study " + study_id;
 }
 
-std::string check_seal(const store::StudyStore& store, const design::StudyKey& key) {
+std::string check_seal(const record::StudyStore& store, const study::StudyKey& key) {
   require_key_of(store, key);
-  const store::StudyCommitment& commitment = store.commitment();
-  store.for_each(store::EventKind::opened, [&](const store::Event& event) {
-    const store::SessionOpening opening = store::opening_from_json(event.body);
+  const record::StudyCommitment& commitment = store.commitment();
+  store.for_each(record::EventKind::opened, [&](const record::Event& event) {
+    const record::SessionOpening opening = record::opening_from_json(event.body);
     if (opening.study_id == commitment.study_id && opening.seal == commitment.seal) return;
     throw VerificationError(
         fmt::format("session {}: was opened under another study's seal; it does not belong here",
@@ -56,8 +56,8 @@ std::string check_seal(const store::StudyStore& store, const design::StudyKey& k
                      to_hex(commitment.seal).substr(0, 16));
 }
 
-std::string check_configuration(const store::StudyStore& store, const design::StudyKey& key) {
-  const store::StudyCommitment& commitment = store.commitment();
+std::string check_configuration(const record::StudyStore& store, const study::StudyKey& key) {
+  const record::StudyCommitment& commitment = store.commitment();
   const auto require = [](bool same, const char* what) {
     if (!same) throw VerificationError(std::string(what) + " differs between key and database");
   };
@@ -77,18 +77,18 @@ std::string check_configuration(const store::StudyStore& store, const design::St
 
 /// Checks a session's events against the course that follows from the key and the session's
 /// enrolment number alone.
-SessionCourse course_of(const store::StudyStore& store, const design::StudyKey& key,
-                        const store::SessionRow& session) {
+SessionCourse course_of(const record::StudyStore& store, const study::StudyKey& key,
+                        const record::SessionRow& session) {
   try {
     const std::optional<SecretKey> own = participant_key(store, key, session);
     SessionCourse course(key.study,
                          key.draw_of(session.enrolment, draws_of(session), session.visit),
                          own.has_value());
-    for (const store::Event& event : store.events(session.session)) {
+    for (const record::Event& event : store.events(session.session)) {
       // How long a session was away is sealed, and what answers decide; what else matters is not.
       const bool has_more =
-          own && (event.kind == store::EventKind::resumed ||
-                  (course.is_adaptive() && event.kind == store::EventKind::answered));
+          own && (event.kind == record::EventKind::resumed ||
+                  (course.is_adaptive() && event.kind == record::EventKind::answered));
       course.follow(has_more ? whole_event(event, *own).event : event);
     }
     return course;
@@ -99,24 +99,24 @@ SessionCourse course_of(const store::StudyStore& store, const design::StudyKey& 
 }
 
 /// Whether a session records that its clock, or the one of the visit before, was wrong.
-bool has_wrong_clock(const store::StudyStore& store, int session) {
-  return std::ranges::any_of(store.events(session), [](const store::Event& event) {
-    return event.kind == store::EventKind::deviated &&
-           store::deviation_from_json(event.body).code == "wrong-clock";
+bool has_wrong_clock(const record::StudyStore& store, int session) {
+  return std::ranges::any_of(store.events(session), [](const record::Event& event) {
+    return event.kind == record::EventKind::deviated &&
+           record::deviation_from_json(event.body).code == "wrong-clock";
   });
 }
 
 /// The days between a participant's visits on the file's chain. In virtual time they mean nothing.
-void require_days_between(const store::StudyStore& store, const design::StudyKey& key) {
+void require_days_between(const record::StudyStore& store, const study::StudyKey& key) {
   if (key.study.visits.count < 2 || store.commitment().simulated) return;
   std::map<std::pair<int, int>, std::chrono::nanoseconds> opened;  // by enrolment and visit
-  for (const store::Event& event : store.events(0)) {
-    if (event.kind != store::EventKind::session_opened) continue;
-    const auto body = store::body_of(event, store::session_opened_from_json);
+  for (const record::Event& event : store.events(0)) {
+    if (event.kind != record::EventKind::session_opened) continue;
+    const auto body = record::body_of(event, record::session_opened_from_json);
     opened[{body.enrolment, body.visit}] = event.at;
     const auto before = opened.find({body.enrolment, body.visit - 1});
     if (before == opened.end()) continue;
-    const double days = design::days_between(before->second, event.at);
+    const double days = study::days_between(before->second, event.at);
     if (days >= key.study.visits.least_days) continue;
     if (days < 0.0 && has_wrong_clock(store, body.session)) continue;
     throw VerificationError(
@@ -127,17 +127,17 @@ void require_days_between(const store::StudyStore& store, const design::StudyKey
 }
 
 /// A group that is told is the one that was dealt, and groups that are not open are not told.
-void require_dealt_groups(const store::StudyStore& store, const design::StudyKey& key) {
-  const design::GroupPlan& groups = key.study.groups;
-  std::map<int, store::SessionRow> rows;
-  for (const store::SessionRow& row : store.sessions()) rows[row.session] = row;
-  store.for_each(store::EventKind::opened, [&](const store::Event& event) {
+void require_dealt_groups(const record::StudyStore& store, const study::StudyKey& key) {
+  const study::GroupPlan& groups = key.study.groups;
+  std::map<int, record::SessionRow> rows;
+  for (const record::SessionRow& row : store.sessions()) rows[row.session] = row;
+  store.for_each(record::EventKind::opened, [&](const record::Event& event) {
     const auto row = rows.find(event.session);
     if (row == rows.end()) return;
     const auto group = key.group_of(row->second.enrolment, draws_of(row->second));
     const std::string dealt =
         group && groups.open ? groups.labels[static_cast<std::size_t>(*group)] : "";
-    if (store::body_of(event, store::opening_from_json).group == dealt) return;
+    if (record::body_of(event, record::opening_from_json).group == dealt) return;
     throw VerificationError(
         fmt::format("session {}: its group is not the one that enrolment {} was dealt",
                     event.session, row->second.enrolment));
@@ -145,34 +145,34 @@ void require_dealt_groups(const store::StudyStore& store, const design::StudyKey
 }
 
 /// The station that recorded a session; empty if its file names none.
-std::string station_behind(const store::StudyStore& store, const store::SessionRow& session) {
-  std::optional<store::StationIdentity> station = store.commitment().station;
+std::string station_behind(const record::StudyStore& store, const record::SessionRow& session) {
+  std::optional<record::StationIdentity> station = store.commitment().station;
   if (session.station > 0) {
-    const std::vector<store::Event> chain = store.station_chain(session.station);
+    const std::vector<record::Event> chain = store.station_chain(session.station);
     if (chain.empty()) throw VerificationError("a session names a station that is not here");
-    station = store::commitment_from_json(chain.front().body).station;
+    station = record::commitment_from_json(chain.front().body).station;
   }
   return station ? station->name : std::string();
 }
 
 /// A station records its own numbers alone: it cannot pass another's sessions off as its own.
-void require_own_number(const store::StudyStore& store, const design::StudyKey& key,
-                        const store::SessionRow& session) {
+void require_own_number(const record::StudyStore& store, const study::StudyKey& key,
+                        const record::SessionRow& session) {
   const std::string here = station_behind(store, session);
-  const design::Station* const owner = design::station_of(key.stations, session.enrolment);
+  const study::Station* const owner = study::station_of(key.stations, session.enrolment);
   if (here.empty() || owner == nullptr || owner->name == here) return;
   throw VerificationError(
       fmt::format("session {}: enrolment {} is station {}'s, and the file is station {}'s",
                   session.session, session.enrolment, owner->name, here));
 }
 
-std::string check_schedule(const store::StudyStore& store, const design::StudyKey& key) {
-  const std::map<int, design::Schedule> schedules =
+std::string check_schedule(const record::StudyStore& store, const study::StudyKey& key) {
+  const std::map<int, study::Schedule> schedules =
       open_schedules(store, key, person_keys(store, key));
   require_days_between(store, key);
   require_dealt_groups(store, key);
   int presentations = 0;
-  for (const store::SessionRow& session : store.sessions()) {
+  for (const record::SessionRow& session : store.sessions()) {
     require_own_number(store, key, session);
     const SessionCourse course = course_of(store, key, session);
     presentations += course.presentations();
@@ -187,10 +187,10 @@ std::string check_schedule(const store::StudyStore& store, const design::StudyKe
                      schedules.size(), presentations);
 }
 
-std::string check_responses(const store::StudyStore& store, const design::StudyKey& key) {
+std::string check_responses(const record::StudyStore& store, const study::StudyKey& key) {
   const int positions = store.commitment().positions;
   int responses = 0;
-  for (const store::TrialRow& row : open_trials(store, person_keys(store, key))) {
+  for (const record::TrialRow& row : open_trials(store, person_keys(store, key))) {
     for (const std::optional<int>& position : {row.position, row.first_position}) {
       if (!position || (*position >= 0 && *position < positions)) continue;
       throw VerificationError(fmt::format("session {}, trial {}: answers position {} of {}",
@@ -203,36 +203,36 @@ std::string check_responses(const store::StudyStore& store, const design::StudyK
 
 /// Opens what is left of erased sessions, and the texts about people on the file's chain.
 /// \return how many
-int check_safety_record(const store::StudyStore& store, const design::StudyKey& key) {
-  const std::map<int, store::PersonKeys> keys = person_keys(store, key);
+int check_safety_record(const record::StudyStore& store, const study::StudyKey& key) {
+  const std::map<int, record::PersonKeys> keys = person_keys(store, key);
   int parts = 0;
-  const auto check = [&](const store::Event& event, const store::SessionRow& row) {
+  const auto check = [&](const record::Event& event, const record::SessionRow& row) {
     if (event.sealed.empty()) return;
     parts += readable_event(event, row, keys.at(row.session)).sealed.empty() ? 1 : 0;
   };
-  std::map<int, store::SessionRow> rows;
-  for (const store::SessionRow& row : store.sessions()) rows[row.session] = row;
+  std::map<int, record::SessionRow> rows;
+  for (const record::SessionRow& row : store.sessions()) rows[row.session] = row;
   for (const auto& [session, row] : rows) {
     if (!row.erased || !keys.at(session).safety) continue;
-    for (const store::Event& event : store.events(session)) {
-      if (store::is_safety_record(event.kind)) check(event, row);
+    for (const record::Event& event : store.events(session)) {
+      if (record::is_safety_record(event.kind)) check(event, row);
     }
   }
-  for (const store::Event& event : store.events(0)) {
-    const auto row = rows.find(store::session_about(event));
+  for (const record::Event& event : store.events(0)) {
+    const auto row = rows.find(record::session_about(event));
     if (row != rows.end()) check(event, row->second);
   }
   return parts;
 }
 
-std::string check_payloads(const store::StudyStore& store, const design::StudyKey& key) {
+std::string check_payloads(const record::StudyStore& store, const study::StudyKey& key) {
   int parts = 0;
   const SessionKeys keys = person_keys(store, key);
   for (const auto& [session, own] : keys) {
     if (!own.participant) continue;
     std::chrono::nanoseconds last{0};
-    for (const store::Event& stored : store.events(session)) {
-      const store::Event event = whole_event(stored, *own.participant).event;
+    for (const record::Event& stored : store.events(session)) {
+      const record::Event event = whole_event(stored, *own.participant).event;
       if (event.at < last) {
         throw VerificationError(
             fmt::format("session {}, event {}: its time is before that of the event before",
@@ -247,24 +247,25 @@ std::string check_payloads(const store::StudyStore& store, const design::StudyKe
   return fmt::format("{} sealed parts of events, the ends of chains among them", parts);
 }
 
-void check_trace(const store::StudyStore& store, const store::Event& event, const SecretKey& own) {
-  const store::TraceBody body = store::trace_body_from_json(whole_event(event, own).event.body);
+void check_trace(const record::StudyStore& store, const record::Event& event,
+                 const SecretKey& own) {
+  const record::TraceBody body = record::trace_body_from_json(whole_event(event, own).event.body);
   const auto box = store.sealed_trace(event.session, body.trial);
   const auto fail = [&](const std::string& what) {
     throw VerificationError(
         fmt::format("session {}, trial {}: the trace {}", event.session, body.trial, what));
   };
   if (!box) return fail("is missing");
-  const auto trace = store::unsealed_trace(*box, own);
+  const auto trace = record::unsealed_trace(*box, own);
   if (!trace) return fail("does not open");
   if (trace->samples.size() != static_cast<std::size_t>(body.samples))
     fail("has another number of samples than its event says");
 }
 
-std::string check_traces(const store::StudyStore& store, const design::StudyKey& key) {
+std::string check_traces(const record::StudyStore& store, const study::StudyKey& key) {
   const SessionKeys keys = person_keys(store, key);
   int traces = 0;
-  store.for_each(store::EventKind::trace_stored, [&](const store::Event& event) {
+  store.for_each(record::EventKind::trace_stored, [&](const record::Event& event) {
     const auto own = keys.find(event.session);
     if (own == keys.end() || !own->second.participant) return;
     check_trace(store, event, *own->second.participant);
@@ -273,30 +274,30 @@ std::string check_traces(const store::StudyStore& store, const design::StudyKey&
   return fmt::format("{} traces opened and decoded", traces);
 }
 
-std::string check_pack(const store::StudyStore& store, const design::StudyKey* key,
+std::string check_pack(const record::StudyStore& store, const study::StudyKey* key,
                        const engine::Pack& pack) {
-  const store::StudyCommitment& commitment = store.commitment();
-  design::require_signed(pack, commitment.study_id, commitment.seal, commitment.investigator);
+  const record::StudyCommitment& commitment = store.commitment();
+  study::require_signed(pack, commitment.study_id, commitment.seal, commitment.investigator);
   if (pack.digest() != commitment.pack) {
     throw VerificationError("the pack is not the one that the database was begun with");
   }
   const std::string intact =
       fmt::format("signed, {} fields intact", pack.manifest().entries.size());
   if (key == nullptr) return intact + "; not compared with the key";
-  for (const design::KeyedStimulus& stimulus : key->stimuli)
+  for (const study::KeyedStimulus& stimulus : key->stimuli)
     static_cast<void>(pack.entry(stimulus.code));
   const std::array folders = {key->study.folder, pack.folder().parent_path()};
-  const std::size_t shown = design::shown_pictures(key->study).size();
-  const std::size_t absent = design::require_pictures(pack, key->study, folders).size();
+  const std::size_t shown = study::shown_pictures(key->study).size();
+  const std::size_t absent = study::require_pictures(pack, key->study, folders).size();
   return intact +
          fmt::format(", every code of the key among them; {} of {} shown pictures compared",
                      shown - absent, shown);
 }
 
 /// The place of a hash on a chain, in words; empty if the chain does not contain it.
-std::string place_on(const std::vector<store::Event>& chain, const std::string& head,
+std::string place_on(const std::vector<record::Event>& chain, const std::string& head,
                      const std::string& name) {
-  const auto found = std::find_if(chain.begin(), chain.end(), [&](const store::Event& event) {
+  const auto found = std::find_if(chain.begin(), chain.end(), [&](const record::Event& event) {
     return to_hex(event.hash).starts_with(head);
   });
   if (found == chain.end()) return "";
@@ -305,7 +306,7 @@ std::string place_on(const std::vector<store::Event>& chain, const std::string& 
 
 /// Accepts a hash on the file's chain, and in a database collected from several stations also one
 /// on the chain of a station's own file.
-std::string check_head(const store::StudyStore& store, const std::string& head) {
+std::string check_head(const record::StudyStore& store, const std::string& head) {
   std::string place = place_on(store.events(0), head, "the file's chain");
   for (int station = 1; place.empty() && station <= store.stations(); ++station) {
     place =
@@ -351,7 +352,7 @@ bool Verification::complete() const noexcept {
                       [](const Check& check) { return check.state == CheckState::not_checked; });
 }
 
-Verification verify_study(const store::StudyStore& store, const design::StudyKey* key,
+Verification verify_study(const record::StudyStore& store, const study::StudyKey* key,
                           const engine::Pack* pack, const std::string& head) {
   Verification verification;
   try {
@@ -362,8 +363,8 @@ Verification verify_study(const store::StudyStore& store, const design::StudyKey
   } catch (const StoreError&) {
     // The first check reports what is wrong with the file's chain.
   }
-  const auto with_key = [&](const char* name, std::string (*check)(const store::StudyStore&,
-                                                                   const design::StudyKey&)) {
+  const auto with_key = [&](const char* name, std::string (*check)(const record::StudyStore&,
+                                                                   const study::StudyKey&)) {
     verification.checks.push_back(key == nullptr ? left(name, "key")
                                                  : done(name, [&] { return check(store, *key); }));
   };

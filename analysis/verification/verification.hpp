@@ -3,8 +3,8 @@
 
 #include "core/public_keys.hpp"
 #include "engine/pack/pack.hpp"
-#include "protocols/design/study_key.hpp"
-#include "protocols/store/study_store.hpp"
+#include "record/study_store.hpp"
+#include "study/study_key.hpp"
 
 #include <optional>
 #include <string>
@@ -26,7 +26,7 @@ struct Verification {
   bool simulated = false;
   std::vector<Check> checks;
   /// The end of the file's chain. A copy kept elsewhere can show that nothing was cut off.
-  std::optional<store::ChainHead> head;
+  std::optional<record::ChainHead> head;
   PublicKey investigator{};  ///< that the first event names; whose signatures count
   /// What is worth knowing and no fault: chain_notes.
   std::vector<std::string> notes{};
@@ -45,7 +45,7 @@ struct Verification {
 /// \param key,pack  null: the checks that need it are not made
 /// \param head  a hash, or its first digits, that was once the end of the file's chain and must
 ///   still be on the chain; empty: none
-[[nodiscard]] Verification verify_study(const store::StudyStore& store, const design::StudyKey* key,
+[[nodiscard]] Verification verify_study(const record::StudyStore& store, const study::StudyKey* key,
                                         const engine::Pack* pack, const std::string& head = {});
 
 /// One JSON object, indented, ending with a line feed.

@@ -1,5 +1,5 @@
-#include "analysis/json_figures.hpp"
-#include "analysis/text_figures.hpp"
+#include "analysis/report/json_figures.hpp"
+#include "analysis/report/text_figures.hpp"
 #include "analysis/verification/verification.hpp"
 
 #include <string>

@@ -1,6 +1,6 @@
 #include "app/reference/pages.hpp"
 
-#include "analysis/text_table.hpp"
+#include "analysis/report/text_table.hpp"
 #include "core/errors.hpp"
 #include "core/nearest_name.hpp"
 #include "core/text.hpp"

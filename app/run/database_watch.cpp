@@ -2,7 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "protocols/store/damage.hpp"
+#include "record/damage.hpp"
 
 #include <algorithm>
 
@@ -29,12 +29,12 @@ fs::path log_of(const fs::path& database) {
 
 }  // namespace
 
-void PatientSink::accept(const store::Event& event,
-                         const std::optional<store::SealedTrace>& trace) {
+void PatientSink::accept(const record::Event& event,
+                         const std::optional<record::SealedTrace>& trace) {
   patiently([&] { inner_->accept(event, trace); });
 }
 
-void PatientSink::accept_together(std::span<const store::RecordedEvent> events) {
+void PatientSink::accept_together(std::span<const record::RecordedEvent> events) {
   patiently([&] { inner_->accept_together(events); });
 }
 
@@ -48,7 +48,7 @@ void PatientSink::patiently(const std::function<void()>& store) {
       const auto took = Clock::now() - began;
       if (took >= kNoticed) waited_ = std::max(waited_.value_or(took), took);
       return;
-    } catch (const store::LockedStore& locked) {
+    } catch (const record::LockedStore& locked) {
       if (!waiting_ || !waiting_(locked.what())) throw;
     }
   }
@@ -74,21 +74,21 @@ std::string DatabaseWatch::trouble() {
   return trouble_;
 }
 
-bool is_on_disk(const fs::path& database, int session, const store::StudyStore& store) {
+bool is_on_disk(const fs::path& database, int session, const record::StudyStore& store) {
   try {
-    const store::StudyStore found =
-        store::StudyStore::open(database, store::StudyStore::Access::read_only);
+    const record::StudyStore found =
+        record::StudyStore::open(database, record::StudyStore::Access::read_only);
     const auto there = found.last_event(session);
     const auto here = store.last_event(session);
     return there && here && there->sequence == here->sequence && there->hash == here->hash;
-  } catch (const store::LockedStore&) {
+  } catch (const record::LockedStore&) {
     return true;  // by a reader, who cannot have changed it
   } catch (const StoreError&) {
     return false;
   }
 }
 
-std::string rescue(const fs::path& database, const store::StudyStore& store) {
+std::string rescue(const fs::path& database, const record::StudyStore& store) {
   for (int i = 1;; ++i) {
     fs::path name = database;
     name.replace_extension();

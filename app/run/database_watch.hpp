@@ -2,8 +2,8 @@
 /// replace it or remove it.
 #pragma once
 
-#include "protocols/store/session_recorder.hpp"
-#include "protocols/store/study_store.hpp"
+#include "record/session_recorder.hpp"
+#include "record/study_store.hpp"
 
 #include <chrono>
 #include <filesystem>
@@ -17,13 +17,13 @@
 namespace touchtrial::app {
 
 /// Passes a session's events on, and waits as long as another program has the database locked.
-class PatientSink final : public store::EventSink {
+class PatientSink final : public record::EventSink {
  public:
   /// Called about every two seconds while an event waits, on the session's thread.
   /// \return whether to go on waiting
   using Waiting = std::function<bool(const std::string& why)>;
 
-  explicit PatientSink(std::unique_ptr<store::EventSink> inner) : inner_(std::move(inner)) {}
+  explicit PatientSink(std::unique_ptr<record::EventSink> inner) : inner_(std::move(inner)) {}
   /// Without it, nothing waits.
   void set_waiting(Waiting waiting) { waiting_ = std::move(waiting); }
   /// How long an event waited at most since the last call; empty: less than anybody notices.
@@ -31,13 +31,13 @@ class PatientSink final : public store::EventSink {
     return std::exchange(waited_, std::nullopt);
   }
 
-  void accept(const store::Event& event, const std::optional<store::SealedTrace>& trace) override;
-  void accept_together(std::span<const store::RecordedEvent> events) override;
+  void accept(const record::Event& event, const std::optional<record::SealedTrace>& trace) override;
+  void accept_together(std::span<const record::RecordedEvent> events) override;
 
  private:
   void patiently(const std::function<void()>& store);
 
-  std::unique_ptr<store::EventSink> inner_;
+  std::unique_ptr<record::EventSink> inner_;
   Waiting waiting_;
   std::optional<std::chrono::steady_clock::duration> waited_;
 };
@@ -70,11 +70,11 @@ class DatabaseWatch {
 /// \param store  that recorded the session
 /// \return whether the path holds the session as it was recorded
 [[nodiscard]] bool is_on_disk(const std::filesystem::path& database, int session,
-                              const store::StudyStore& store);
+                              const record::StudyStore& store);
 
 /// Saves what an open store holds to a free name beside the database.
 /// \return what was done, for a person
 [[nodiscard]] std::string rescue(const std::filesystem::path& database,
-                                 const store::StudyStore& store);
+                                 const record::StudyStore& store);
 
 }  // namespace touchtrial::app

@@ -1,16 +1,16 @@
 #include "app/run/participant_dialogue.hpp"
 
-#include "analysis/study_status.hpp"
-#include "app/console.hpp"
-#include "app/participant/words.hpp"
-#include "app/participant_ids.hpp"
+#include "analysis/outcomes/study_status.hpp"
+#include "app/commands/participant_ids.hpp"
 #include "app/run/session_bounds.hpp"
+#include "app/terminal/console.hpp"
+#include "app/windows/participant/words.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/text.hpp"
 #include "core/utc.hpp"
-#include "protocols/design/languages.hpp"
-#include "protocols/store/personal_data.hpp"
+#include "record/personal_data.hpp"
+#include "study/languages.hpp"
 
 #include <algorithm>
 #include <array>
@@ -31,12 +31,12 @@ constexpr std::array<std::string_view, 2> kHands = {"right", "left"};
 
 }  // namespace
 
-std::string proposed_participant(const std::vector<store::SessionRow>& sessions,
-                                 const design::Station& station) {
+std::string proposed_participant(const std::vector<record::SessionRow>& sessions,
+                                 const study::Station& station) {
   std::vector<std::string> ids;
-  for (const store::SessionRow& row : sessions) ids.push_back(row.participant);
+  for (const record::SessionRow& row : sessions) ids.push_back(row.participant);
   if (!ids.empty()) return next_id(ids).value_or("");
-  return fmt::format("P{:02}", design::next_enrolment_of(station, {}));
+  return fmt::format("P{:02}", study::next_enrolment_of(station, {}));
 }
 
 namespace {
@@ -44,20 +44,20 @@ namespace {
 /// The texts of the dialogue in a study's language.
 class DialogueTexts {
  public:
-  explicit DialogueTexts(const design::SessionPlan& plan)
-      : language_(plan.language), texts_(design::texts_of(plan)) {}
+  explicit DialogueTexts(const study::SessionPlan& plan)
+      : language_(plan.language), texts_(study::texts_of(plan)) {}
 
   [[nodiscard]] std::string say(
       const char* key, const std::vector<std::pair<std::string, std::string>>& values = {}) const {
     return filled(texts_.at("dialogue").at(key), values);
   }
-  [[nodiscard]] design::Translated translated(const std::string& text) const {
+  [[nodiscard]] study::Translated translated(const std::string& text) const {
     return {{language_, text}};
   }
-  [[nodiscard]] design::Question choice(const std::string& id, const std::string& text,
-                                        const std::vector<std::string>& options,
-                                        bool required) const {
-    design::Question question{id, design::QuestionKind::choice, translated(text), {}, required};
+  [[nodiscard]] study::Question choice(const std::string& id, const std::string& text,
+                                       const std::vector<std::string>& options,
+                                       bool required) const {
+    study::Question question{id, study::QuestionKind::choice, translated(text), {}, required};
     for (const std::string& option : options) question.options.push_back(translated(option));
     return question;
   }
@@ -76,7 +76,7 @@ class DialogueTexts {
 
  private:
   std::string language_;
-  design::Texts texts_;
+  study::Texts texts_;
 };
 
 /// The option that was chosen; empty if the question was left out.
@@ -98,9 +98,9 @@ ParticipantAnswers ask_participant(const AskQuestions& ask, const ParticipantQue
       version.empty() ? texts.say("consent") : texts.say("consent_version", {{"consent", version}});
   for (std::string remark = questions.note;;) {
     const std::string id = texts.say("id") + (remark.empty() ? "" : "\n" + remark);
-    const design::Questionnaire first{
+    const study::Questionnaire first{
         "participant",
-        {{"participant", design::QuestionKind::text, texts.translated(id), {}, true},
+        {{"participant", study::QuestionKind::text, texts.translated(id), {}, true},
          texts.choice("consent", consent, {texts.say("yes"), texts.say("no")}, true)}};
     const std::vector<std::string> answers = ask({&first, person.id});
     person.id = answers.at(0);
@@ -109,7 +109,7 @@ ParticipantAnswers ask_participant(const AskQuestions& ask, const ParticipantQue
     if (remark.empty()) break;
   }
   if (!person.has_consented) return person;
-  const design::Questionnaire second{
+  const study::Questionnaire second{
       "person",
       {texts.choice("age", texts.say("age"), texts.ages(), false),
        texts.choice("hand", texts.say("hand"), texts.hands(), false)}};
@@ -133,12 +133,12 @@ std::vector<std::string> answers_in(ParticipantWindow& window, const session::Qu
 
 void record(const ParticipantAnswers& person, const RunOptions& options,
             const std::string& version) {
-  store::PersonalRecord consent;
+  record::PersonalRecord consent;
   consent.participant = person.id;
   consent.consent_version = version.empty() ? "not named" : version;
   consent.consented_utc = utc_text(utc_now());
-  const std::filesystem::path path = store::personal_data_path(options.database);
-  store::PersonalData(path).put(consent);
+  const std::filesystem::path path = record::personal_data_path(options.database);
+  record::PersonalData(path).put(consent);
   print(fmt::format("{}: consent of participant {} to version {} recorded\n", path.string(),
                     person.id, consent.consent_version));
 }
@@ -153,13 +153,13 @@ std::string remark_on(const ParticipantAnswers& person) {
 
 /// Whom a database knows.
 struct KnownPeople {
-  std::vector<store::SessionRow> sessions{};
+  std::vector<record::SessionRow> sessions{};
   std::vector<analysis::VisitToCome> visits{};
   std::vector<std::string> ids{};
 
   explicit KnownPeople(const std::filesystem::path& database) : ids(known_ids(database)) {
     if (!is_there(database)) return;
-    const auto store = store::StudyStore::open(database, store::StudyStore::Access::read_only);
+    const auto store = record::StudyStore::open(database, record::StudyStore::Access::read_only);
     sessions = store.sessions();
     visits = analysis::visits_to_come(store);
   }
@@ -170,7 +170,7 @@ struct KnownPeople {
   /// Of the participant's last session; 0 if there is none.
   [[nodiscard]] int last_visit(const std::string& id) const {
     int last = 0;
-    for (const store::SessionRow& row : sessions) {
+    for (const record::SessionRow& row : sessions) {
       if (row.participant == id) last = std::max(last, row.visit);
     }
     return last;
@@ -186,7 +186,7 @@ int visit_of(const RunOptions& options, const KnownPeople& people, const std::st
 }
 
 /// What ask_participant asks, and why an id may not be the one that is meant.
-ParticipantQuestions questions_for(const RunOptions& options, const design::StationKey& key,
+ParticipantQuestions questions_for(const RunOptions& options, const study::StationKey& key,
                                    const KnownPeople& people) {
   const DialogueTexts texts(key.study.session);
   const auto comes_for = [texts, of = std::to_string(key.study.visits.count)](
@@ -206,7 +206,7 @@ ParticipantQuestions questions_for(const RunOptions& options, const design::Stat
   }
   questions.why_not = [&options, &people, texts, comes_for,
                        said](const std::string& id) mutable -> std::string {
-    if (!store::is_participant_id(id)) return texts.say("id_rule");
+    if (!record::is_participant_id(id)) return texts.say("id_rule");
     const bool is_said = std::exchange(said, id) == id;
     if (const analysis::VisitToCome* const next = people.next_visit(id)) {
       if (options.visit > 1) return "";
@@ -229,7 +229,7 @@ ParticipantQuestions questions_for(const RunOptions& options, const design::Stat
 
 }  // namespace
 
-RunOptions with_participant(const RunOptions& options, const design::StationKey& key) {
+RunOptions with_participant(const RunOptions& options, const study::StationKey& key) {
   const KnownPeople people(options.database);
   const ParticipantQuestions questions = questions_for(options, key, people);
   const std::string& version = key.study.session.consent_version;

@@ -2,11 +2,11 @@
 /// participant.
 #pragma once
 
-#include "app/participant/participant_window.hpp"
 #include "app/run/run_session.hpp"
-#include "protocols/design/session_plan.hpp"
-#include "protocols/design/study_key.hpp"
-#include "protocols/store/study_store.hpp"
+#include "app/windows/participant/participant_window.hpp"
+#include "record/study_store.hpp"
+#include "study/session_plan.hpp"
+#include "study/study_key.hpp"
 
 #include <functional>
 #include <string>
@@ -18,13 +18,13 @@ namespace touchtrial::app {
 /// that stations have different ids.
 /// \param sessions  of the station so far, by number
 /// \return for instance "P07"; empty if the last id does not end in a number
-[[nodiscard]] std::string proposed_participant(const std::vector<store::SessionRow>& sessions,
-                                               const design::Station& station);
+[[nodiscard]] std::string proposed_participant(const std::vector<record::SessionRow>& sessions,
+                                               const study::Station& station);
 
 struct ParticipantQuestions {
-  design::SessionPlan session{};  ///< the study's: language, texts and version of the form
-  std::string proposed{};         ///< id; may be empty
-  std::string note{};             ///< on the proposed id, as a sentence; may be empty
+  study::SessionPlan session{};  ///< the study's: language, texts and version of the form
+  std::string proposed{};        ///< id; may be empty
+  std::string note{};            ///< on the proposed id, as a sentence; may be empty
   /// Why a participant of this id cannot come, as a sentence; empty: they can.
   std::function<std::string(const std::string& id)> why_not;
 };
@@ -50,6 +50,6 @@ using AskQuestions = std::function<std::vector<std::string>(const session::Quest
 /// \throws UsageError if the window is gone or a signal ends the program before there are answers,
 ///   or if the study names a consent form and the participant has not signed it
 /// \throws DeviceError as ParticipantWindow
-[[nodiscard]] RunOptions with_participant(const RunOptions& options, const design::StationKey& key);
+[[nodiscard]] RunOptions with_participant(const RunOptions& options, const study::StationKey& key);
 
 }  // namespace touchtrial::app

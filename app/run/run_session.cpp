@@ -1,11 +1,8 @@
 #include "app/run/run_session.hpp"
 
-#include "app/device_words.hpp"
-#include "app/experimenter/experimenter_desk.hpp"
-#include "app/experimenter/terminal_face.hpp"
-#include "app/participant/page_layout.hpp"
-#include "app/participant/participant_window.hpp"
-#include "app/participant_ids.hpp"
+#include "app/commands/device_words.hpp"
+#include "app/commands/participant_ids.hpp"
+#include "app/commands/study_inputs.hpp"
 #include "app/run/database_watch.hpp"
 #include "app/run/participant_dialogue.hpp"
 #include "app/run/run_study.hpp"
@@ -13,16 +10,16 @@
 #include "app/run/session_device.hpp"
 #include "app/run/session_instruments.hpp"
 #include "app/sound/session_sound.hpp"
-#include "app/study_inputs.hpp"
 #include "app/texts/study_texts.hpp"
+#include "app/windows/experimenter/experimenter_desk.hpp"
+#include "app/windows/experimenter/terminal_face.hpp"
+#include "app/windows/participant/page_layout.hpp"
+#include "app/windows/participant/participant_window.hpp"
 #include "core/errors.hpp"
 #include "core/strict_json.hpp"
-#include "device/simulated/simulated_hand.hpp"
-#include "device/workspace_fit.hpp"
+#include "device/drivers/simulated/simulated_hand.hpp"
+#include "device/model/workspace_fit.hpp"
 #include "engine/image_file.hpp"
-#include "protocols/design/languages.hpp"
-#include "protocols/design/practice.hpp"
-#include "protocols/design/protocol.hpp"
 #include "protocols/session/device_station.hpp"
 #include "protocols/session/real_time_explorer.hpp"
 #include "protocols/session/session_clock.hpp"
@@ -32,6 +29,9 @@
 #include "protocols/simulation/population.hpp"
 #include "protocols/simulation/subject_model.hpp"
 #include "protocols/simulation/trial_course.hpp"
+#include "study/languages.hpp"
+#include "study/practice.hpp"
+#include "study/protocol.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -53,16 +53,16 @@ namespace {
 
 /// The first image of every class by its label, including the classes of practice, and the pictures
 /// of the instructions.
-std::map<std::string, GreyImage> answer_pictures(const design::Study& study) {
+std::map<std::string, GreyImage> answer_pictures(const study::Study& study) {
   std::map<std::string, GreyImage> pictures;
-  const auto add = [&](const std::vector<design::StudyClass>& classes) {
-    for (const design::StudyClass& shown : classes) {
+  const auto add = [&](const std::vector<study::StudyClass>& classes) {
+    for (const study::StudyClass& shown : classes) {
       pictures.emplace(shown.label, engine::read_grey_image(study.folder / shown.images.front()));
     }
   };
   add(study.classes);
   add(study.practice.classes);
-  for (const std::string& file : design::picture_files(study.session)) {
+  for (const std::string& file : study::picture_files(study.session)) {
     pictures.emplace(page_picture(file), engine::read_grey_image(study.folder / file));
   }
   return pictures;
@@ -70,7 +70,7 @@ std::map<std::string, GreyImage> answer_pictures(const design::Study& study) {
 
 }  // namespace
 
-ParticipantWindowOptions window_options(const RunOptions& options, const design::Study& study) {
+ParticipantWindowOptions window_options(const RunOptions& options, const study::Study& study) {
   ParticipantWindowOptions window;
   window.monitor = options.monitor;
   window.size_px = options.window_px;
@@ -157,7 +157,7 @@ class ParticipantPractice {
   /// \throws StudyError as PracticeSet
   ParticipantPractice(const RunStudy& study, const PlaneGeometry& plane) : study_(study.key.study) {
     if (const auto intervals = study_.protocol->interval_plan(study_)) {
-      design::PracticePlan plan;
+      study::PracticePlan plan;
       plan.criterion = intervals->practice_criterion;
       plan.rounds = intervals->practice_rounds;
       const auto trials = study_.protocol->practice_trials(study_, {}, 1);
@@ -167,27 +167,27 @@ class ParticipantPractice {
       return;
     }
     if (study_.trials.practice == 0 || study_.practice.classes.empty()) return;
-    set_.emplace(study_, design::weakest_gains(study.pack.manifest()), plane);
+    set_.emplace(study_, study::weakest_gains(study.pack.manifest()), plane);
     textures_ = session::PracticeTextures{set_->plane(), study_.trials.practice, study_.practice,
                                           [this](int number) { return round(number); }};
   }
 
   /// \param draw  the participant's
   /// \return null if the study has no practice; valid as long as this object
-  [[nodiscard]] const session::PracticeTextures* textures_for(const design::ScheduleDraw& draw) {
+  [[nodiscard]] const session::PracticeTextures* textures_for(const study::ScheduleDraw& draw) {
     draw_ = draw;
     return textures_ ? &*textures_ : nullptr;
   }
 
  private:
   [[nodiscard]] session::PracticeRound round(int number) const {
-    const std::vector<int> layout = design::practice_layout(study_, draw_, number);
+    const std::vector<int> layout = study::practice_layout(study_, draw_, number);
     session::PracticeRound round;
     for (const int class_index : layout) {
       round.labels.push_back(study_.practice.classes[static_cast<std::size_t>(class_index)].label);
       round.models.push_back(&set_->model(class_index));
     }
-    for (const int class_index : design::practice_round(study_, draw_, number)) {
+    for (const int class_index : study::practice_round(study_, draw_, number)) {
       const auto place = std::ranges::find(layout, class_index);
       round.order.push_back(static_cast<int>(place - layout.begin()));
     }
@@ -196,22 +196,22 @@ class ParticipantPractice {
 
   [[nodiscard]] session::PracticeRound interval_round(int number) const {
     session::PracticeRound round;
-    for (const design::Choice& choice : study_.protocol->choices(study_)) {
+    for (const study::Choice& choice : study_.protocol->choices(study_)) {
       round.labels.push_back(choice.label);
     }
     round.trials = study_.protocol->practice_trials(study_, draw_, number);
     return round;
   }
 
-  const design::Study& study_;
-  design::ScheduleDraw draw_;
-  std::optional<design::PracticeSet> set_;
+  const study::Study& study_;
+  study::ScheduleDraw draw_;
+  std::optional<study::PracticeSet> set_;
   std::optional<session::PracticeTextures> textures_;
 };
 
 /// A visual device makes no sound that would need masking.
-design::MaskingPlan masking_of(const design::Study& study, const device::DeviceInfo& device) {
-  design::MaskingPlan plan = study.session.masking;
+study::MaskingPlan masking_of(const study::Study& study, const device::DeviceInfo& device) {
+  study::MaskingPlan plan = study.session.masking;
   plan.wanted = plan.wanted && !device.visual;
   return plan;
 }
@@ -244,12 +244,12 @@ std::vector<session::ExperimenterRequest> known_deviations(const RunOptions& opt
 
 /// What is special about the participant's screens, for the session's record.
 std::vector<session::ExperimenterRequest> notes_on_screens(const RunOptions& options,
-                                                           const design::Study& study) {
+                                                           const study::Study& study) {
   std::vector<session::ExperimenterRequest> notes;
   const auto note = [&notes](const std::string& text) {
     notes.push_back({session::ExperimenterRequest::Kind::note, text, ""});
   };
-  if (const std::string draft = design::draft_notice(study.session.language); !draft.empty()) {
+  if (const std::string draft = study::draft_notice(study.session.language); !draft.empty()) {
     spdlog::warn("{}", draft);
     note(draft);
   }
@@ -259,7 +259,7 @@ std::vector<session::ExperimenterRequest> notes_on_screens(const RunOptions& opt
 }
 
 /// A visual device needs no warm-up, no curtain and no headphones.
-session::SessionTexts texts_for(const design::Study& study, const device::DeviceInfo& device) {
+session::SessionTexts texts_for(const study::Study& study, const device::DeviceInfo& device) {
   session::SessionTexts texts = session_texts(study);
   if (device.visual) texts.day_sheet.clear();
   return texts;
@@ -274,9 +274,9 @@ void require_blind(const RunOptions& options, const device::DeviceInfo& device) 
 
 /// Without a known size, nobody can tell whether pictures have their true size. Trials with several
 /// planes show none.
-void warn_of_unknown_size(const RunOptions& options, const design::Study& study,
+void warn_of_unknown_size(const RunOptions& options, const study::Study& study,
                           const ParticipantWindow& window) {
-  if (study.session.sight == design::Sight::blindfold || window.screen().is_known) return;
+  if (study.session.sight == study::Sight::blindfold || window.screen().is_known) return;
   if (study.protocol->interval_plan(study)) return;
   spdlog::warn(
       "window: the size of this screen is not known, and so that of the pictures; measure it once "
@@ -291,7 +291,7 @@ void warn_of_stiffness(const engine::RenderingOptions& rendering,
   if (!warning.empty()) spdlog::warn("{}", warning);
 }
 
-store::ScreenRecord record_of(const ScreenScale& screen) {
+record::ScreenRecord record_of(const ScreenScale& screen) {
   return {screen.mm_per_unit, screen.is_measured ? "measured"
                               : screen.is_known  ? "stated"
                                                  : "assumed"};
@@ -356,7 +356,7 @@ class PersonsSession {
   int run_before(ParticipantWindow& window) {
     session::RealTimeExplorer explorer;
     const EnteredSession entered =
-        enter_session(options_, study_, database_, [&](store::SessionOpening& opening) {
+        enter_session(options_, study_, database_, [&](record::SessionOpening& opening) {
           session::describe_station(opening, device_.info(), explorer.scheduling(),
                                     device::kServoRateHz, device_.certificate());
           opening.station->screen = screen_;
@@ -417,7 +417,7 @@ class PersonsSession {
   SessionDevice device_;
   std::unique_ptr<session::Instruments> instruments_;
   ParticipantPractice practice_;
-  store::ScreenRecord screen_;
+  record::ScreenRecord screen_;
   std::optional<SessionSound> sound_;  ///< nothing with --no-sound: no sound card is opened
 };
 
@@ -442,7 +442,7 @@ std::unique_ptr<session::SessionClock> clock_for(const session::Explorer& explor
 
 /// Fills in what the session's first event says about the simulated device.
 void describe_simulated(const session::Explorer& explorer, const device::DeviceModel& held,
-                        store::SessionOpening& opening) {
+                        record::SessionOpening& opening) {
   if (const auto* const real_time = dynamic_cast<const session::RealTimeExplorer*>(&explorer)) {
     const device::DeviceInfo device{"simulated", "", device::HandOptions{}.max_force_n, true};
     session::describe_station(opening, device, real_time->scheduling(), device::kServoRateHz, "");
@@ -470,7 +470,7 @@ class SimulatedSession {
   int run() {
     const std::unique_ptr<session::Explorer> explorer = explorer_for(options_);
     const EnteredSession entered =
-        enter_session(options_, study_, database_, [&](store::SessionOpening& opening) {
+        enter_session(options_, study_, database_, [&](record::SessionOpening& opening) {
           describe_simulated(*explorer, subject_.device, opening);
         });
     const std::unique_ptr<session::SessionClock> clock = clock_for(*explorer, entered.clock);
@@ -478,7 +478,7 @@ class SimulatedSession {
         population_->participant(entered.enrolment);
     mind->come_to(options_.visit,
                   simulation::course_of(study_.key.study,
-                                        design::make_schedule(study_.key.study, entered.draw)));
+                                        study::make_schedule(study_.key.study, entered.draw)));
     session::AlwaysReady devices;
     DatabaseWatch watch(options_.database);
     RunExperimenter experimenter(

@@ -1,9 +1,9 @@
 /// \file One session of a study, from the options of `touchtrial run` to its end.
 #pragma once
 
-#include "app/heads.hpp"
-#include "app/participant/participant_window.hpp"
-#include "protocols/design/study.hpp"
+#include "app/commands/heads.hpp"
+#include "app/windows/participant/participant_window.hpp"
+#include "study/study.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -58,7 +58,7 @@ struct RunOptions {
 /// The participant's window of a study, without a device and sounds.
 /// \throws as read_grey_image, for the study's pictures
 [[nodiscard]] ParticipantWindowOptions window_options(const RunOptions& options,
-                                                      const design::Study& study);
+                                                      const study::Study& study);
 
 /// Runs the session of a person with a device before a window, or of a simulated participant
 /// without one. A window belongs to the calling thread, which must be the program's main thread;

@@ -1,17 +1,17 @@
 #include "app/run/run_study.hpp"
 
-#include "app/console.hpp"
+#include "app/commands/study_inputs.hpp"
 #include "app/run/session_bounds.hpp"
-#include "app/study_inputs.hpp"
+#include "app/terminal/console.hpp"
 #include "core/draft.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/utc.hpp"
-#include "protocols/design/key_protection.hpp"
-#include "protocols/design/pack_lock.hpp"
-#include "protocols/design/signed_pack.hpp"
 #include "protocols/session/commitment.hpp"
-#include "protocols/store/head_file.hpp"
+#include "record/head_file.hpp"
+#include "study/key_protection.hpp"
+#include "study/pack_lock.hpp"
+#include "study/signed_pack.hpp"
 
 #include <string>
 #include <utility>
@@ -23,33 +23,33 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::filesystem::path station_file_of(const RunOptions& options, const design::PackPlace& place) {
+std::filesystem::path station_file_of(const RunOptions& options, const study::PackPlace& place) {
   return options.station_file.empty() ? place.station(options.station) : options.station_file;
 }
 
 /// A protected file of another station than the database's is refused before its passphrase is
 /// asked for.
-design::StationKey station_key_at(const RunOptions& options, const fs::path& file) {
-  if (!design::is_protected(file) || !is_there(options.database)) {
-    return design::load_station_key(file);
+study::StationKey station_key_at(const RunOptions& options, const fs::path& file) {
+  if (!study::is_protected(file) || !is_there(options.database)) {
+    return study::load_station_key(file);
   }
-  const store::StudyStore store =
-      store::StudyStore::open(options.database, store::StudyStore::Access::read_only);
+  const record::StudyStore store =
+      record::StudyStore::open(options.database, record::StudyStore::Access::read_only);
   return station_key_for(store.commitment(), options.database, file);
 }
 
 /// The investigator's key opens everything that a station should not know.
-fs::path key_in_reach(const RunOptions& options, const design::PackPlace& place) {
+fs::path key_in_reach(const RunOptions& options, const study::PackPlace& place) {
   return options.is_simulated() || !is_there(place.key) ? fs::path() : place.key;
 }
 
 /// Maps the pack while nobody prepares it, so that a session has one whole pack.
 /// \param key  moved from
-RunStudy checked_study(design::StationKey&& key, const fs::path& pack_folder,
-                       design::PackLock::Wait wait) {
-  const design::PackLock lock(pack_folder, design::PackLock::Use::read, wait);
+RunStudy checked_study(study::StationKey&& key, const fs::path& pack_folder,
+                       study::PackLock::Wait wait) {
+  const study::PackLock lock(pack_folder, study::PackLock::Use::read, wait);
   engine::Pack pack(pack_folder);
-  design::require_whole(pack, key);
+  study::require_whole(pack, key);
   session::StimulusSource source(pack, key);
   return {std::move(key), std::move(pack), std::move(source)};
 }
@@ -66,7 +66,7 @@ void require_free_name(const RunOptions& options) {
   refuse(options, "there is no folder for it; make it, or give another --db");
 }
 
-void require_same_study(const store::StudyCommitment& stored, const std::string& study_id,
+void require_same_study(const record::StudyCommitment& stored, const std::string& study_id,
                         const Digest& seal, const RunOptions& options) {
   if (stored.study_id == study_id && stored.seal == seal) return;
   refuse(options,
@@ -75,34 +75,34 @@ void require_same_study(const store::StudyCommitment& stored, const std::string&
 }
 
 /// Refuses what can be refused before a pack is made.
-void check_before_pack(const RunOptions& options, const design::Study& study,
-                       const design::StudyKey& key) {
+void check_before_pack(const RunOptions& options, const study::Study& study,
+                       const study::StudyKey& key) {
   static_cast<void>(subject_for(*options.subject, study, options.on));
   require_planned_visit(options, study);
   if (options.heads.folder) {
-    static_cast<void>(store::HeadFiles(options.database, {}, options.heads.folder));
+    static_cast<void>(record::HeadFiles(options.database, {}, options.heads.folder));
   }
   refuse_other_key(key_path_for(options.database, {}), key);
   if (!is_there(options.database)) {
     require_free_name(options);
     return;
   }
-  const store::StudyStore store =
-      store::StudyStore::open(options.database, store::StudyStore::Access::read_only);
+  const record::StudyStore store =
+      record::StudyStore::open(options.database, record::StudyStore::Access::read_only);
   require_same_study(store.commitment(), key.study_id, key.seal, options);
 }
 
-RunStudy simulated_study(const RunOptions& options, const design::Study& study) {
-  design::StudyKey key = simulated_key(study, options.study);
+RunStudy simulated_study(const RunOptions& options, const study::Study& study) {
+  study::StudyKey key = simulated_key(study, options.study);
   check_before_pack(options, study, key);
   prepare_simulated_pack(key);
-  RunStudy made = checked_study(design::station_key(key, design::kOnlyStation), key.pack_folder,
-                                design::PackLock::Wait::yes);
+  RunStudy made = checked_study(study::station_key(key, study::kOnlyStation), key.pack_folder,
+                                study::PackLock::Wait::yes);
   made.own_key = std::move(key);
   return made;
 }
 
-void require_same(const store::StudyCommitment& stored, const store::StudyCommitment& ours,
+void require_same(const record::StudyCommitment& stored, const record::StudyCommitment& ours,
                   const RunOptions& options) {
   require_same_study(stored, ours.study_id, ours.seal, options);
   if (stored.investigator != ours.investigator) {
@@ -131,8 +131,8 @@ void require_same(const store::StudyCommitment& stored, const store::StudyCommit
 }  // namespace
 
 RunStudy run_study_for(const RunOptions& options) {
-  const design::Study study = design::load_study(options.study);
-  const design::PackPlace place = pack_place_for(options.study, options.pack);
+  const study::Study study = study::load_study(options.study);
+  const study::PackPlace place = pack_place_for(options.study, options.pack);
   const fs::path file = station_file_of(options, place);
   if (!is_there(file)) {
     if (options.is_simulated() && options.pack.empty() && !is_there(place.pack)) {
@@ -149,9 +149,9 @@ RunStudy run_study_for(const RunOptions& options) {
         "file here from the investigator's machine, where `touchtrial prepare` writes "
         "it again");
   }
-  design::StationKey key = station_key_at(options, file);
-  if (!design::are_same(key.study, study)) {
-    throw StudyError(design::misfit_of(study, key, file, "--station-file"));
+  study::StationKey key = station_key_at(options, file);
+  if (!study::are_same(key.study, study)) {
+    throw StudyError(study::misfit_of(study, key, file, "--station-file"));
   }
   key.study.folder = study.folder;
   if (key.simulated && !options.is_simulated()) {
@@ -161,7 +161,7 @@ RunStudy run_study_for(const RunOptions& options) {
   }
   const fs::path pack =
       options.pack.empty() && is_there(key.pack_folder) ? key.pack_folder : place.pack;
-  RunStudy checked = checked_study(std::move(key), pack, design::PackLock::Wait::no);
+  RunStudy checked = checked_study(std::move(key), pack, study::PackLock::Wait::no);
   checked.key_in_reach = key_in_reach(options, place);
   return checked;
 }
@@ -170,7 +170,7 @@ namespace {
 
 /// Which of two clocks is wrong, only people can tell. In virtual time sessions are longer than
 /// they took.
-void warn_of_clock(const RunOptions& options, const store::StudyStore& store) {
+void warn_of_clock(const RunOptions& options, const record::StudyStore& store) {
   if (options.is_simulated() && !options.real_time) return;
   const auto last = store.last_event(0);
   if (!last || utc_now() >= last->at) return;
@@ -181,9 +181,9 @@ void warn_of_clock(const RunOptions& options, const store::StudyStore& store) {
 }
 
 /// Refuses, before there is a database, what would refuse its head files.
-void require_head_places(const RunOptions& options, const store::StudyCommitment& commitment) {
-  const store::HeadFiles heads(options.database, store::head_signers(commitment),
-                               options.heads.folder);
+void require_head_places(const RunOptions& options, const record::StudyCommitment& commitment) {
+  const record::HeadFiles heads(options.database, record::head_signers(commitment),
+                                options.heads.folder);
   for (const fs::path& head : heads.paths()) {
     refuse_link(head);
     const Draft proof(head, Draft::Kind::file);
@@ -205,7 +205,7 @@ RunDatabase::RunDatabase(const RunOptions& options, const RunStudy& study)
 }
 
 void RunDatabase::open() {
-  store_ = store::StudyStore::open(options_.database, store::StudyStore::Access::read_write);
+  store_ = record::StudyStore::open(options_.database, record::StudyStore::Access::read_write);
   require_same(store_->commitment(), ours_, options_);
   if (store_->stations() > 0) {
     refuse(options_,
@@ -222,7 +222,7 @@ void RunDatabase::open() {
   }
 }
 
-store::StudyStore& RunDatabase::made() {
+record::StudyStore& RunDatabase::made() {
   if (store_) return *store_;
   if (is_there(options_.database)) {
     open();  // another program has made it meanwhile
@@ -232,9 +232,9 @@ store::StudyStore& RunDatabase::made() {
   lock_.emplace(options_.database, options_.participant);
   // Before there is a database, because a database without its key is useless.
   const fs::path key = key_path_for(options_.database, {});
-  if (study_.own_key && !is_there(key)) design::save_study_key(key, *study_.own_key);
+  if (study_.own_key && !is_there(key)) study::save_study_key(key, *study_.own_key);
   const Signer signer = study_.key.signer();
-  store_ = store::StudyStore::create(options_.database, ours_, utc_now(), signer);
+  store_ = record::StudyStore::create(options_.database, ours_, utc_now(), signer);
   keep_heads(*store_, options_.database, signer, options_.heads, HeadUse::required);
   return *store_;
 }

@@ -4,10 +4,10 @@
 
 #include "app/run/run_session.hpp"
 #include "engine/pack/pack.hpp"
-#include "protocols/design/study_key.hpp"
 #include "protocols/session/stimulus_source.hpp"
-#include "protocols/store/session_lock.hpp"
-#include "protocols/store/study_store.hpp"
+#include "record/session_lock.hpp"
+#include "record/study_store.hpp"
+#include "study/study_key.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -15,13 +15,13 @@
 namespace touchtrial::app {
 
 struct RunStudy {
-  design::StationKey key;
+  study::StationKey key;
   engine::Pack pack;
   session::StimulusSource source;  ///< of the pack
   /// The investigator's key, if it lies beside the pack; else empty.
   std::filesystem::path key_in_reach{};
   /// Of a simulated study that was not prepared: its key, for the database that is made.
-  std::optional<design::StudyKey> own_key{};
+  std::optional<study::StudyKey> own_key{};
 };
 
 /// Loads the pack and this station's file; never the investigator's key. For a simulated
@@ -43,21 +43,21 @@ class RunDatabase {
   RunDatabase(const RunOptions& options, const RunStudy& study);
 
   /// \return null while there is no database
-  [[nodiscard]] const store::StudyStore* present() const noexcept {
+  [[nodiscard]] const record::StudyStore* present() const noexcept {
     return store_ ? &*store_ : nullptr;
   }
   /// Makes the database with the study's commitment if there is none.
   /// \throws StoreError if it cannot be made
-  [[nodiscard]] store::StudyStore& made();
+  [[nodiscard]] record::StudyStore& made();
 
  private:
   void open();
 
   const RunOptions& options_;
   const RunStudy& study_;
-  store::StudyCommitment ours_;
-  std::optional<store::SessionLock> lock_;
-  std::optional<store::StudyStore> store_;
+  record::StudyCommitment ours_;
+  std::optional<record::SessionLock> lock_;
+  std::optional<record::StudyStore> store_;
 };
 
 }  // namespace touchtrial::app

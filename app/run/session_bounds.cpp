@@ -1,6 +1,6 @@
 #include "app/run/session_bounds.hpp"
 
-#include "app/console.hpp"
+#include "app/terminal/console.hpp"
 #include "core/cipher.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
@@ -8,8 +8,8 @@
 #include "core/utc.hpp"
 #include "core/version.hpp"
 #include "device/platform/stop_signals.hpp"
-#include "protocols/design/station.hpp"
-#include "protocols/store/payload_json.hpp"
+#include "record/payload_json.hpp"
+#include "study/station.hpp"
 
 #include <algorithm>
 #include <array>
@@ -29,27 +29,27 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-int answered_trials(const store::StudyStore& store, int session) {
-  return static_cast<int>(std::ranges::count_if(store.trials(), [&](const store::TrialRow& trial) {
-    return trial.session == session && trial.state == store::TrialState::answered;
+int answered_trials(const record::StudyStore& store, int session) {
+  return static_cast<int>(std::ranges::count_if(store.trials(), [&](const record::TrialRow& trial) {
+    return trial.session == session && trial.state == record::TrialState::answered;
   }));
 }
 
 /// As verification and outcomes draw a session.
-design::Draws draws_of(bool pilot, bool simulated) {
-  return pilot || simulated ? design::Draws::rehearsal : design::Draws::people;
+study::Draws draws_of(bool pilot, bool simulated) {
+  return pilot || simulated ? study::Draws::rehearsal : study::Draws::people;
 }
 
 /// Includes numbers that are reserved for a replacement: their first session is still stored.
-std::set<int> taken_numbers(const store::StudyStore& store) {
+std::set<int> taken_numbers(const record::StudyStore& store) {
   std::set<int> taken;
-  for (const store::SessionRow& row : store.sessions()) taken.insert(row.enrolment);
+  for (const record::SessionRow& row : store.sessions()) taken.insert(row.enrolment);
   return taken;
 }
 
 /// A database with another station's numbers belongs to that station, or the station's file is
 /// wrong.
-void require_own_file(const RunOptions& options, const design::Station& station,
+void require_own_file(const RunOptions& options, const study::Station& station,
                       const std::set<int>& taken) {
   for (const int number : taken) {
     if (station.place_of(number)) continue;
@@ -64,60 +64,60 @@ void require_own_file(const RunOptions& options, const design::Station& station,
 /// the number of the person whom the participant replaces, or else the station's next number.
 /// \param store  null: there is none yet
 /// \throws as next_enrolment_of
-int enrolment_of(const RunOptions& options, const design::Station& station,
-                 const store::StudyStore* store) {
+int enrolment_of(const RunOptions& options, const study::Station& station,
+                 const record::StudyStore* store) {
   if (options.enrolment > 0) return options.enrolment;
-  if (store == nullptr) return design::next_enrolment_of(station, {});
+  if (store == nullptr) return study::next_enrolment_of(station, {});
   const int free_or_inherited = store->enrolment_for(options.participant);
   const std::set<int> taken = taken_numbers(*store);
   require_own_file(options, station, taken);
   if (taken.contains(free_or_inherited)) return free_or_inherited;
-  return design::next_enrolment_of(station, taken);
+  return study::next_enrolment_of(station, taken);
 }
 
 /// How blocks of this participant's session are restarted.
-session::BlockDrawing block_restart_of(const design::StationKey& key,
-                                       const design::ScheduleDraw& draw) {
+session::BlockDrawing block_restart_of(const study::StationKey& key,
+                                       const study::ScheduleDraw& draw) {
   return {[&key, draw](int block, int restarts_before, int first_trial) {
-            return design::restarted_block(key.study, draw, block, restarts_before, first_trial);
+            return study::restarted_block(key.study, draw, block, restarts_before, first_trial);
           },
-          [&key](const std::vector<design::Presentation>& presentations) {
+          [&key](const std::vector<study::Presentation>& presentations) {
             return block_to_json(presentations, key);
           }};
 }
 
 /// The participant's group, if the study's groups are open; else empty.
-std::string open_group(const design::StationKey& key, int enrolment, design::Draws draws) {
-  const design::GroupPlan& groups = key.study.groups;
+std::string open_group(const study::StationKey& key, int enrolment, study::Draws draws) {
+  const study::GroupPlan& groups = key.study.groups;
   if (!groups.open) return "";
-  const auto group = design::group_for(key.study, key.station, enrolment, draws);
+  const auto group = study::group_for(key.study, key.station, enrolment, draws);
   return group ? groups.labels[static_cast<std::size_t>(*group)] : "";
 }
 
 EnteredSession new_session(const RunOptions& options, const RunStudy& study, RunDatabase& database,
                            int enrolment, const DescribeOpening& describe) {
-  if (!store::is_participant_id(options.participant)) {
+  if (!record::is_participant_id(options.participant)) {
     throw UsageError("run: " + in_quotes(options.participant) + " is no participant id; " +
-                     std::string(store::kParticipantIdRule));
+                     std::string(record::kParticipantIdRule));
   }
   EnteredSession entered;
   entered.enrolment = enrolment;
-  store::SessionOpening opening;
+  record::SessionOpening opening;
   describe(opening);
-  const design::Draws draws = draws_of(options.pilot, opening.simulated);
+  const study::Draws draws = draws_of(options.pilot, opening.simulated);
   entered.draw = study.key.draw_of(enrolment, draws, options.visit);
-  const design::Schedule schedule = design::make_schedule(study.key.study, entered.draw);
-  store::StudyStore& store = database.made();
+  const study::Schedule schedule = study::make_schedule(study.key.study, entered.draw);
+  record::StudyStore& store = database.made();
   entered.number = store.next_session();
   SystemEntropy entropy;
   const SecretKey key = entropy.secret("participant key");
   entered.sink = std::make_unique<PatientSink>(store.begin_session(
-      entered.number, store::wrap_participant_key(study.key.investigator_box, entered.number, key),
-      {}, store::keep_participant_key(study.key.station.secret, entered.number, key)));
+      entered.number, record::wrap_participant_key(study.key.investigator_box, entered.number, key),
+      {}, record::keep_participant_key(study.key.station.secret, entered.number, key)));
   entered.session = std::make_unique<session::Session>(
-      schedule, study.key.study.trials, store::SessionRecorder(entered.number, key, *entered.sink),
+      schedule, study.key.study.trials, record::SessionRecorder(entered.number, key, *entered.sink),
       block_restart_of(study.key, entered.draw),
-      design::adaptive_order(study.key.study, entered.draw));
+      study::adaptive_order(study.key.study, entered.draw));
   opening.participant = options.participant;
   opening.enrolment = enrolment;
   opening.visit = options.visit;
@@ -126,7 +126,7 @@ EnteredSession new_session(const RunOptions& options, const RunStudy& study, Run
   opening.seal = study.key.seal;
   opening.pilot = options.pilot;
   if (!opening.simulated) opening.opened_utc = utc_text(utc_now());
-  entered.session->open({}, opening, design::schedule_to_json(schedule, study.key));
+  entered.session->open({}, opening, study::schedule_to_json(schedule, study.key));
   if (!opening.group.empty()) {
     print("participant " + options.participant + " is in group " + opening.group + "\n");
   }
@@ -134,10 +134,10 @@ EnteredSession new_session(const RunOptions& options, const RunStudy& study, Run
 }
 
 /// When a session was opened, by the clock of the file's chain.
-nanoseconds opened_at(const store::StudyStore& store, int session) {
+nanoseconds opened_at(const record::StudyStore& store, int session) {
   nanoseconds at{};
-  store.for_each(store::EventKind::session_opened, [&](const store::Event& event) {
-    if (store::session_opened_from_json(event.body).session == session) at = event.at;
+  store.for_each(record::EventKind::session_opened, [&](const record::Event& event) {
+    if (record::session_opened_from_json(event.body).session == session) at = event.at;
   });
   return at;
 }
@@ -150,7 +150,7 @@ std::string visit_words(const RunOptions& options, const RunStudy& study) {
 /// Opens the session of the visit after a participant's last one.
 /// \throws StoreError if it may not follow yet
 EnteredSession next_visit(const RunOptions& options, const RunStudy& study, RunDatabase& database,
-                          const store::SessionRow& last, const DescribeOpening& describe) {
+                          const record::SessionRow& last, const DescribeOpening& describe) {
   const auto refuse = [&](const std::string& why) {
     throw StoreError(visit_words(options, study) + ": " + why);
   };
@@ -158,18 +158,18 @@ EnteredSession next_visit(const RunOptions& options, const RunStudy& study, RunD
     refuse(fmt::format("cannot follow session {}, whose participant {}", last.session,
                        last.withdrawn ? "has withdrawn" : "was excluded"));
   }
-  if (last.state != store::SessionState::completed) {
+  if (last.state != record::SessionState::completed) {
     refuse(fmt::format(
         "cannot follow session {}, which is {}; complete visit {} first, with "
         "--visit {} and --on-existing {}",
-        last.session, last.state == store::SessionState::open ? "still open" : "stopped",
-        last.visit, last.visit, last.state == store::SessionState::open ? "resume" : "restart"));
+        last.session, last.state == record::SessionState::open ? "still open" : "stopped",
+        last.visit, last.visit, last.state == record::SessionState::open ? "resume" : "restart"));
   }
   // In virtual time nobody waits.
   const bool in_days = !options.is_simulated() || options.real_time;
-  const design::VisitPlan& plan = study.key.study.visits;
+  const study::VisitPlan& plan = study.key.study.visits;
   const nanoseconds before = opened_at(database.made(), last.session);
-  const double days = design::days_between(before, utc_now());
+  const double days = study::days_between(before, utc_now());
   const bool is_clock_wrong = in_days && days < 0.0;
   if (is_clock_wrong && options.accept_clock.empty()) {
     refuse(
@@ -206,13 +206,13 @@ EnteredSession next_visit(const RunOptions& options, const RunStudy& study, RunD
 struct KeptSession {
   SecretKey key{};
   std::string schedule;  ///< JSON
-  std::vector<store::Event> events;
+  std::vector<record::Event> events;
   nanoseconds away{};  ///< since its last event; less than 0 if the clock was set back since
 };
 
 /// \throws StoreError if this station does not hold the session's key
 KeptSession kept_session(const RunOptions& options, const RunStudy& study,
-                         const store::StudyStore& store, const store::SessionRow& row) {
+                         const record::StudyStore& store, const record::SessionRow& row) {
   const auto refuse = [&] {
     throw StoreError(
         fmt::format("{}: session {} does not open with this station's file; give the file of the "
@@ -221,12 +221,12 @@ KeptSession kept_session(const RunOptions& options, const RunStudy& study,
   };
   const auto kept = store.kept_key(row.session);
   const auto key =
-      kept ? store::kept_participant_key(study.key.station.secret, row.own_session, *kept)
+      kept ? record::kept_participant_key(study.key.station.secret, row.own_session, *kept)
            : std::nullopt;
   if (!key) refuse();
   KeptSession session{.key = *key, .schedule = {}, .events = {}};
-  for (const store::Event& stored : store.events(row.session)) {
-    auto opened = store::opened_event(stored, *key);
+  for (const record::Event& stored : store.events(row.session)) {
+    auto opened = record::opened_event(stored, *key);
     if (!opened) refuse();
     if (stored.sequence == 0) session.schedule = std::move(opened->secret);
     session.events.push_back(std::move(opened->event));
@@ -235,7 +235,7 @@ KeptSession kept_session(const RunOptions& options, const RunStudy& study,
   return session;
 }
 
-std::string standing(const store::StudyStore& store, const store::SessionRow& row,
+std::string standing(const record::StudyStore& store, const record::SessionRow& row,
                      nanoseconds away) {
   const auto minutes =
       std::chrono::duration_cast<std::chrono::minutes>(std::max(nanoseconds{}, away)).count();
@@ -245,13 +245,13 @@ std::string standing(const store::StudyStore& store, const store::SessionRow& ro
 }
 
 session::Session restored(const RunStudy& study, const KeptSession& kept,
-                          const store::SessionRow& row, store::EventSink& sink) {
-  const design::ScheduleDraw draw =
+                          const record::SessionRow& row, record::EventSink& sink) {
+  const study::ScheduleDraw draw =
       study.key.draw_of(row.enrolment, draws_of(row.pilot, row.simulated), row.visit);
   session::Session session(
-      design::schedule_from_json(kept.schedule, study.key), study.key.study.trials,
-      store::SessionRecorder(row.session, kept.key, sink), block_restart_of(study.key, draw),
-      design::adaptive_order(study.key.study, draw));
+      study::schedule_from_json(kept.schedule, study.key), study.key.study.trials,
+      record::SessionRecorder(row.session, kept.key, sink), block_restart_of(study.key, draw),
+      study::adaptive_order(study.key.study, draw));
   session.restore(kept.events);
   return session;
 }
@@ -276,8 +276,8 @@ void record_clock(const RunOptions& options, nanoseconds away, EnteredSession& e
 }
 
 EnteredSession resumed_session(const RunOptions& options, const RunStudy& study,
-                               store::StudyStore& store, const KeptSession& kept,
-                               const store::SessionRow& row) {
+                               record::StudyStore& store, const KeptSession& kept,
+                               const record::SessionRow& row) {
   EnteredSession entered;
   entered.number = row.session;
   entered.enrolment = row.enrolment;
@@ -307,8 +307,8 @@ void require_young(const RunOptions& options, const RunStudy& study, const std::
 
 /// Refuses to resume a session on another kind of device: a session that is seen is not blind, and
 /// where nobody feels anything no trial counts.
-void require_same_kind(const RunOptions& options, const store::SessionRow& row,
-                       const store::SessionOpening& then, const store::SessionOpening& now) {
+void require_same_kind(const RunOptions& options, const record::SessionRow& row,
+                       const record::SessionOpening& then, const record::SessionOpening& now) {
   if (now.is_visual() == then.is_visual() && now.simulated == then.simulated) return;
   throw StoreError(fmt::format(
       "{}: session {} was begun with device '{}', and '{}' is {}: continue with the former",
@@ -319,9 +319,9 @@ void require_same_kind(const RunOptions& options, const store::SessionRow& row,
 }
 
 /// Records that the resumed session uses another device or certificate.
-void record_other_station(EnteredSession& entered, const store::SessionOpening& then,
-                          const store::SessionOpening& now) {
-  const auto certificate = [](const store::SessionOpening& opening) {
+void record_other_station(EnteredSession& entered, const record::SessionOpening& then,
+                          const record::SessionOpening& now) {
+  const auto certificate = [](const record::SessionOpening& opening) {
     return opening.station ? opening.station->calibration : std::string();
   };
   if (then.device != now.device || then.device_serial != now.device_serial) {
@@ -335,9 +335,9 @@ void record_other_station(EnteredSession& entered, const store::SessionOpening& 
 
 /// Ends the session in its present state.
 /// \throws StoreError if its trials are done: it is complete then, and nobody begins it anew
-void give_up(const RunOptions& options, const RunStudy& study, store::StudyStore& store,
-             const KeptSession& kept, const store::SessionRow& row) {
-  const std::unique_ptr<store::EventSink> sink = store.continue_session(row.session);
+void give_up(const RunOptions& options, const RunStudy& study, record::StudyStore& store,
+             const KeptSession& kept, const record::SessionRow& row) {
+  const std::unique_ptr<record::EventSink> sink = store.continue_session(row.session);
   session::Session session = restored(study, kept, row, *sink);
   if (session.phase() == session::SessionPhase::finished) {
     throw StoreError(fmt::format(
@@ -350,15 +350,15 @@ void give_up(const RunOptions& options, const RunStudy& study, store::StudyStore
 
 /// Opens a new session with the enrolment number of the previous one, which has ended.
 EnteredSession begin_anew(const RunOptions& options, const RunStudy& study, RunDatabase& database,
-                          const store::SessionRow& row, const DescribeOpening& describe) {
+                          const record::SessionRow& row, const DescribeOpening& describe) {
   database.made().replace(row.session, row.participant, utc_now(), "restarted");
   return new_session(options, study, database, row.enrolment, describe);
 }
 
 EnteredSession existing_session(const RunOptions& options, const RunStudy& study,
-                                RunDatabase& database, const store::SessionRow& row,
+                                RunDatabase& database, const record::SessionRow& row,
                                 const DescribeOpening& describe) {
-  store::StudyStore& store = database.made();
+  record::StudyStore& store = database.made();
   if (row.withdrawn) {
     throw StoreError(fmt::format(
         "{}: participant {} has withdrawn (session {}), and takes no further part; give "
@@ -370,14 +370,14 @@ EnteredSession existing_session(const RunOptions& options, const RunStudy& study
                  one_line(options.database.string()), row.participant, row.session);
   }
   const bool may_be_restarted =
-      options.on_existing == OnExisting::restart && row.state == store::SessionState::stopped;
+      options.on_existing == OnExisting::restart && row.state == record::SessionState::stopped;
   if (may_be_restarted) return begin_anew(options, study, database, row, describe);
-  if (row.state != store::SessionState::open) {
+  if (row.state != record::SessionState::open) {
     throw StoreError(fmt::format(
         "{}: participant {} already has session {}, which is {}; give another participant id{}",
         options.database.string(), row.participant, row.session,
-        row.state == store::SessionState::completed ? "complete" : "stopped",
-        row.state == store::SessionState::completed && row.visit < study.key.study.visits.count
+        row.state == record::SessionState::completed ? "complete" : "stopped",
+        row.state == record::SessionState::completed && row.visit < study.key.study.visits.count
             ? fmt::format(", or --visit {} for the next visit", row.visit + 1)
             : ""));
   }
@@ -393,9 +393,9 @@ EnteredSession existing_session(const RunOptions& options, const RunStudy& study
     return begin_anew(options, study, database, row, describe);
   }
   require_young(options, study, stands, kept.away);
-  store::SessionOpening now;
+  record::SessionOpening now;
   describe(now);
-  const store::SessionOpening then = store::opening_from_json(kept.events.front().body);
+  const record::SessionOpening then = record::opening_from_json(kept.events.front().body);
   require_same_kind(options, row, then, now);
   EnteredSession entered = resumed_session(options, study, store, kept, row);
   record_other_station(entered, then, now);
@@ -404,7 +404,7 @@ EnteredSession existing_session(const RunOptions& options, const RunStudy& study
 
 }  // namespace
 
-void require_planned_visit(const RunOptions& options, const design::Study& study) {
+void require_planned_visit(const RunOptions& options, const study::Study& study) {
   const int visits = study.visits.count;
   if (options.visit <= visits) return;
   throw UsageError(visits == 1 ? "run: the study has one visit; leave --visit out"
@@ -412,14 +412,14 @@ void require_planned_visit(const RunOptions& options, const design::Study& study
                                              visits, visits));
 }
 
-void confirm_enrolment(const RunOptions& options, const design::StationKey& key) {
-  if (options.enrolment == 0 || key.station.name != design::kOnlyStation) return;
+void confirm_enrolment(const RunOptions& options, const study::StationKey& key) {
+  if (options.enrolment == 0 || key.station.name != study::kOnlyStation) return;
   std::set<int> taken;
   if (is_there(options.database)) {
     taken = taken_numbers(
-        store::StudyStore::open(options.database, store::StudyStore::Access::read_only));
+        record::StudyStore::open(options.database, record::StudyStore::Access::read_only));
   }
-  const int next = design::next_enrolment_of(key.station, taken);
+  const int next = study::next_enrolment_of(key.station, taken);
   const int planned = key.study.registration.participants;
   if (options.enrolment <= std::max(planned, next)) return;
   confirm(
@@ -436,14 +436,14 @@ void confirm_enrolment(const RunOptions& options, const design::StationKey& key)
 EnteredSession enter_session(const RunOptions& options, const RunStudy& study,
                              RunDatabase& database, const DescribeOpening& describe) {
   require_planned_visit(options, study.key.study);
-  const store::StudyStore* const store = database.present();
+  const record::StudyStore* const store = database.present();
   const auto row = store == nullptr ? std::nullopt : store->session_of(options.participant);
   if (row && options.visit == row->visit + 1) {
     return next_visit(options, study, database, *row, describe);
   }
   if (row && options.visit != row->visit) {
     const bool is_followed =
-        row->state == store::SessionState::completed && row->visit < study.key.study.visits.count;
+        row->state == record::SessionState::completed && row->visit < study.key.study.visits.count;
     throw StoreError(fmt::format("{}: the last visit was visit {} (session {}); give --visit {}",
                                  visit_words(options, study), row->visit, row->session,
                                  is_followed ? row->visit + 1 : row->visit));
@@ -532,9 +532,9 @@ void RunExperimenter::acknowledged(int trial) {
 namespace {
 
 std::string summary(const RunOptions& options, int session, const session::SessionTally& tally,
-                    const store::SessionRow& row, const store::StudyStore& store) {
+                    const record::SessionRow& row, const record::StudyStore& store) {
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(tally.duration).count();
-  const bool is_complete = row.state == store::SessionState::completed;
+  const bool is_complete = row.state == record::SessionState::completed;
   const char* const end = tally.left ? "left open" : is_complete ? "complete" : "stopped";
   return fmt::format("{}session {} of participant {}: {}, {} trials answered, {} min {} s{}\n",
                      row.simulated ? "SIMULATED: " : "", session, options.participant, end,
@@ -544,7 +544,7 @@ std::string summary(const RunOptions& options, int session, const session::Sessi
 
 /// A session's end erases the station's copy of its key, which stays in the database's log as long
 /// as another program reads there.
-void require_key_erased(const RunOptions& options, int session, store::StudyStore& store) {
+void require_key_erased(const RunOptions& options, int session, record::StudyStore& store) {
   if (store.clear_log()) return;
   const std::string database = one_line(options.database.string());
   spdlog::warn(
@@ -558,7 +558,7 @@ void require_key_erased(const RunOptions& options, int session, store::StudyStor
 }  // namespace
 
 int conclude_session(const RunOptions& options, int session, const session::SessionTally& tally,
-                     store::StudyStore& store, std::string trouble) {
+                     record::StudyStore& store, std::string trouble) {
   if (trouble.empty() && !is_on_disk(options.database, session, store)) {
     trouble = one_line(options.database.string()) + " was changed while the session ran";
   }
@@ -568,7 +568,7 @@ int conclude_session(const RunOptions& options, int session, const session::Sess
                     session, options.participant, rescue(options.database, store)));
   }
   if (!tally.left) require_key_erased(options, session, store);
-  const store::SessionRow row = store.session_of(options.participant).value();
+  const record::SessionRow row = store.session_of(options.participant).value();
   // Nobody has a day sheet of simulated participants.
   print(summary(options, session, tally, row, store) +
         (options.is_simulated() ? "" : head_words(store) + "; write it on the day sheet\n"));
@@ -579,7 +579,7 @@ int conclude_session(const RunOptions& options, int session, const session::Sess
                  one_line(*tally.left).c_str(), options.participant.c_str());
   }
   if (EndingSignals::which() != 0) return kShellOffset + EndingSignals::which();
-  return row.state == store::SessionState::completed && !tally.left ? 0 : 1;
+  return row.state == record::SessionState::completed && !tally.left ? 0 : 1;
 }
 
 }  // namespace touchtrial::app

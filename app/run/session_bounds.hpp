@@ -5,11 +5,11 @@
 #include "app/run/database_watch.hpp"
 #include "app/run/run_session.hpp"
 #include "app/run/run_study.hpp"
-#include "protocols/design/schedule.hpp"
 #include "protocols/session/experimenter.hpp"
 #include "protocols/session/session.hpp"
 #include "protocols/session/session_runner.hpp"
-#include "protocols/store/study_store.hpp"
+#include "record/study_store.hpp"
+#include "study/schedule.hpp"
 
 #include <chrono>
 #include <functional>
@@ -24,23 +24,23 @@ namespace touchtrial::app {
 struct EnteredSession {
   int number = 0;
   int enrolment = 0;
-  design::ScheduleDraw draw;         ///< what its schedule is drawn from
+  study::ScheduleDraw draw;          ///< what its schedule is drawn from
   std::chrono::nanoseconds clock{};  ///< present time of the session's clock
   std::unique_ptr<PatientSink> sink;
   std::unique_ptr<session::Session> session;
 };
 
 /// Fills in what a new session's first event says about device and station.
-using DescribeOpening = std::function<void(store::SessionOpening&)>;
+using DescribeOpening = std::function<void(record::SessionOpening&)>;
 
 /// \throws UsageError if the study has no such visit
-void require_planned_visit(const RunOptions& options, const design::Study& study);
+void require_planned_visit(const RunOptions& options, const study::Study& study);
 
 /// Asks at the terminal about an enrolment number that the options name and that lies beyond the
 /// participants that the study plans, or, if it states no plan, beyond the next number. The ranges
 /// of a divided study's stations are bounds of their own.
 /// \throws as confirm, and as StudyStore::open
-void confirm_enrolment(const RunOptions& options, const design::StationKey& key);
+void confirm_enrolment(const RunOptions& options, const study::StationKey& key);
 
 /// Opens a new session for the participant, or handles the existing one as `options.on_existing`
 /// says. On return, the session's first or next event is stored. The database is made last.
@@ -101,7 +101,7 @@ class RunExperimenter final : public session::Experimenter {
 /// \param trouble  DatabaseWatch::trouble; what the store holds is then saved beside the database
 /// \return the exit code, as run_study_session
 [[nodiscard]] int conclude_session(const RunOptions& options, int session,
-                                   const session::SessionTally& tally, store::StudyStore& store,
+                                   const session::SessionTally& tally, record::StudyStore& store,
                                    std::string trouble);
 
 }  // namespace touchtrial::app

@@ -2,11 +2,11 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "device/mouse/mouse_device.hpp"
-#include "device/registry.hpp"
+#include "device/drivers/mouse/mouse_device.hpp"
+#include "device/drivers/registry.hpp"
+#include "device/model/workspace_fit.hpp"
 #include "device/servo/servo_thread.hpp"
-#include "device/workspace_fit.hpp"
-#include "protocols/design/deviation_codes.hpp"
+#include "study/deviation_codes.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -125,7 +125,7 @@ void SessionDevice::require_stable_wall(double stiffness_n_per_mm) const {
 
 std::string SessionDevice::shown_name() const {
   if (info_.simulated) return driver_ + ", does not count";
-  return certificate_ == design::kUnverifiedDevice ? driver_ + " " + certificate_ : driver_;
+  return certificate_ == study::kUnverifiedDevice ? driver_ + " " + certificate_ : driver_;
 }
 
 /// \return the warning of a valid certificate, if any
@@ -138,7 +138,7 @@ std::string SessionDevice::read_accepted(const RunOptions& options) {
         "{}: has no certificate ({} is not there), and no session runs without; run touchtrial "
         "device accept {}, or name its certificate with --certificate, or stamp everything {} with "
         "--allow-unverified",
-        driver_, path.string(), driver_, design::kUnverifiedDevice)));
+        driver_, path.string(), driver_, study::kUnverifiedDevice)));
   }
   const device::ReadCertificate read = device::read_certificate(path);
   const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
@@ -158,9 +158,9 @@ void SessionDevice::check_certificate(const RunOptions& options) {
     to_record_.push_back({Kind::deviation, warning, "no-certificate"});
   } catch (const Error& error) {
     if (!options.allow_unverified) throw;
-    certificate_ = design::kUnverifiedDevice;
+    certificate_ = study::kUnverifiedDevice;
     spdlog::warn("{}: {}", certificate_, error.what());
-    to_record_.push_back({Kind::deviation, error.what(), design::kUnverifiedDeviceCode});
+    to_record_.push_back({Kind::deviation, error.what(), study::kUnverifiedDeviceCode});
   }
 }
 

@@ -6,7 +6,7 @@
 #include "core/plane_geometry.hpp"
 #include "device/acceptance/certificate.hpp"
 #include "device/device_settings.hpp"
-#include "device/mouse/pointer_exchange.hpp"
+#include "device/drivers/mouse/pointer_exchange.hpp"
 #include "device/platform/realtime.hpp"
 #include "device/servo/servo_clock.hpp"
 #include "protocols/session/device_station.hpp"

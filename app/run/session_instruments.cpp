@@ -21,7 +21,7 @@ class LabInstruments final : public session::Instruments {
     const int code = static_cast<int>(mark);
     if (line_) line_->send(code, trial, at);
     if (lsl_) {
-      std::string text(store::name_of(mark));
+      std::string text(record::name_of(mark));
       if (trial > 0) text += " " + std::to_string(trial);
       lsl_->mark(text, at);
     }

@@ -201,7 +201,7 @@ bool SoundCard::plays() const noexcept {
   return stream_->library.is_active(stream_->stream);
 }
 
-SessionSound::SessionSound(const design::MaskingPlan& plan, std::uint64_t seed)
+SessionSound::SessionSound(const study::MaskingPlan& plan, std::uint64_t seed)
     : plan_(plan),
       mixer_(SoundCard::kRateHz,
              plan.wanted ? masking_noise(plan.level_dbfs, seed) : std::vector<float>{}) {

@@ -2,9 +2,9 @@
 /// tones, their samples, and the record of it.
 #pragma once
 
-#include "app/participant/cues.hpp"
-#include "protocols/design/session_plan.hpp"
+#include "app/windows/participant/cues.hpp"
 #include "protocols/session/experimenter.hpp"
+#include "study/session_plan.hpp"
 
 #include <array>
 #include <atomic>
@@ -100,7 +100,7 @@ class SessionSound final : public Cues {
  public:
   /// Begins the noise if the plan wants it.
   /// \param seed  seed of the noise
-  SessionSound(const design::MaskingPlan& plan, std::uint64_t seed);
+  SessionSound(const study::MaskingPlan& plan, std::uint64_t seed);
 
   void tone(Cue cue) noexcept override;
 
@@ -111,7 +111,7 @@ class SessionSound final : public Cues {
   [[nodiscard]] std::optional<session::ExperimenterRequest> to_record();
 
  private:
-  design::MaskingPlan plan_;
+  study::MaskingPlan plan_;
   SoundMixer mixer_;
   std::optional<SoundCard> card_;
   std::string trouble_;

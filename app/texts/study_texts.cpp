@@ -1,8 +1,8 @@
 #include "app/texts/study_texts.hpp"
 
-#include "app/participant/words.hpp"
-#include "protocols/design/languages.hpp"
-#include "protocols/design/protocol.hpp"
+#include "app/windows/participant/words.hpp"
+#include "study/languages.hpp"
+#include "study/protocol.hpp"
 
 #include <algorithm>
 #include <initializer_list>
@@ -21,22 +21,22 @@ using Section = std::map<std::string, std::string>;
 
 std::string seconds_text(double seconds, const std::string& language) {
   std::string text = fmt::format("{:g}", seconds);
-  if (design::has_decimal_comma(language)) std::replace(text.begin(), text.end(), '.', ',');
+  if (study::has_decimal_comma(language)) std::replace(text.begin(), text.end(), '.', ',');
   return text;
 }
 
-std::optional<design::IntervalPlan> intervals_of(const design::Study& study) {
+std::optional<study::IntervalPlan> intervals_of(const study::Study& study) {
   return study.protocol->interval_plan(study);
 }
 
-Values values_for(const design::Study& study) {
+Values values_for(const study::Study& study) {
   const std::string& language = study.session.language;
   Values values = {{"pictures", std::to_string(study.classes.size())},
                    {"limit", seconds_text(study.trials.explore_limit_s, language)},
                    {"confidence", std::to_string(study.session.confidence_levels)},
                    {"consent", study.session.consent_version}};
   if (const auto intervals = intervals_of(study)) {
-    const Words words = words_of(design::texts_of(study.session));
+    const Words words = words_of(study::texts_of(study.session));
     values.emplace_back("planes", std::to_string(intervals->count));
     values.emplace_back("seconds", seconds_text(intervals->seconds, language));
     values.emplace_back("question", title_of(words, intervals->question));
@@ -46,7 +46,7 @@ Values values_for(const design::Study& study) {
 
 /// The part about practice: what is practised, and whether answers are told afterwards too.
 /// \return empty if the study has no practice
-std::string practice_part(const design::Study& study) {
+std::string practice_part(const study::Study& study) {
   const auto intervals = intervals_of(study);
   if (!intervals) return study.trials.practice > 0 ? "practice" : "";
   if (intervals->practice_rounds == 0 || study.protocol->practice_trials(study, {}, 1).empty()) {
@@ -55,19 +55,18 @@ std::string practice_part(const design::Study& study) {
   return intervals->feedback ? "practice_intervals_feedback" : "practice_intervals";
 }
 
-std::string sight_part(const design::Study& study) {
-  const std::string part =
-      study.session.sight == design::Sight::blindfold ? "blindfold" : "curtain";
+std::string sight_part(const study::Study& study) {
+  const std::string part = study.session.sight == study::Sight::blindfold ? "blindfold" : "curtain";
   return intervals_of(study) ? part + "_intervals" : part;
 }
 
-std::string time_part(const design::Study& study) {
+std::string time_part(const study::Study& study) {
   if (intervals_of(study)) return "time_intervals";
-  return study.trials.on_timeout == design::OnTimeout::fade ? "time_fade" : "time_no_response";
+  return study.trials.on_timeout == study::OnTimeout::fade ? "time_fade" : "time_no_response";
 }
 
 /// The parts of the instructions on each page.
-std::vector<std::vector<std::string>> pages_for(const design::Study& study) {
+std::vector<std::vector<std::string>> pages_for(const study::Study& study) {
   std::vector<std::string> rules{time_part(study)};
   if (study.session.confidence_levels > 0) rules.push_back("confidence");
   if (study.session.masking.wanted) rules.push_back("masking");
@@ -75,7 +74,7 @@ std::vector<std::vector<std::string>> pages_for(const design::Study& study) {
       {"welcome"}, {study.protocol_name()}, {"hand"}, {sight_part(study)}, rules};
   if (const std::string practice = practice_part(study); !practice.empty()) {
     pages.push_back({practice});
-    if (study.session.sight != design::Sight::blindfold) pages.back().push_back("practice_bars");
+    if (study.session.sight != study::Sight::blindfold) pages.back().push_back("practice_bars");
   }
   pages.push_back({"comfort"});
   return pages;
@@ -83,14 +82,14 @@ std::vector<std::vector<std::string>> pages_for(const design::Study& study) {
 
 /// A part of the texts, for whoever wears a blindfold if that differs, or what the protocol says
 /// itself.
-std::string part_of(const design::Study& study, const Section& texts, const std::string& part) {
-  const bool is_blindfold = study.session.sight == design::Sight::blindfold;
+std::string part_of(const study::Study& study, const Section& texts, const std::string& part) {
+  const bool is_blindfold = study.session.sight == study::Sight::blindfold;
   auto found = is_blindfold ? texts.find(part + "_blindfold") : texts.end();
   if (found == texts.end()) found = texts.find(part);
   return found == texts.end() ? study.protocol->instruction() : found->second;
 }
 
-std::vector<std::string> instructions(const design::Study& study, const Section& texts) {
+std::vector<std::string> instructions(const study::Study& study, const Section& texts) {
   const auto given = study.session.instructions.find(study.session.language);
   if (given != study.session.instructions.end() && !given->second.empty()) return given->second;
   const Values values = values_for(study);
@@ -107,35 +106,35 @@ std::vector<std::string> instructions(const design::Study& study, const Section&
 
 /// Whose words questions have: the study's, in its language, and those of other languages.
 struct Wording {
-  const design::SessionPlan& plan;
-  const design::Texts& texts;                 ///< the study's
+  const study::SessionPlan& plan;
+  const study::Texts& texts;                  ///< the study's
   std::span<const std::string_view> further;  ///< languages
 };
 
 /// \param section  of the texts
 /// \param key  of its text
 /// \param options  keys of the options' texts; empty: a free answer
-design::Question question(const Wording& wording, const char* section, std::string id,
-                          const char* key, std::initializer_list<const char*> options) {
+study::Question question(const Wording& wording, const char* section, std::string id,
+                         const char* key, std::initializer_list<const char*> options) {
   const auto words_for = [&](const char* of) {
-    design::Translated words;
+    study::Translated words;
     for (const std::string_view code : wording.further) {
-      words[std::string(code)] = design::language_of(code).texts.at(section).at(of);
+      words[std::string(code)] = study::language_of(code).texts.at(section).at(of);
     }
     words[wording.plan.language] = wording.texts.at(section).at(of);
     return words;
   };
-  design::Question asked;
+  study::Question asked;
   asked.id = std::move(id);
-  asked.kind = options.size() == 0 ? design::QuestionKind::text : design::QuestionKind::choice;
+  asked.kind = options.size() == 0 ? study::QuestionKind::text : study::QuestionKind::choice;
   asked.text = words_for(key);
   for (const char* option : options) asked.options.push_back(words_for(option));
   return asked;
 }
 
-std::optional<design::Questionnaire> handedness_inventory(const Wording& wording) {
+std::optional<study::Questionnaire> handedness_inventory(const Wording& wording) {
   if (!wording.plan.handedness) return std::nullopt;
-  design::Questionnaire inventory{"handedness", {}};
+  study::Questionnaire inventory{"handedness", {}};
   for (const char* item : {"writing", "throwing", "toothbrush", "spoon"}) {
     inventory.questions.push_back(
         question(wording, "handedness", item, item,
@@ -147,8 +146,8 @@ std::optional<design::Questionnaire> handedness_inventory(const Wording& wording
   return inventory;
 }
 
-void join(std::vector<design::Question>& questions, const design::Question& given) {
-  const auto same = std::ranges::find(questions, given.id, &design::Question::id);
+void join(std::vector<study::Question>& questions, const study::Question& given) {
+  const auto same = std::ranges::find(questions, given.id, &study::Question::id);
   if (same == questions.end()) {
     questions.push_back(given);
   } else {
@@ -156,15 +155,15 @@ void join(std::vector<design::Question>& questions, const design::Question& give
   }
 }
 
-std::optional<design::Questionnaire> closing_questions(const Wording& wording) {
-  design::Questionnaire closing{"closing", {}};
+std::optional<study::Questionnaire> closing_questions(const Wording& wording) {
+  study::Questionnaire closing{"closing", {}};
   if (wording.plan.closing) {
     closing.questions = {question(wording, "closing", "heard", "heard",
                                   {"heard_no", "heard_sometimes", "heard_often", "heard_helped"}),
                          question(wording, "closing", "strategy", "strategy", {}),
                          question(wording, "closing", "remarks", "remarks", {})};
   }
-  for (const design::Question& given : wording.plan.closing_questions) {
+  for (const study::Question& given : wording.plan.closing_questions) {
     join(closing.questions, given);
   }
   if (closing.questions.empty()) return std::nullopt;
@@ -173,7 +172,7 @@ std::optional<design::Questionnaire> closing_questions(const Wording& wording) {
 
 /// Each item's deviation code (for skipping it) and its key in a language file.
 /// \param learns_names  whether participants with a blindfold answer with the textures' names
-std::vector<std::pair<std::string, std::string>> items_for(const design::SessionPlan& plan,
+std::vector<std::pair<std::string, std::string>> items_for(const study::SessionPlan& plan,
                                                            bool learns_names) {
   std::vector<std::pair<std::string, std::string>> items{
       {"consent", plan.consent_version.empty() ? "consent" : "consent_version"},
@@ -182,7 +181,7 @@ std::vector<std::pair<std::string, std::string>> items_for(const design::Session
       {"gravity-compensation", "gravity"},
       {"fixture-touch", "fixture"},
       {"placement", "placement"}};
-  if (plan.sight == design::Sight::blindfold) {
+  if (plan.sight == study::Sight::blindfold) {
     if (learns_names) items.emplace_back("labels-learnt", "labels");
     items.emplace_back("blindfold", "blindfold");
   } else {
@@ -194,7 +193,7 @@ std::vector<std::pair<std::string, std::string>> items_for(const design::Session
   return items;
 }
 
-std::vector<session::DaySheetItem> day_sheet(const design::Study& study, const Section& texts) {
+std::vector<session::DaySheetItem> day_sheet(const study::Study& study, const Section& texts) {
   const Values values = values_for(study);
   std::vector<session::DaySheetItem> sheet;
   for (const auto& [code, key] : items_for(study.session, !intervals_of(study))) {
@@ -209,21 +208,21 @@ std::vector<session::DaySheetItem> day_sheet(const design::Study& study, const S
 
 }  // namespace
 
-session::SessionTexts session_texts(const design::Study& study) {
-  const design::Texts texts = design::texts_of(study.session);
+session::SessionTexts session_texts(const study::Study& study) {
+  const study::Texts texts = study::texts_of(study.session);
   session::SessionTexts session;
   session.instructions = instructions(study, texts.at("instructions"));
-  const Wording wording{study.session, texts, design::language_codes()};
+  const Wording wording{study.session, texts, study::language_codes()};
   session.handedness = handedness_inventory(wording);
   session.closing = closing_questions(wording);
   session.day_sheet = day_sheet(study, texts.at("day_sheet"));
   return session;
 }
 
-std::vector<design::Questionnaire> questionnaires_of(const design::Study& study) {
-  const design::Texts texts = design::texts_of(study.session);
+std::vector<study::Questionnaire> questionnaires_of(const study::Study& study) {
+  const study::Texts texts = study::texts_of(study.session);
   const Wording wording{study.session, texts, {}};
-  std::vector<design::Questionnaire> all;
+  std::vector<study::Questionnaire> all;
   for (auto& one : {handedness_inventory(wording), closing_questions(wording)}) {
     if (one) all.push_back(*one);
   }

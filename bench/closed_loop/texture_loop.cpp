@@ -1,7 +1,7 @@
 #include "bench/closed_loop/texture_loop.hpp"
 
+#include "device/drivers/simulated/simulated_hand.hpp"
 #include "device/servo/servo.hpp"
-#include "device/simulated/simulated_hand.hpp"
 #include "engine/rendering/gains.hpp"
 #include "engine/rendering/rendering_model.hpp"
 #include "protocols/session/exploration.hpp"

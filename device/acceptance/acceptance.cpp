@@ -1,7 +1,7 @@
 #include "device/acceptance/acceptance.hpp"
 
 #include "device/acceptance/handle_runs.hpp"
-#include "device/workspace_fit.hpp"
+#include "device/model/workspace_fit.hpp"
 
 #include <algorithm>
 #include <cmath>

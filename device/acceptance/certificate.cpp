@@ -6,7 +6,7 @@
 #include "core/text.hpp"
 #include "core/utc.hpp"
 #include "device/acceptance/measurement.hpp"
-#include "device/scaled_device.hpp"
+#include "device/servo/scaled_device.hpp"
 
 #include <algorithm>
 #include <array>

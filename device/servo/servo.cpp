@@ -1,10 +1,10 @@
 #include "device/servo/servo.hpp"
 
 #include "core/named.hpp"
+#include "device/drivers/simulated/simulated_hand.hpp"
 #include "device/platform/realtime.hpp"
 #include "device/servo/duration_histogram.hpp"
 #include "device/servo/flight_recorder.hpp"
-#include "device/simulated/simulated_hand.hpp"
 
 #include <algorithm>
 #include <array>

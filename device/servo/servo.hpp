@@ -2,8 +2,8 @@
 #pragma once
 
 #include "device/haptic_device.hpp"
-#include "device/latest_value.hpp"
 #include "device/safety/safety_chain.hpp"
+#include "device/servo/latest_value.hpp"
 #include "device/servo/servo_clock.hpp"
 #include "device/servo/servo_control.hpp"
 

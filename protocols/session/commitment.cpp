@@ -4,9 +4,9 @@
 #include "core/strict_json.hpp"
 #include "core/text.hpp"
 #include "core/version.hpp"
-#include "protocols/design/languages.hpp"
-#include "protocols/design/protocol.hpp"
-#include "protocols/design/signed_pack.hpp"
+#include "study/languages.hpp"
+#include "study/protocol.hpp"
+#include "study/signed_pack.hpp"
 
 #include <algorithm>
 
@@ -22,21 +22,21 @@ std::string line(const std::string& what, const std::string& value) {
 }
 
 /// In alphabetical order, which does not reveal their order in the study.
-std::string labels_of(const design::Study& study) {
+std::string labels_of(const study::Study& study) {
   std::vector<std::string> labels;
-  for (const design::StudyClass& shown : study.classes) labels.push_back(shown.label);
+  for (const study::StudyClass& shown : study.classes) labels.push_back(shown.label);
   std::ranges::sort(labels);
   return listed(labels);
 }
 
-std::string participants_of(const design::Registration& registration) {
+std::string participants_of(const study::Registration& registration) {
   if (registration.participants == 0) return "";
   return counted(registration.participants, "participant") + ".";
 }
 
-std::string practice_of(const design::Study& study) {
+std::string practice_of(const study::Study& study) {
   if (study.trials.practice == 0) return "none";
-  const design::PracticePlan& practice = study.practice;
+  const study::PracticePlan& practice = study.practice;
   return counted(study.trials.practice, "presentation") + " a round of " +
          counted(static_cast<int>(practice.classes.size()), "texture") +
          " that are not in the study; criterion " + std::to_string(practice.criterion) +
@@ -44,30 +44,30 @@ std::string practice_of(const design::Study& study) {
 }
 
 /// The participants' language; texts are part of the instrument.
-std::string language_of(const design::Study& study) {
-  const std::string draft = design::draft_notice(study.session.language);
-  return design::language_of(study.session.language).name + (draft.empty() ? "" : ": " + draft);
+std::string language_of(const study::Study& study) {
+  const std::string draft = study::draft_notice(study.session.language);
+  return study::language_of(study.session.language).name + (draft.empty() ? "" : ": " + draft);
 }
 
 /// Empty in a study with one visit.
-std::string visits_of(const design::VisitPlan& visits) {
+std::string visits_of(const study::VisitPlan& visits) {
   if (visits.count == 1) return "";
   std::string days = "at least " + number_text(visits.least_days);
   if (visits.most_days) days += " and at most " + number_text(*visits.most_days);
-  const bool divided = visits.methods == design::VisitMethods::divided;
+  const bool divided = visits.methods == study::VisitMethods::divided;
   return line("visits", std::to_string(visits.count) + ", " + days + " days between them, " +
                             (divided ? "the methods divided between them" : "all methods at each"));
 }
 
-std::string touch_of(const design::LeastTouch& touch) {
-  if (touch == design::LeastTouch{0.0, 0.0}) return "no touch needed";
+std::string touch_of(const study::LeastTouch& touch) {
+  if (touch == study::LeastTouch{0.0, 0.0}) return "no touch needed";
   return "at least " + number_text(touch.contact_s) + " s at the plane and " +
          number_text(touch.path_mm) + " mm along it, unless time is up";
 }
 
 /// What a trial with several planes asks for; the numbers of its trials are in the rule of orders.
-std::string intervals_of(const design::Study& study, const design::IntervalPlan& plan) {
-  const design::IntervalWindows& windows = plan.windows;
+std::string intervals_of(const study::Study& study, const study::IntervalPlan& plan) {
+  const study::IntervalWindows& windows = plan.windows;
   const std::size_t practice = study.protocol->practice_trials(study, {}, 1).size();
   return line("planes a trial", std::to_string(plan.count)) +
          line("exploration of each",
@@ -85,16 +85,16 @@ std::string intervals_of(const design::Study& study, const design::IntervalPlan&
          line("feedback in trials", plan.feedback ? "yes" : "no");
 }
 
-std::string exploring_of(const design::Study& study) {
+std::string exploring_of(const study::Study& study) {
   if (const auto plan = study.protocol->interval_plan(study)) return intervals_of(study, *plan);
-  const design::TrialOptions& trials = study.trials;
+  const study::TrialOptions& trials = study.trials;
   return line("time to explore", number_text(trials.explore_limit_s) + " s") +
          line("before an answer", touch_of(trials.answer_after)) +
          line("practice", practice_of(study)) +
          line("catch trials (not scored)", std::to_string(trials.catch_trials));
 }
 
-std::string design_of(const design::Study& study) {
+std::string design_of(const study::Study& study) {
   return line("protocol", study.protocol_name()) +
          line("classes", std::to_string(study.classes.size()) + " (" + labels_of(study) + ")") +
          line("methods presented", study.presented_labels()) +
@@ -105,10 +105,10 @@ std::string design_of(const design::Study& study) {
               : line("groups", listed(study.groups.labels) +
                                    (study.groups.open ? ", open to the experimenter" : ""))) +
          exploring_of(study) + line("language", language_of(study)) +
-         line("orders", design::schedule_rule(study));
+         line("orders", study::schedule_rule(study));
 }
 
-std::string validity_of(const design::ValidityRule& rule) {
+std::string validity_of(const study::ValidityRule& rule) {
   return "A trial is valid if all of this holds:\n\n" +
          line("exploration from landing",
               "at least " + number_text(rule.least_exploring_s) + " s") +
@@ -122,13 +122,13 @@ std::string validity_of(const design::ValidityRule& rule) {
 }
 
 /// The registered analysis, which the program holds the study against.
-std::string analysis_of(const design::Registration& registration) {
+std::string analysis_of(const study::Registration& registration) {
   std::string lines;
-  for (const auto& [what, value] : design::fields_of(registration)) lines += line(what, value);
+  for (const auto& [what, value] : study::fields_of(registration)) lines += line(what, value);
   return lines;
 }
 
-std::string hashes_of(const design::StudyCodes& key, const engine::Pack& pack) {
+std::string hashes_of(const study::StudyCodes& key, const engine::Pack& pack) {
   return line("seal", "`" + to_hex(key.seal) + "`") +
          line("pack", "`" + to_hex(pack.digest()) + "`") +
          line("study identity", "`" + key.study_id + "`") +
@@ -142,9 +142,9 @@ std::string hashes_of(const design::StudyCodes& key, const engine::Pack& pack) {
 
 }  // namespace
 
-store::StudyCommitment commitment_of(const design::StationKey& key, const engine::Pack& pack,
-                                     bool simulated, bool pilot) {
-  store::StudyCommitment commitment;
+record::StudyCommitment commitment_of(const study::StationKey& key, const engine::Pack& pack,
+                                      bool simulated, bool pilot) {
+  record::StudyCommitment commitment;
   commitment.study = key.study.name;
   commitment.protocol = key.study.protocol_name();
   commitment.study_id = key.study_id;
@@ -163,19 +163,19 @@ store::StudyCommitment commitment_of(const design::StationKey& key, const engine
   return commitment;
 }
 
-store::StudyCommitment commitment_of(const design::StudyKey& key, const engine::Pack& pack,
-                                     bool simulated, bool pilot) {
-  return commitment_of(design::station_key(key, key.stations.front().name), pack, simulated, pilot);
+record::StudyCommitment commitment_of(const study::StudyKey& key, const engine::Pack& pack,
+                                      bool simulated, bool pilot) {
+  return commitment_of(study::station_key(key, key.stations.front().name), pack, simulated, pilot);
 }
 
-void require_prepared(const design::Study& study, const design::StudyCodes& key,
+void require_prepared(const study::Study& study, const study::StudyCodes& key,
                       const std::filesystem::path& key_file, const engine::Pack& pack) {
   const auto refuse = [&study](const std::string& what) {
     throw UsageError(one_line(study.source + ": " + what));
   };
   if (key.simulated) refuse("its key belongs to a simulated study; run `touchtrial prepare`");
-  if (!design::are_same(study, key.study)) {
-    throw UsageError(design::misfit_of(study, key, key_file, "--key"));
+  if (!study::are_same(study, key.study)) {
+    throw UsageError(study::misfit_of(study, key, key_file, "--key"));
   }
   const engine::PackManifest& manifest = pack.manifest();
   if (manifest.study_id != key.study_id) {
@@ -183,12 +183,12 @@ void require_prepared(const design::Study& study, const design::StudyCodes& key,
            pack.folder().string() + " of study " + manifest.study_id +
            "; name the pack's own key with --key, or the key's own pack with --pack");
   }
-  design::require_signed(pack, key.study_id, key.seal, key.investigator_signature);
+  study::require_signed(pack, key.study_id, key.seal, key.investigator_signature);
 }
 
-std::string registration_page(const design::StudyCodes& key, const engine::Pack& pack) {
-  const design::Study& study = key.study;
-  const design::Registration& registration = study.registration;
+std::string registration_page(const study::StudyCodes& key, const engine::Pack& pack) {
+  const study::Study& study = key.study;
+  const study::Registration& registration = study.registration;
   return "# Preregistration of the study " + study.name + "\n" +
          section("Hypothesis", registration.hypothesis) +
          section("Sample size", participants_of(registration)) +
@@ -200,7 +200,7 @@ std::string registration_page(const design::StudyCodes& key, const engine::Pack&
          section("Design", design_of(study)) + section("Commitment", hashes_of(key, pack));
 }
 
-std::vector<std::string> unstated(const design::Registration& registration) {
+std::vector<std::string> unstated(const study::Registration& registration) {
   std::vector<std::string> places;
   const auto look = [&places](const char* key, bool stated) {
     if (!stated) places.push_back(std::string("/registration/") + key);

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "engine/pack/pack.hpp"
-#include "protocols/design/study_key.hpp"
-#include "protocols/store/payload.hpp"
+#include "record/payload.hpp"
+#include "study/study_key.hpp"
 
 #include <string>
 #include <vector>
@@ -12,20 +12,20 @@
 namespace touchtrial::session {
 
 /// The first event of a study's file chain.
-[[nodiscard]] store::StudyCommitment commitment_of(const design::StationKey& key,
-                                                   const engine::Pack& pack, bool simulated,
-                                                   bool pilot);
+[[nodiscard]] record::StudyCommitment commitment_of(const study::StationKey& key,
+                                                    const engine::Pack& pack, bool simulated,
+                                                    bool pilot);
 /// The same for the key's first station.
-[[nodiscard]] store::StudyCommitment commitment_of(const design::StudyKey& key,
-                                                   const engine::Pack& pack, bool simulated,
-                                                   bool pilot);
+[[nodiscard]] record::StudyCommitment commitment_of(const study::StudyKey& key,
+                                                    const engine::Pack& pack, bool simulated,
+                                                    bool pilot);
 
 /// Checks that key and pack belong to the study in its present state.
 /// \param study  newly read from its file
 /// \param key_file  that of `key`
 /// \throws UsageError with the difference and the remedy
-/// \throws FileError as design::require_signed
-void require_prepared(const design::Study& study, const design::StudyCodes& key,
+/// \throws FileError as study::require_signed
+void require_prepared(const study::Study& study, const study::StudyCodes& key,
                       const std::filesystem::path& key_file, const engine::Pack& pack);
 
 /// The preregistration page, Markdown: the statements of the study's registration, the design, the
@@ -33,10 +33,9 @@ void require_prepared(const design::Study& study, const design::StudyCodes& key,
 /// (sorted), methods, rendering and trials; no image name, code, seed, secret or schedule. The same
 /// input gives the same text.
 /// \pre require_prepared
-[[nodiscard]] std::string registration_page(const design::StudyCodes& key,
-                                            const engine::Pack& pack);
+[[nodiscard]] std::string registration_page(const study::StudyCodes& key, const engine::Pack& pack);
 
 /// The missing parts of a registration, as JSON pointers.
-[[nodiscard]] std::vector<std::string> unstated(const design::Registration& registration);
+[[nodiscard]] std::vector<std::string> unstated(const study::Registration& registration);
 
 }  // namespace touchtrial::session

@@ -106,21 +106,21 @@ const device::DeviceInfo& DeviceStation::info() const {
   return *first_;
 }
 
-void describe_station(store::SessionOpening& opening, const device::DeviceInfo& device,
+void describe_station(record::SessionOpening& opening, const device::DeviceInfo& device,
                       const device::SchedulingObtained& scheduling, double rate_hz,
                       const std::string& certificate) {
   opening.device = device.name;
   opening.device_serial = device.serial;
   opening.simulated = device.simulated;
-  opening.station = store::StationRecord{.model = device.model,
-                                         .firmware = device.firmware,
-                                         .max_force_n = device.max_force_n,
-                                         .visual = device.visual,
-                                         .rate_hz = rate_hz,
-                                         .scheduling = text_of(scheduling),
-                                         .calibration = certificate,
-                                         .force_scale = axes_of(device.scale.force),
-                                         .length_scale = axes_of(device.scale.length)};
+  opening.station = record::StationRecord{.model = device.model,
+                                          .firmware = device.firmware,
+                                          .max_force_n = device.max_force_n,
+                                          .visual = device.visual,
+                                          .rate_hz = rate_hz,
+                                          .scheduling = text_of(scheduling),
+                                          .calibration = certificate,
+                                          .force_scale = axes_of(device.scale.force),
+                                          .length_scale = axes_of(device.scale.length)};
 }
 
 }  // namespace touchtrial::session

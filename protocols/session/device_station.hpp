@@ -3,9 +3,9 @@
 #pragma once
 
 #include "device/haptic_device.hpp"
-#include "device/placed_device.hpp"
 #include "device/platform/realtime.hpp"
-#include "protocols/store/payload.hpp"
+#include "device/servo/placed_device.hpp"
+#include "record/payload.hpp"
 
 #include <functional>
 #include <memory>
@@ -97,7 +97,7 @@ class DeviceStation final : public DeviceSupply {
 
 /// Fills in what a session's first event says about its device and servo thread.
 /// \param certificate  as StationRecord::calibration
-void describe_station(store::SessionOpening& opening, const device::DeviceInfo& device,
+void describe_station(record::SessionOpening& opening, const device::DeviceInfo& device,
                       const device::SchedulingObtained& scheduling, double rate_hz,
                       const std::string& certificate);
 

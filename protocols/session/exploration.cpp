@@ -26,7 +26,7 @@ class TrialSink final : public device::SampleSink {
 
 }  // namespace
 
-device::ServoOptions trial_servo_options(const design::Study& study, double rate_hz,
+device::ServoOptions trial_servo_options(const study::Study& study, double rate_hz,
                                          const device::LabLimits& lab) {
   device::ServoOptions options;
   options.rate_hz = rate_hz;
@@ -47,7 +47,7 @@ std::chrono::nanoseconds time_of_tick(std::int64_t tick, double rate_hz) noexcep
       std::llround(static_cast<double>(tick) * kNanosecondsPerS / rate_hz));
 }
 
-TraceBuilder::TraceBuilder(store::Trace& trace, double rate_hz, std::size_t most_samples)
+TraceBuilder::TraceBuilder(record::Trace& trace, double rate_hz, std::size_t most_samples)
     : trace_(trace), room_(most_samples) {
   trace.rate_hz = rate_hz;
   trace.samples.clear();
@@ -55,8 +55,8 @@ TraceBuilder::TraceBuilder(store::Trace& trace, double rate_hz, std::size_t most
 }
 
 /// Before the first sample there is none to hold, so the first one fills the gap.
-void TraceBuilder::hold_until(std::size_t tick, const store::TraceSample& first) noexcept {
-  const store::TraceSample last = trace_.samples.empty() ? first : trace_.samples.back();
+void TraceBuilder::hold_until(std::size_t tick, const record::TraceSample& first) noexcept {
+  const record::TraceSample last = trace_.samples.empty() ? first : trace_.samples.back();
   while (trace_.samples.size() < tick) {
     trace_.samples.push_back(last);
     ++held_;
@@ -82,7 +82,7 @@ std::string words_in_clear(const device::ServoReport& report) {
 
 Exploration VirtualExplorer::explore(device::ForceSource& force, const PlaneGeometry& plane,
                                      Participant& participant, const device::ServoOptions& options,
-                                     store::Trace& trace) {
+                                     record::Trace& trace) {
   TraceBuilder builder(trace, options.rate_hz, most_samples(options));
   device::HapticDevice& device = participant.begin_exploring(plane);
   TrialSink sink(participant, builder);

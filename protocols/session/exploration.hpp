@@ -5,10 +5,10 @@
 #include "device/device_settings.hpp"
 #include "device/servo/servo.hpp"
 #include "engine/rendering/rendering_model.hpp"
-#include "protocols/design/study.hpp"
 #include "protocols/session/participant.hpp"
-#include "protocols/store/payload.hpp"
-#include "protocols/store/trace.hpp"
+#include "record/payload.hpp"
+#include "record/trace.hpp"
+#include "study/study.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -38,7 +38,7 @@ class ModelForce final : public device::ForceSource {
 /// stricter.
 /// \param rate_hz  of the servo
 /// \param lab  empty in virtual time
-[[nodiscard]] device::ServoOptions trial_servo_options(const design::Study& study, double rate_hz,
+[[nodiscard]] device::ServoOptions trial_servo_options(const study::Study& study, double rate_hz,
                                                        const device::LabLimits& lab);
 
 /// The most samples that an exploration can have.
@@ -59,7 +59,7 @@ inline constexpr double kLandingHeightMm = 3.0;
 class TraceBuilder {
  public:
   /// \param trace  cleared, and given room for `most_samples`; must outlive this
-  TraceBuilder(store::Trace& trace, double rate_hz, std::size_t most_samples);
+  TraceBuilder(record::Trace& trace, double rate_hz, std::size_t most_samples);
 
   /// Adds a sample whose tick is larger than those before; ignores others, and those beyond the
   /// room.
@@ -79,9 +79,9 @@ class TraceBuilder {
   [[nodiscard]] std::optional<std::chrono::nanoseconds> landed_at() const noexcept;
 
  private:
-  void hold_until(std::size_t tick, const store::TraceSample& first) noexcept;
+  void hold_until(std::size_t tick, const record::TraceSample& first) noexcept;
 
-  store::Trace& trace_;
+  record::Trace& trace_;
   std::size_t room_;
   std::size_t next_ = 0;  ///< the tick of the next sample: how many there are
   std::int64_t held_ = 0;
@@ -96,9 +96,9 @@ struct Exploration {
   std::chrono::nanoseconds lasted{};                  ///< on the servo's clock
   /// When the servo started, in real time: its ticks count from here.
   std::optional<std::chrono::steady_clock::time_point> began;
-  std::int64_t held_in_contact = 0;                 ///< held samples of the trace with contact
-  std::optional<store::ServoHealth> health;         ///< in real time
-  std::optional<store::InterruptionDetail> detail;  ///< if it was interrupted in real time
+  std::int64_t held_in_contact = 0;                  ///< held samples of the trace with contact
+  std::optional<record::ServoHealth> health;         ///< in real time
+  std::optional<record::InterruptionDetail> detail;  ///< if it was interrupted in real time
 };
 
 /// Whether a fault or a comfort stop ended the exploration.
@@ -123,7 +123,7 @@ class Explorer {
   [[nodiscard]] virtual Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
                                             Participant& participant,
                                             const device::ServoOptions& options,
-                                            store::Trace& trace) = 0;
+                                            record::Trace& trace) = 0;
 };
 
 /// Runs as fast as the processor allows, on the calling thread: for hands in virtual time.
@@ -131,7 +131,7 @@ class VirtualExplorer final : public Explorer {
  public:
   [[nodiscard]] Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
                                     Participant& participant, const device::ServoOptions& options,
-                                    store::Trace& trace) override;
+                                    record::Trace& trace) override;
 };
 
 }  // namespace touchtrial::session

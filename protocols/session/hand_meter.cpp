@@ -19,9 +19,9 @@ HandLevel level_of(double value, double least, double largest) noexcept {
 
 }  // namespace
 
-HandMeter::HandMeter(const design::ValidityRule& rule, double rate_hz) noexcept
-    : least_n_(std::max(design::kLightestN, rule.least_median_n)),
-      largest_n_(std::min(design::kStrongestN, rule.largest_median_n)),
+HandMeter::HandMeter(const study::ValidityRule& rule, double rate_hz) noexcept
+    : least_n_(std::max(study::kLightestN, rule.least_median_n)),
+      largest_n_(std::min(study::kStrongestN, rule.largest_median_n)),
       rate_hz_(rate_hz),
       step_ticks_(std::max<std::int64_t>(1, std::llround(kStepS * rate_hz))) {
   // A study may tell its participants something else.
@@ -62,8 +62,7 @@ void HandMeter::end_step(const device::ServoSample& last) noexcept {
 
 void HandMeter::tell() noexcept {
   const auto force = static_cast<int>(level_of(mean_n_, least_n_, largest_n_));
-  const auto speed =
-      static_cast<int>(level_of(mean_mm_s_, design::kSlowestMmS, design::kFastestMmS));
+  const auto speed = static_cast<int>(level_of(mean_mm_s_, study::kSlowestMmS, study::kFastestMmS));
   told_.store(static_cast<std::uint8_t>(1 + 3 * force + speed), std::memory_order_relaxed);
 }
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "device/servo/servo.hpp"
-#include "protocols/design/study.hpp"
 #include "protocols/session/experimenter.hpp"
+#include "study/study.hpp"
 
 #include <atomic>
 #include <cstdint>
@@ -20,7 +20,7 @@ class HandMeter {
  public:
   /// \param rule  its windows of force hold too, where they are narrower than the instructions
   /// \param rate_hz  of the servo, > 0
-  HandMeter(const design::ValidityRule& rule, double rate_hz) noexcept;
+  HandMeter(const study::ValidityRule& rule, double rate_hz) noexcept;
 
   /// Forgets the hand. Not while another thread calls `feel`.
   void begin() noexcept;

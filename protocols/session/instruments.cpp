@@ -9,7 +9,7 @@
 namespace touchtrial::session {
 namespace {
 
-using store::Mark;
+using record::Mark;
 using Clock = std::chrono::steady_clock;
 
 /// The mark of an input that is told as it comes; that of an exploration's beginning and of the
@@ -80,7 +80,7 @@ void SessionMarks::mark(Mark mark, int trial, TimePoint at) noexcept {
   told_.push_back({mark, trial, at});
 }
 
-std::optional<store::MarksBody> SessionMarks::take(SessionClock& clock) {
+std::optional<record::MarksBody> SessionMarks::take(SessionClock& clock) {
   if (instruments_ == nullptr || told_.empty()) return std::nullopt;
   const TimePoint now = Clock::now();
   const TimePoint zero = now - clock.of(now);
@@ -88,7 +88,7 @@ std::optional<store::MarksBody> SessionMarks::take(SessionClock& clock) {
   if (report.latencies.size() != told_.size()) {
     throw std::logic_error("instruments: another number of marks was taken than was made");
   }
-  store::MarksBody body;
+  record::MarksBody body;
   for (std::size_t i = 0; i < told_.size(); ++i) {
     const Told& one = told_[i];
     body.codes.push_back(static_cast<int>(one.mark));

@@ -5,7 +5,7 @@
 #include "device/servo/servo.hpp"
 #include "protocols/session/session.hpp"
 #include "protocols/session/session_clock.hpp"
-#include "protocols/store/marks.hpp"
+#include "record/marks.hpp"
 
 #include <chrono>
 #include <optional>
@@ -16,7 +16,7 @@ namespace touchtrial::session {
 /// The instruments themselves. Any thread may call all functions; none but `take` waits.
 class Instruments {
  public:
-  using Mark = store::Mark;
+  using Mark = record::Mark;
   using TimePoint = std::chrono::steady_clock::time_point;
   virtual ~Instruments() = default;
 
@@ -41,7 +41,7 @@ class Instruments {
 /// session's thread makes all calls except `plane_is_on` and `feel`.
 class SessionMarks {
  public:
-  using Mark = store::Mark;
+  using Mark = record::Mark;
   using TimePoint = Instruments::TimePoint;
 
   /// \param instruments  null: there are none, and nothing happens; else must outlive this
@@ -61,7 +61,7 @@ class SessionMarks {
 
   /// \param clock  of the session, in real time
   /// \return the marks since the last call; nothing if there are none
-  [[nodiscard]] std::optional<store::MarksBody> take(SessionClock& clock);
+  [[nodiscard]] std::optional<record::MarksBody> take(SessionClock& clock);
 
  private:
   void input(SessionInput input, int trial);

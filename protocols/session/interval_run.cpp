@@ -1,6 +1,6 @@
 #include "protocols/session/interval_run.hpp"
 
-#include "protocols/design/protocol.hpp"
+#include "study/protocol.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ constexpr double kShareOfPlane = 0.35;  ///< radius re the shorter side
 }  // namespace
 
 Vec3 IntervalForce::force_n(const device::DeviceSample& sample) noexcept {
-  has_lifted_ = has_lifted_ || sample.position_mm.z > design::kLiftedMm;
+  has_lifted_ = has_lifted_ || sample.position_mm.z > study::kLiftedMm;
   if (!has_lifted_) return {};
   const double wall_n = -stiffness_n_per_mm_ * sample.position_mm.z;
   const double speed_mm_s = std::hypot(sample.velocity_mm_s.x, sample.velocity_mm_s.y);
@@ -38,11 +38,11 @@ Vec3 PlayedForce::force_n(const device::DeviceSample& /*sample*/) noexcept {
   return {whole_n.x, whole_n.y, 0.0};
 }
 
-IntervalsEnd run_intervals(SessionDesk& desk, const design::Presentation& shown, bool practice,
+IntervalsEnd run_intervals(SessionDesk& desk, const study::Presentation& shown, bool practice,
                            const IntervalListener& listener) {
   const SessionParts& parts = desk.parts();
-  const design::Study& study = parts.key.study;
-  const design::IntervalPlan plan = study.protocol->interval_plan(study).value();
+  const study::Study& study = parts.key.study;
+  const study::IntervalPlan plan = study.protocol->interval_plan(study).value();
   const device::ServoOptions servo = desk.servo_options();
   const auto ticks = std::max<std::int64_t>(1, std::llround(plan.seconds * servo.rate_hz));
   const double stiffness_n_per_mm = study.rendering.stiffness_n_per_mm;
@@ -59,7 +59,7 @@ IntervalsEnd run_intervals(SessionDesk& desk, const design::Presentation& shown,
     IntervalForce felt(model, stiffness_n_per_mm, plan.windows, ticks);
     PlayedForce played(model, parts.source.plane(), stiffness_n_per_mm, ticks, servo.rate_hz);
     device::ForceSource& force = shown.hand_off ? static_cast<device::ForceSource&>(played) : felt;
-    store::Trace* const trace = listener.plane_on();
+    record::Trace* const trace = listener.plane_on();
     if (trace == nullptr) return IntervalsEnd::paused;
     const Exploration done = desk.explore(force, parts.source.plane(), servo, *trace);
     listener.explored(done);

@@ -5,8 +5,8 @@
 
 #include "device/servo/servo.hpp"
 #include "engine/rendering/rendering_model.hpp"
-#include "protocols/design/interval_plan.hpp"
 #include "protocols/session/session_desk.hpp"
+#include "study/interval_plan.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -20,7 +20,7 @@ class IntervalForce final : public device::ForceSource {
   /// \param stiffness_n_per_mm  of the wall
   /// \param ticks  of exploration, >= 1
   IntervalForce(const engine::RenderingModel& model, double stiffness_n_per_mm,
-                const design::IntervalWindows& windows, std::int64_t ticks) noexcept
+                const study::IntervalWindows& windows, std::int64_t ticks) noexcept
       : model_(model), stiffness_n_per_mm_(stiffness_n_per_mm), windows_(windows), left_(ticks) {}
 
   [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override;
@@ -30,7 +30,7 @@ class IntervalForce final : public device::ForceSource {
   engine::RenderingModel model_;
   engine::Bristle touch_;
   double stiffness_n_per_mm_;
-  design::IntervalWindows windows_;
+  study::IntervalWindows windows_;
   std::int64_t left_;
   bool has_lifted_ = false;
 };
@@ -73,13 +73,13 @@ enum class IntervalsEnd {
 struct IntervalListener {
   /// Before a plane comes on; gives the trace that the exploration fills. Null: the plane comes too
   /// late, and the trial begins again.
-  std::function<store::Trace*()> plane_on;
+  std::function<record::Trace*()> plane_on;
   std::function<void(const Exploration&)> explored;
 };
 
 /// Presents the intervals of a presentation.
 /// \pre the presentation has intervals
-[[nodiscard]] IntervalsEnd run_intervals(SessionDesk& desk, const design::Presentation& shown,
+[[nodiscard]] IntervalsEnd run_intervals(SessionDesk& desk, const study::Presentation& shown,
                                          bool practice, const IntervalListener& listener);
 
 }  // namespace touchtrial::session

@@ -3,9 +3,9 @@
 #include "core/cipher.hpp"
 #include "core/errors.hpp"
 #include "core/public_keys.hpp"
-#include "protocols/design/signed_pack.hpp"
 #include "protocols/session/session.hpp"
-#include "protocols/store/sealing.hpp"
+#include "record/sealing.hpp"
+#include "study/signed_pack.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -27,26 +27,26 @@ void require_holds(bool holds, const char* what) {
                           "copy, or run the same `plan` again with this key");
 }
 
-void require_same_study(const design::StudyKey& key, const design::StationKey& station) {
+void require_same_study(const study::StudyKey& key, const study::StationKey& station) {
   require_holds(station.study_id == key.study_id,
                 "is another study's; give the station the file that was made with this key");
   require_holds(
       station.seal == key.seal && station.configuration == key.configuration,
       "was made before or after a change of the study; run `touchtrial prepare`, and give "
       "the station its new file");
-  const auto code = [](const design::KeyedStimulus& keyed) { return keyed.code; };
+  const auto code = [](const study::KeyedStimulus& keyed) { return keyed.code; };
   require_holds(std::ranges::equal(station.stimuli, key.stimuli, {}, code, code) &&
                     station.catch_code == key.catch_code,
                 "has other codes than the key; give the station the file that was made with it");
 }
 
-void require_same_secrets(const design::StudyKey& key, const design::StationKey& station) {
+void require_same_secrets(const study::StudyKey& key, const study::StationKey& station) {
   require_holds(
       station.investigator_box == key.box().public_half &&
           station.investigator_signature == key.signer().public_half(),
       "seals for another investigator; give the station the file that was made with this key");
-  const auto own = std::ranges::find(key.stations, station.station.name, &design::Station::name);
-  if (own == key.stations.end() && key.stations.front().name == design::kOnlyStation) {
+  const auto own = std::ranges::find(key.stations, station.station.name, &study::Station::name);
+  if (own == key.stations.end() && key.stations.front().name == study::kOnlyStation) {
     refuse_older_key("is of a station that the key does not know");
   }
   require_holds(own != key.stations.end(),
@@ -73,57 +73,57 @@ struct TestRecord {
   int enrolment = 0;
   Bytes wrapped;  ///< the participant's key, for the investigator
   Bytes kept;     ///< the same, for the station
-  store::BufferedEvents events;
+  record::BufferedEvents events;
 };
 
-TestRecord test_record(const design::StationKey& station) {
+TestRecord test_record(const study::StationKey& station) {
   TestRecord record;
   record.enrolment = station.station.ranges.front().first;
   SystemEntropy entropy;
   const SecretKey key = entropy.secret("participant key");
   record.wrapped =
-      store::wrap_participant_key(station.investigator_box, kTestSession, key).participant;
-  record.kept = store::keep_participant_key(station.station.secret, kTestSession, key);
-  const design::Schedule schedule = design::make_schedule(
-      station.study, station.draw_of(record.enrolment, design::Draws::people));
+      record::wrap_participant_key(station.investigator_box, kTestSession, key).participant;
+  record.kept = record::keep_participant_key(station.station.secret, kTestSession, key);
+  const study::Schedule schedule =
+      study::make_schedule(station.study, station.draw_of(record.enrolment, study::Draws::people));
   Session session(schedule, station.study.trials,
-                  store::SessionRecorder(kTestSession, key, record.events));
-  store::SessionOpening opening;
+                  record::SessionRecorder(kTestSession, key, record.events));
+  record::SessionOpening opening;
   opening.participant = "test";
   opening.enrolment = record.enrolment;
   opening.study_id = station.study_id;
   opening.seal = station.seal;
-  session.open({}, opening, design::schedule_to_json(schedule, station));
+  session.open({}, opening, study::schedule_to_json(schedule, station));
   return record;
 }
 
 /// The schedule that the key opens in a record.
-std::optional<design::Schedule> opened_schedule(const design::StudyKey& key,
-                                                const TestRecord& record) {
-  const auto own = store::unwrap_participant_key(key.box(), kTestSession, record.wrapped);
+std::optional<study::Schedule> opened_schedule(const study::StudyKey& key,
+                                               const TestRecord& record) {
+  const auto own = record::unwrap_participant_key(key.box(), kTestSession, record.wrapped);
   if (!own) return std::nullopt;
-  const auto opened = store::opened_event(record.events.events.front(), *own);
+  const auto opened = record::opened_event(record.events.events.front(), *own);
   if (!opened) return std::nullopt;
-  return design::schedule_from_json(opened->secret, key);
+  return study::schedule_from_json(opened->secret, key);
 }
 
 }  // namespace
 
-void require_opens(const design::StudyKey& key, const design::StationKey& station,
+void require_opens(const study::StudyKey& key, const study::StationKey& station,
                    const engine::Pack& pack) {
   require_same_study(key, station);
   require_same_secrets(key, station);
-  design::require_whole(pack, station);
+  study::require_whole(pack, station);
   require_holds(!station.station.ranges.empty(),
                 "has no enrolment numbers; hand some out with `touchtrial plan --extend`");
   const TestRecord record = test_record(station);
-  require_holds(store::kept_participant_key(station.station.secret, kTestSession, record.kept) ==
-                    store::unwrap_participant_key(key.box(), kTestSession, record.wrapped),
+  require_holds(record::kept_participant_key(station.station.secret, kTestSession, record.kept) ==
+                    record::unwrap_participant_key(key.box(), kTestSession, record.wrapped),
                 "sealed a test record whose key the station cannot take up again");
   const auto schedule = opened_schedule(key, record);
   require_holds(schedule.has_value(), "sealed a test record that the key does not open");
-  require_holds(*schedule == design::make_schedule(
-                                 key.study, key.draw_of(record.enrolment, design::Draws::people)),
+  require_holds(*schedule == study::make_schedule(
+                                 key.study, key.draw_of(record.enrolment, study::Draws::people)),
                 "draws another schedule than the key");
 }
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "engine/pack/pack.hpp"
-#include "protocols/design/study_key.hpp"
+#include "study/study_key.hpp"
 
 namespace touchtrial::session {
 
@@ -12,8 +12,8 @@ namespace touchtrial::session {
 /// of the station's first participant. Nothing is stored. Takes as long as reading the pack.
 /// \throws VerificationError with the first thing that does not hold and the remedy; it names no
 ///   file
-/// \throws FileError as design::require_whole
-void require_opens(const design::StudyKey& key, const design::StationKey& station,
+/// \throws FileError as study::require_whole
+void require_opens(const study::StudyKey& key, const study::StationKey& station,
                    const engine::Pack& pack);
 
 }  // namespace touchtrial::session

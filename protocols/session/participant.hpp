@@ -6,7 +6,7 @@
 #include "device/haptic_device.hpp"
 #include "device/servo/servo.hpp"
 #include "device/servo/servo_control.hpp"
-#include "protocols/design/session_plan.hpp"
+#include "study/session_plan.hpp"
 
 #include <chrono>
 #include <optional>
@@ -23,7 +23,7 @@ struct InstructionStep {
 };
 
 struct QuestionStep {
-  const design::Questionnaire* questionnaire = nullptr;  ///< outlives the step
+  const study::Questionnaire* questionnaire = nullptr;  ///< outlives the step
   std::string_view typed{};  ///< what the first question's field holds at first; ASCII, likewise
 };
 
@@ -61,7 +61,7 @@ struct AnswerStep {
   /// Key of the title in the texts' "screens", of trials with intervals; empty: which picture it
   /// is.
   std::string question{};
-  design::Sight sight = design::Sight::curtain;  ///< blindfold: the answer is spoken
+  study::Sight sight = study::Sight::curtain;  ///< blindfold: the answer is spoken
 };
 
 /// After a practice answer.

@@ -77,8 +77,8 @@ class TraceWriter {
   std::thread thread_;
 };
 
-store::ServoHealth health_of(const device::ServoReport& report, std::int64_t lost,
-                             std::int64_t held) {
+record::ServoHealth health_of(const device::ServoReport& report, std::int64_t lost,
+                              std::int64_t held) {
   return {.rate_hz = report.rate_hz,
           .lateness_p50_us = report.lateness.p50_us,
           .lateness_p99_us = report.lateness.p99_us,
@@ -89,8 +89,8 @@ store::ServoHealth health_of(const device::ServoReport& report, std::int64_t los
 }
 
 /// The sealed part of an interruption: the faults by name, and the ticks before them.
-store::InterruptionDetail detail_of(const device::ServoReport& report,
-                                    const std::vector<device::FlightTick>& ticks) {
+record::InterruptionDetail detail_of(const device::ServoReport& report,
+                                     const std::vector<device::FlightTick>& ticks) {
   double largest = 0.0;
   for (const device::FlightTick& tick : ticks) largest = std::max(largest, norm(tick.sent_n));
   return {.safety_fault = std::string(device::name_of(report.fault)),
@@ -191,7 +191,7 @@ device::ServoControl& RealTimeExplorer::control() noexcept {
 
 Exploration RealTimeExplorer::explore(device::ForceSource& force, const PlaneGeometry& plane,
                                       Participant& participant, const device::ServoOptions& options,
-                                      store::Trace& trace) {
+                                      record::Trace& trace) {
   Machinery& m = *machinery_;
   m.make_room(options);
   device::HapticDevice& device = participant.begin_exploring(plane);

@@ -36,7 +36,7 @@ class RealTimeExplorer final : public Explorer {
   /// \throws whatever `participant.exploring` throws; the force is zero by then
   [[nodiscard]] Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
                                     Participant& participant, const device::ServoOptions& options,
-                                    store::Trace& trace) override;
+                                    record::Trace& trace) override;
 
   /// The scheduling of the servo's thread.
   [[nodiscard]] const device::SchedulingObtained& scheduling() const noexcept;

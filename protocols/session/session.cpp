@@ -41,15 +41,15 @@ std::string_view name_of(SessionInput input) {
   return kNames[static_cast<std::size_t>(input)];
 }
 
-Session::Session(design::Schedule schedule, const design::TrialOptions& options,
-                 store::SessionRecorder recorder, BlockDrawing blocks,
-                 std::unique_ptr<design::AdaptiveOrder> order)
+Session::Session(study::Schedule schedule, const study::TrialOptions& options,
+                 record::SessionRecorder recorder, BlockDrawing blocks,
+                 std::unique_ptr<study::AdaptiveOrder> order)
     : course_(std::move(schedule), options.on_interruption, std::move(blocks.draw),
               std::move(order)),
       options_(options),
       recorder_(std::move(recorder)),
       secret_of_block_(std::move(blocks.secret)) {
-  if (options.on_interruption == design::OnInterruption::restart_block && !secret_of_block_) {
+  if (options.on_interruption == study::OnInterruption::restart_block && !secret_of_block_) {
     throw std::invalid_argument("Session: a study that restarts blocks needs to seal them");
   }
 }
@@ -131,7 +131,7 @@ bool Session::break_due() const noexcept {
   return by_trials || by_time;
 }
 
-void Session::open(Time at, const store::SessionOpening& opening,
+void Session::open(Time at, const record::SessionOpening& opening,
                    const std::string& secret_schedule) {
   require(Input::open, at);
   recorder_.opened(at, opening, secret_schedule);
@@ -140,13 +140,13 @@ void Session::open(Time at, const store::SessionOpening& opening,
 
 void Session::calibrate(Time at, const std::string& text) {
   require(Input::calibrate, at);
-  recorder_.remarked(at, store::EventKind::calibrated, text);
+  recorder_.remarked(at, record::EventKind::calibrated, text);
   move_to(Phase::calibrated, at);
 }
 
 void Session::instruct(Time at, const std::string& text) {
   require(Input::instruct, at);
-  recorder_.remarked(at, store::EventKind::instructed, text);
+  recorder_.remarked(at, record::EventKind::instructed, text);
   move_to(between_trials(), at);
 }
 
@@ -181,7 +181,7 @@ void Session::end_exploring(Time at) {
 
 void Session::time_out(Time at) {
   require(Input::time_out, at);
-  const bool over = options_.on_timeout == design::OnTimeout::no_response;
+  const bool over = options_.on_timeout == study::OnTimeout::no_response;
   recorder_.timed_out(at, current()->trial, over ? evidence_ : std::nullopt);
   was_timed_out_ = true;
   if (over) {
@@ -192,7 +192,7 @@ void Session::time_out(Time at) {
 }
 
 void Session::interrupt(Time at, const std::string& reason,
-                        const std::optional<store::InterruptionDetail>& detail) {
+                        const std::optional<record::InterruptionDetail>& detail) {
   require(Input::interrupt, at);
   recorder_.interrupted(at, current()->trial, reason, detail);
   if (detail) note_force(detail->largest_force_n);
@@ -200,7 +200,7 @@ void Session::interrupt(Time at, const std::string& reason,
   restart_block(at);
 }
 
-void Session::keep_evidence(store::TrialEvidence evidence) {
+void Session::keep_evidence(record::TrialEvidence evidence) {
   require(Input::keep_evidence, last_);
   note_force(evidence.body.largest_force_n);
   evidence_ = std::move(evidence);
@@ -225,7 +225,7 @@ void Session::choose(int position) {
 
 void Session::confirm(Time at, std::optional<int> confidence) {
   require(Input::confirm, at);
-  store::AnswerBody body{current()->trial, answer_->position, answer_->first_position, confidence};
+  record::AnswerBody body{current()->trial, answer_->position, answer_->first_position, confidence};
   if (const auto& chosen = current()->chosen) {
     body.track = chosen->track;
     body.level = chosen->level;
@@ -253,14 +253,14 @@ void Session::finish_presentation(Time at, std::optional<int> position) {
 }
 
 void Session::give_up_presentation(Time at, const std::string& reason) {
-  if (reason != store::kPauseReason) course_.spoil();
+  if (reason != record::kPauseReason) course_.spoil();
   evidence_.reset();
   move_to(between_trials(), at);
 }
 
 void Session::restart_block(Time at) {
   if (!course_.block_to_restart()) return;
-  const design::BlockRestart again = course_.drawn_again(*course_.block_to_restart());
+  const study::BlockRestart again = course_.drawn_again(*course_.block_to_restart());
   recorder_.block_restarted(at, again.block, again.first_trial(),
                             secret_of_block_(again.presentations));
   course_.restart(again);
@@ -270,7 +270,7 @@ void Session::restart_block(Time at) {
 
 void Session::take_break(Time at, const std::string& text) {
   require(Input::take_break, at);
-  recorder_.remarked(at, store::EventKind::break_taken, text);
+  recorder_.remarked(at, record::EventKind::break_taken, text);
   done_since_break_ = 0;
   move_to(Phase::ready, at);
 }
@@ -290,14 +290,14 @@ void Session::resume(Time at) {
   move_to(before_pause_, at);
 }
 
-void Session::practise(Time at, const store::PracticeBody& body) {
+void Session::practise(Time at, const record::PracticeBody& body) {
   require(Input::practise, at);
   recorder_.practised(at, body);
   remarks_.practice.push_back(body);
   move_to(phase_, at);
 }
 
-void Session::deviate(Time at, const store::DeviationBody& body) {
+void Session::deviate(Time at, const record::DeviationBody& body) {
   require(Input::note, at);
   recorder_.deviated(at, body);
   remarks_.deviations.insert(body.code);
@@ -306,7 +306,7 @@ void Session::deviate(Time at, const store::DeviationBody& body) {
 
 void Session::tick(Time at, const std::string& item) {
   require(Input::note, at);
-  recorder_.remarked(at, store::EventKind::ticked, item);
+  recorder_.remarked(at, record::EventKind::ticked, item);
   remarks_.ticked.insert(item);
   move_to(phase_, at);
 }
@@ -318,7 +318,7 @@ void Session::question(Time at, const std::string& name, const std::string& answ
   move_to(phase_, at);
 }
 
-void Session::mark(Time at, const store::MarksBody& marks) {
+void Session::mark(Time at, const record::MarksBody& marks) {
   require(Input::note, at);
   recorder_.marked(at, marks);
   move_to(phase_, at);
@@ -326,7 +326,7 @@ void Session::mark(Time at, const store::MarksBody& marks) {
 
 void Session::note(Time at, const std::string& text) {
   require(Input::note, at);
-  recorder_.remarked(at, store::EventKind::noted, text);
+  recorder_.remarked(at, record::EventKind::noted, text);
   move_to(phase_, at);
 }
 

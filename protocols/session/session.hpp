@@ -2,9 +2,9 @@
 /// Simulated and real sessions use the same one. Knows neither participants nor clocks.
 #pragma once
 
-#include "protocols/design/course.hpp"
-#include "protocols/store/payload.hpp"
-#include "protocols/store/session_recorder.hpp"
+#include "record/payload.hpp"
+#include "record/session_recorder.hpp"
+#include "study/course.hpp"
 
 #include <chrono>
 #include <functional>
@@ -17,7 +17,7 @@
 #include <string_view>
 #include <vector>
 
-namespace touchtrial::store {
+namespace touchtrial::record {
 struct MarksBody;
 }
 
@@ -65,17 +65,17 @@ enum class SessionInput {
 
 /// How a block comes again in a fresh order (OnInterruption::restart_block).
 struct BlockDrawing {
-  design::Course::DrawBlock draw;
+  study::Course::DrawBlock draw;
   /// What is sealed of a block's new presentations.
-  std::function<std::string(const std::vector<design::Presentation>&)> secret;
+  std::function<std::string(const std::vector<study::Presentation>&)> secret;
 };
 
 /// The remarks so far, so that nobody is asked twice.
 struct SessionRemarks {
-  std::set<std::string> ticked;               ///< items of the day sheet
-  std::set<std::string> deviations;           ///< codes
-  std::set<std::string> questionnaires;       ///< names
-  std::vector<store::PracticeBody> practice;  ///< in chronological order
+  std::set<std::string> ticked;                ///< items of the day sheet
+  std::set<std::string> deviations;            ///< codes
+  std::set<std::string> questionnaires;        ///< names
+  std::vector<record::PracticeBody> practice;  ///< in chronological order
 };
 
 /// A session as an event-driven state machine, which owns its place in the schedule and the
@@ -90,26 +90,26 @@ class Session {
   using Time = std::chrono::nanoseconds;
 
   /// \param blocks  needed only if the study restarts blocks
-  /// \param order  needed only if the protocol has one: design::adaptive_order
-  Session(design::Schedule schedule, const design::TrialOptions& options,
-          store::SessionRecorder recorder, BlockDrawing blocks = {},
-          std::unique_ptr<design::AdaptiveOrder> order = nullptr);
+  /// \param order  needed only if the protocol has one: study::adaptive_order
+  Session(study::Schedule schedule, const study::TrialOptions& options,
+          record::SessionRecorder recorder, BlockDrawing blocks = {},
+          std::unique_ptr<study::AdaptiveOrder> order = nullptr);
 
   /// Brings a fresh session to the state that its stored events left; the recorder continues after
   /// the last one. Records nothing.
-  /// \param events  opened (store::opened_event)
+  /// \param events  opened (record::opened_event)
   /// \throws StoreError if the events cannot be those of such a session
-  void restore(std::span<const store::Event> events);
+  void restore(std::span<const record::Event> events);
   /// Takes the session up after the program that ran it ended: interrupts the current presentation,
   /// if there is one, and ends a pause.
-  void take_up(Time at, const store::ResumedBody& body);
+  void take_up(Time at, const record::ResumedBody& body);
 
   /// Called for every input that is accepted, before it is recorded, with the current trial's
   /// number (0: none is left).
   using Told = std::function<void(SessionInput, int trial)>;
   void tell(Told told) { told_ = std::move(told); }
 
-  [[nodiscard]] const design::TrialOptions& options() const noexcept { return options_; }
+  [[nodiscard]] const study::TrialOptions& options() const noexcept { return options_; }
   [[nodiscard]] SessionPhase phase() const noexcept { return phase_; }
   [[nodiscard]] bool accepts(SessionInput input) const noexcept;
   /// The choice at each position of the answer screen: an index into the protocol's choices.
@@ -117,7 +117,7 @@ class Session {
     return course_.schedule().layout;
   }
   /// The current presentation, or between trials the next one; null when all are done.
-  [[nodiscard]] const design::Presentation* current() const noexcept { return course_.current(); }
+  [[nodiscard]] const study::Presentation* current() const noexcept { return course_.current(); }
   /// Presentations that remain, with the current one.
   [[nodiscard]] int presentations_left() const noexcept { return course_.left(); }
   /// Presentations begun so far, with interrupted ones.
@@ -131,7 +131,7 @@ class Session {
   [[nodiscard]] bool break_due() const noexcept;
 
   /// \param secret_schedule  schedule_to_json's text, stored sealed
-  void open(Time at, const store::SessionOpening& opening, const std::string& secret_schedule);
+  void open(Time at, const record::SessionOpening& opening, const std::string& secret_schedule);
   void calibrate(Time at, const std::string& text = "");
   void instruct(Time at, const std::string& text = "");
 
@@ -147,19 +147,19 @@ class Session {
   /// The presentation was spoilt by a comfort stop or a device fault. The study's on_interruption
   /// decides whether it is repeated. Its evidence is discarded.
   /// \param reason  in clear: a fixed phrase that does not depend on the stimulus; after
-  ///   store::kPauseReason the same presentation is the next one
+  ///   record::kPauseReason the same presentation is the next one
   /// \param detail  sealed but for the faults' names
   void interrupt(Time at, const std::string& reason,
-                 const std::optional<store::InterruptionDetail>& detail = std::nullopt);
+                 const std::optional<record::InterruptionDetail>& detail = std::nullopt);
   /// SessionRecorder::packed. May be called on another thread, except during `restore`.
-  [[nodiscard]] store::TrialEvidence packed(const store::TraceBody& body,
-                                            const store::TrialMeasures& measures,
-                                            const store::Trace& trace) const {
+  [[nodiscard]] record::TrialEvidence packed(const record::TraceBody& body,
+                                             const record::TrialMeasures& measures,
+                                             const record::Trace& trace) const {
     return recorder_.packed(body, measures, trace);
   }
   /// Keeps the evidence of the presentation so far in place of any kept before. It is stored
   /// together with the answer, or with a time-out without an answer.
-  void keep_evidence(store::TrialEvidence evidence);
+  void keep_evidence(record::TrialEvidence evidence);
   /// The participant goes back to the plane before answering; impossible after a time-out.
   void explore_again(Time at);
 
@@ -171,21 +171,21 @@ class Session {
   void confirm(Time at, std::optional<int> confidence = std::nullopt);
 
   /// One presentation of the practice, between instruction and the first trial.
-  void practise(Time at, const store::PracticeBody& body);
+  void practise(Time at, const record::PracticeBody& body);
   void take_break(Time at, const std::string& text = "");
   /// Possible whenever the plane is off; `resume` returns to the phase before. While a presentation
-  /// is explored, `interrupt` it before, with store::kPauseReason.
+  /// is explored, `interrupt` it before, with record::kPauseReason.
   void pause(Time at, const std::string& reason);
   void resume(Time at);
   // Remarks, possible at any time between opening and closing.
   void note(Time at, const std::string& text);
-  void deviate(Time at, const store::DeviationBody& body);
+  void deviate(Time at, const record::DeviationBody& body);
   /// \param item  its code
   void tick(Time at, const std::string& item);
   /// \param answers  JSON, sealed
   void question(Time at, const std::string& name, const std::string& answers);
   /// Records what other instruments were told of.
-  void mark(Time at, const store::MarksBody& marks);
+  void mark(Time at, const record::MarksBody& marks);
   /// Ends the session early. The current presentation remains without an answer.
   /// \param reason  in the experimenter's words, sealed; may be empty
   /// \param code  in clear, if the program stops it
@@ -217,22 +217,22 @@ class Session {
   [[nodiscard]] SessionPhase between_trials() const noexcept;
 
   // The effects of stored events, by group (session_restore.cpp).
-  void follow(const store::Event& event);
-  [[nodiscard]] bool follow_trial(const store::Event& event);
-  [[nodiscard]] bool follow_remark(const store::Event& event);
-  void follow_course(const store::Event& event);
+  void follow(const record::Event& event);
+  [[nodiscard]] bool follow_trial(const record::Event& event);
+  [[nodiscard]] bool follow_remark(const record::Event& event);
+  void follow_course(const record::Event& event);
 
-  design::Course course_;
-  design::TrialOptions options_;
-  store::SessionRecorder recorder_;
-  std::function<std::string(const std::vector<design::Presentation>&)> secret_of_block_;
+  study::Course course_;
+  study::TrialOptions options_;
+  record::SessionRecorder recorder_;
+  std::function<std::string(const std::vector<study::Presentation>&)> secret_of_block_;
   Told told_;
   SessionPhase phase_ = SessionPhase::fresh;
   SessionPhase before_pause_ = SessionPhase::ready;
   Time last_{};
   bool had_contact_ = false;
   bool was_timed_out_ = false;
-  std::optional<store::TrialEvidence> evidence_;
+  std::optional<record::TrialEvidence> evidence_;
   std::optional<Answer> answer_;
   SessionRemarks remarks_;
   std::map<int, int> answers_;             ///< how many, by position

@@ -138,7 +138,7 @@ std::optional<StepReply> SessionDesk::attend(const Step& step) {
 }
 
 Exploration SessionDesk::explore(device::ForceSource& force, const PlaneGeometry& plane,
-                                 const device::ServoOptions& options, store::Trace& trace) {
+                                 const device::ServoOptions& options, record::Trace& trace) {
   AttendedParticipant participant(*this);
   hand_.begin();
   was_cut_short_ = false;
@@ -253,7 +253,7 @@ bool SessionDesk::obey(const Request& request) {
 bool SessionDesk::obey_pause(const Request& request) {
   // Between two planes of a presentation no force is on, but the presentation is under way.
   const bool interrupts = session_.phase() == SessionPhase::exploring;
-  if (interrupts) session_.interrupt(now(), store::kPauseReason);
+  if (interrupts) session_.interrupt(now(), record::kPauseReason);
   if (!session_.accepts(SessionInput::pause)) return true;
   session_.pause(now(), request.text);
   ++pauses_;
@@ -282,7 +282,7 @@ bool SessionDesk::obey_delay(const Request& request) {
   session_.deviate(now(), {request.code, request.text});
   if (!session_.in_presentation()) return true;
   if (session_.phase() == SessionPhase::exploring) {
-    session_.interrupt(now(), store::kPauseReason);
+    session_.interrupt(now(), record::kPauseReason);
     return false;
   }
   if (!session_.accepts(SessionInput::pause)) return true;  // paused already

@@ -44,7 +44,7 @@ class SessionDesk {
   /// or are obeyed after it.
   /// \param trace  gets every sample
   [[nodiscard]] Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
-                                    const device::ServoOptions& options, store::Trace& trace);
+                                    const device::ServoOptions& options, record::Trace& trace);
   /// Whether the experimenter's pause ended the last exploration, and not the participant.
   [[nodiscard]] bool was_cut_short() const noexcept { return was_cut_short_; }
   /// Pauses of this run so far.

@@ -1,9 +1,9 @@
 #include "protocols/session/session_runner.hpp"
 
-#include "protocols/design/protocol.hpp"
 #include "protocols/session/interval_run.hpp"
 #include "protocols/session/session_desk.hpp"
 #include "protocols/session/trial_trace.hpp"
+#include "study/protocol.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -62,7 +62,7 @@ class TrialRun {
   const SessionParts& parts_;
   SessionTally& tally_;
   device::ServoOptions servo_;
-  std::optional<design::IntervalPlan> intervals_;
+  std::optional<study::IntervalPlan> intervals_;
   TrialTrace trace_;
   Time presented_at_{};
   int of_ = 0;                 ///< presentations in all, as far as is known
@@ -86,7 +86,7 @@ void TrialRun::run() {
   const engine::RenderingModel presented = model();
   if (explore(presented)) answer(presented);
   const bool is_lost =
-      time_is_up_ && parts_.key.study.trials.on_timeout == design::OnTimeout::no_response;
+      time_is_up_ && parts_.key.study.trials.on_timeout == study::OnTimeout::no_response;
   if (!is_lost || !desk_.goes_on()) return;
   desk_.enter("time is up");
   static_cast<void>(
@@ -94,8 +94,8 @@ void TrialRun::run() {
 }
 
 engine::RenderingModel TrialRun::model() const {
-  const design::Presentation& presentation = *session_.current();
-  if (presentation.kind == design::PresentationKind::catch_trial) return parts_.source.flat();
+  const study::Presentation& presentation = *session_.current();
+  if (presentation.kind == study::PresentationKind::catch_trial) return parts_.source.flat();
   return parts_.source.model(parts_.key.code_of(presentation.stimulus), presentation.gain_db);
 }
 
@@ -117,14 +117,14 @@ bool TrialRun::came_late() {
   constexpr std::chrono::seconds kLate{1};
   const Time now = desk_.now();
   if (now - presented_at_ < kLate) return false;
-  session_.interrupt(now, store::kPauseReason);
+  session_.interrupt(now, record::kPauseReason);
   return true;
 }
 
 bool TrialRun::explore_again(const engine::RenderingModel& model) {
   device::ServoOptions rest = servo_;
   rest.limit_ticks -= trace_.ticks();
-  store::Trace& part = trace_.next_part();
+  record::Trace& part = trace_.next_part();
   const Time plane_on = desk_.now();
   session_.explore_again(plane_on);
   desk_.enter("exploring");
@@ -151,7 +151,7 @@ bool TrialRun::end_exploration(const Exploration& done, Time plane_on) {
     return false;
   }
   if (desk_.was_cut_short()) {
-    session_.interrupt(ended, store::kPauseReason);
+    session_.interrupt(ended, record::kPauseReason);
     return false;
   }
   trace_.add(done, began - presented_at_);
@@ -160,23 +160,23 @@ bool TrialRun::end_exploration(const Exploration& done, Time plane_on) {
   if (!time_is_up_) {
     session_.end_exploring(ended);
   } else {
-    if (parts_.key.study.trials.on_timeout == design::OnTimeout::no_response) keep_evidence();
+    if (parts_.key.study.trials.on_timeout == study::OnTimeout::no_response) keep_evidence();
     session_.time_out(ended);
   }
   return session_.phase() == SessionPhase::answering;
 }
 
 void TrialRun::run_intervals() {
-  const design::Presentation shown = *session_.current();
+  const study::Presentation shown = *session_.current();
   trace_.begin();
   time_is_up_ = false;
   Time plane_on{};
   Time ended{};
   bool is_presented = false;
   device::ServoReport last;
-  std::optional<store::InterruptionDetail> detail;
+  std::optional<record::InterruptionDetail> detail;
   IntervalListener listener;
-  listener.plane_on = [&]() -> store::Trace* {
+  listener.plane_on = [&]() -> record::Trace* {
     plane_on = desk_.now();
     if (!is_presented) {
       session_.present(plane_on);
@@ -202,7 +202,7 @@ void TrialRun::run_intervals() {
       session_.interrupt(ended, desk_.note_interruption(last), detail);
       return;
     case IntervalsEnd::paused:
-      if (session_.in_presentation()) session_.interrupt(ended, store::kPauseReason);
+      if (session_.in_presentation()) session_.interrupt(ended, record::kPauseReason);
       return;
     case IntervalsEnd::not_explored:
       session_.interrupt(ended, "not explored as asked for");
@@ -237,7 +237,7 @@ void TrialRun::answer(const engine::RenderingModel& model) {
 }
 
 AnswerStep TrialRun::question() const {
-  const design::SessionPlan& plan = parts_.key.study.session;
+  const study::SessionPlan& plan = parts_.key.study.session;
   const auto left_s = static_cast<double>(servo_.limit_ticks - trace_.ticks()) / servo_.rate_hz;
   return {.trial = session_.presentations_begun(),
           .of = of_,
@@ -327,7 +327,7 @@ SessionTally run_session(Session& session, const SessionParts& parts) {
   if (!desk.left()) desk.tell_of_end();
   desk.record_marks();
   if (!desk.left()) {
-    const design::Study& study = parts.key.study;
+    const study::Study& study = parts.key.study;
     session.close(desk.now(), study.protocol->may_name_one_key(study));
   }
   tally.duration = desk.now();
@@ -336,7 +336,7 @@ SessionTally run_session(Session& session, const SessionParts& parts) {
   return tally;
 }
 
-SessionTally run_session_in_virtual_time(Session& session, const design::StudyCodes& key,
+SessionTally run_session_in_virtual_time(Session& session, const study::StudyCodes& key,
                                          const StimulusSource& source, Participant& participant) {
   VirtualSessionClock clock;
   VirtualExplorer explorer;

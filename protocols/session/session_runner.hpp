@@ -4,7 +4,6 @@
 #pragma once
 
 #include "device/device_settings.hpp"
-#include "protocols/design/study_key.hpp"
 #include "protocols/session/device_station.hpp"
 #include "protocols/session/experimenter.hpp"
 #include "protocols/session/exploration.hpp"
@@ -13,6 +12,7 @@
 #include "protocols/session/session_clock.hpp"
 #include "protocols/session/session_stages.hpp"
 #include "protocols/session/stimulus_source.hpp"
+#include "study/study_key.hpp"
 
 #include <chrono>
 #include <cstdint>
@@ -40,7 +40,7 @@ class Instruments;
 
 /// Everything that a session needs to run. All of it must outlive the run.
 struct SessionParts {
-  const design::StudyCodes& key;
+  const study::StudyCodes& key;
   const StimulusSource& source;
   Participant& participant;
   SessionClock& clock;
@@ -60,8 +60,8 @@ struct SessionParts {
 /// that are not done yet, the trials, and the closing questions.
 ///
 /// Nothing stored in clear depends on what is presented, except whether the exploration was long
-/// enough and the hand within its windows (store::HandWindows), and what a session's end sums up
-/// (store::ClosedBody). An answer is acknowledged
+/// enough and the hand within its windows (record::HandWindows), and what a session's end sums up
+/// (record::ClosedBody). An answer is acknowledged
 /// once it is durable. A presentation that ends in a fault or a comfort stop is recorded as
 /// interrupted, and the study decides whether it is repeated; the session is then paused until the
 /// device supply is ready again. The session is stopped when the supply gives
@@ -74,7 +74,7 @@ SessionTally run_session(Session& session, const SessionParts& parts);
 
 /// Runs a session in virtual time, from 0 on.
 /// \param participant  brings a simulated hand
-SessionTally run_session_in_virtual_time(Session& session, const design::StudyCodes& key,
+SessionTally run_session_in_virtual_time(Session& session, const study::StudyCodes& key,
                                          const StimulusSource& source, Participant& participant);
 
 }  // namespace touchtrial::session

@@ -1,9 +1,9 @@
 #include "protocols/session/session_stages.hpp"
 
 #include "core/text.hpp"
-#include "protocols/design/protocol.hpp"
 #include "protocols/session/interval_run.hpp"
 #include "protocols/session/session_desk.hpp"
+#include "study/protocol.hpp"
 
 #include <chrono>
 
@@ -82,11 +82,11 @@ bool instruct(SessionDesk& desk) {
   return true;
 }
 
-nlohmann::json answer_to_json(design::QuestionKind kind, const std::string& answer) {
-  if (kind == design::QuestionKind::choice) {
+nlohmann::json answer_to_json(study::QuestionKind kind, const std::string& answer) {
+  if (kind == study::QuestionKind::choice) {
     if (const auto index = number_in<int>(answer)) return *index;
   }
-  if (kind == design::QuestionKind::number) {
+  if (kind == study::QuestionKind::number) {
     if (const auto number = number_in<double>(answer)) return *number;
   }
   return answer;
@@ -94,12 +94,12 @@ nlohmann::json answer_to_json(design::QuestionKind kind, const std::string& answ
 
 /// One JSON object from question ids to answers, without the questions that were left out. Format:
 /// docs/data-dictionary.md.
-std::string answers_to_json(const design::Questionnaire& questionnaire,
+std::string answers_to_json(const study::Questionnaire& questionnaire,
                             const std::vector<std::string>& answers) {
   nlohmann::json object = nlohmann::json::object();
   for (std::size_t i = 0; i < questionnaire.questions.size() && i < answers.size(); ++i) {
     if (answers[i].empty()) continue;
-    const design::Question& question = questionnaire.questions[i];
+    const study::Question& question = questionnaire.questions[i];
     object[question.id] = answer_to_json(question.kind, answers[i]);
   }
   // Whatever people type is kept; bytes that are not UTF-8 are replaced.
@@ -107,7 +107,7 @@ std::string answers_to_json(const design::Questionnaire& questionnaire,
 }
 
 /// \return whether the session goes on
-bool ask(SessionDesk& desk, const std::optional<design::Questionnaire>& questionnaire) {
+bool ask(SessionDesk& desk, const std::optional<study::Questionnaire>& questionnaire) {
   if (!questionnaire) return true;
   if (desk.session().remarks().questionnaires.contains(questionnaire->name)) return true;
   desk.enter("questions");
@@ -130,10 +130,10 @@ struct PracticeProgress {
 
 /// \param practised  in chronological order
 /// \param a_round  presentations of a round
-PracticeProgress progress_of(const std::vector<store::PracticeBody>& practised,
-                             const design::PracticePlan& plan, int a_round) {
+PracticeProgress progress_of(const std::vector<record::PracticeBody>& practised,
+                             const study::PracticePlan& plan, int a_round) {
   PracticeProgress progress;
-  for (const store::PracticeBody& one : practised) {
+  for (const record::PracticeBody& one : practised) {
     if (one.round > progress.round) progress = {.round = one.round};
     ++progress.done;
     progress.correct += one.correct.value_or(false) ? 1 : 0;
@@ -159,20 +159,19 @@ class PracticeRun {
   }
   [[nodiscard]] bool run_round(int round);
   /// \return empty if it was interrupted; to be repeated if the session goes on
-  [[nodiscard]] std::optional<store::PracticeBody> present(const PracticeProgress& at,
-                                                           const PracticeRound& round);
+  [[nodiscard]] std::optional<record::PracticeBody> present(const PracticeProgress& at,
+                                                            const PracticeRound& round);
   /// The position that is right.
   [[nodiscard]] static int right_at(const PracticeProgress& at, const PracticeRound& round);
   /// \return how it ended; empty if it was interrupted
   [[nodiscard]] std::optional<device::ServoEnd> explore(const PracticeProgress& at,
                                                         const PracticeRound& round);
   [[nodiscard]] std::optional<device::ServoEnd> explore_plane(const engine::RenderingModel& model);
-  [[nodiscard]] std::optional<device::ServoEnd> explore_intervals(
-      const design::Presentation& shown);
+  [[nodiscard]] std::optional<device::ServoEnd> explore_intervals(const study::Presentation& shown);
 
   SessionDesk& desk_;
   const PracticeTextures& textures_;
-  store::Trace trace_;
+  record::Trace trace_;
   int a_round_;
   int not_explored_ = 0;  ///< trials with an interval that was not explored as asked for
 };
@@ -202,7 +201,7 @@ bool PracticeRun::run_round(int round) {
       if (!desk_.goes_on()) return false;
       continue;
     }
-    const std::optional<store::PracticeBody> done = present(at, shown);
+    const std::optional<record::PracticeBody> done = present(at, shown);
     if (!desk_.goes_on()) return false;
     if (!done) continue;
     desk_.session().practise(desk_.now(), *done);
@@ -219,8 +218,8 @@ int PracticeRun::right_at(const PracticeProgress& at, const PracticeRound& round
   return round.order[nth % round.order.size()];
 }
 
-std::optional<store::PracticeBody> PracticeRun::present(const PracticeProgress& at,
-                                                        const PracticeRound& round) {
+std::optional<record::PracticeBody> PracticeRun::present(const PracticeProgress& at,
+                                                         const PracticeRound& round) {
   const int number = at.done + 1;
   desk_.enter_practice("ready", number, a_round_);
   if (!desk_.attend(ReadyStep{number, a_round_, true})) return std::nullopt;
@@ -228,7 +227,7 @@ std::optional<store::PracticeBody> PracticeRun::present(const PracticeProgress& 
   const std::optional<device::ServoEnd> end = explore(at, round);
   if (!end) return std::nullopt;
   desk_.enter_practice("answering", number, a_round_);
-  const design::Study& study = desk_.parts().key.study;
+  const study::Study& study = desk_.parts().key.study;
   const auto intervals = study.protocol->interval_plan(study);
   const std::optional<StepReply> reply =
       desk_.attend(AnswerStep{.trial = number,
@@ -238,8 +237,8 @@ std::optional<store::PracticeBody> PracticeRun::present(const PracticeProgress& 
                               .question = intervals ? intervals->question : std::string(),
                               .sight = study.session.sight});
   if (!reply) return std::nullopt;
-  return store::PracticeBody{at.round, number, reply->position,
-                             reply->position == right_at(at, round)};
+  return record::PracticeBody{at.round, number, reply->position,
+                              reply->position == right_at(at, round)};
 }
 
 std::optional<device::ServoEnd> PracticeRun::explore(const PracticeProgress& at,
@@ -250,7 +249,7 @@ std::optional<device::ServoEnd> PracticeRun::explore(const PracticeProgress& at,
   return explore_intervals(round.trials[static_cast<std::size_t>(at.done) % round.trials.size()]);
 }
 
-std::optional<device::ServoEnd> PracticeRun::explore_intervals(const design::Presentation& shown) {
+std::optional<device::ServoEnd> PracticeRun::explore_intervals(const study::Presentation& shown) {
   device::ServoReport last;
   const IntervalListener listener{[this] { return &trace_; },
                                   [&last](const Exploration& done) { last = done.servo; }};
@@ -295,8 +294,8 @@ bool practise(SessionDesk& desk) {
 }
 
 void show_pictures(SessionDesk& desk) {
-  const design::Study& study = desk.parts().key.study;
-  const std::vector<design::Choice> choices = study.protocol->choices(study);
+  const study::Study& study = desk.parts().key.study;
+  const std::vector<study::Choice> choices = study.protocol->choices(study);
   std::vector<std::string> pictures;
   for (const int choice : desk.session().layout()) {
     pictures.push_back(choices[static_cast<std::size_t>(choice)].label);

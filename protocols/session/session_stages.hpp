@@ -4,9 +4,9 @@
 
 #include "core/plane_geometry.hpp"
 #include "engine/rendering/rendering_model.hpp"
-#include "protocols/design/schedule.hpp"
-#include "protocols/design/session_plan.hpp"
 #include "protocols/session/experimenter.hpp"
+#include "study/schedule.hpp"
+#include "study/session_plan.hpp"
 
 #include <functional>
 #include <optional>
@@ -17,10 +17,10 @@ namespace touchtrial::session {
 
 /// The texts of one session, in its language. Empty members are left out of the session.
 struct SessionTexts {
-  std::vector<std::string> instructions;            ///< pages
-  std::optional<design::Questionnaire> handedness;  ///< asked after the instructions
-  std::optional<design::Questionnaire> closing;     ///< asked after the last trial
-  std::vector<DaySheetItem> day_sheet;              ///< for the experimenter
+  std::vector<std::string> instructions;           ///< pages
+  std::optional<study::Questionnaire> handedness;  ///< asked after the instructions
+  std::optional<study::Questionnaire> closing;     ///< asked after the last trial
+  std::vector<DaySheetItem> day_sheet;             ///< for the experimenter
 };
 
 struct PracticeRound {
@@ -28,15 +28,15 @@ struct PracticeRound {
   std::vector<const engine::RenderingModel*> models;  ///< by position
   std::vector<int> order;                             ///< positions in the order of presentation
   /// Instead of models and order: trials with intervals, each with its target.
-  std::vector<design::Presentation> trials{};
+  std::vector<study::Presentation> trials{};
 };
 
 /// One participant's practice on textures that are not in the study. The fields of the models must
 /// outlive this.
 struct PracticeTextures {
   PlaneGeometry plane;
-  int presentations = 0;        ///< of a round
-  design::PracticePlan plan{};  ///< criterion and rounds
+  int presentations = 0;       ///< of a round
+  study::PracticePlan plan{};  ///< criterion and rounds
   /// Numbered from 1. The same number always gives the same round.
   std::function<PracticeRound(int round)> round;
 };

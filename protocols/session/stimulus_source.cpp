@@ -1,7 +1,7 @@
 #include "protocols/session/stimulus_source.hpp"
 
 #include "core/errors.hpp"
-#include "protocols/design/protocol.hpp"
+#include "study/protocol.hpp"
 
 #include <algorithm>
 #include <array>
@@ -68,26 +68,26 @@ engine::FieldWithGains StimulusSource::field(const std::string& code) const {
   return {found.field, found.gains};
 }
 
-StimulusSource::Mix StimulusSource::mix_of(const design::Interval& interval) noexcept {
+StimulusSource::Mix StimulusSource::mix_of(const study::Interval& interval) noexcept {
   if (!interval.other || interval.share == 0.0) return {interval.stimulus, interval.stimulus, 0.0};
   return {interval.stimulus, *interval.other, interval.share};
 }
 
-StimulusSource::StimulusSource(const engine::Pack& pack, const design::StudyCodes& codes)
+StimulusSource::StimulusSource(const engine::Pack& pack, const study::StudyCodes& codes)
     : StimulusSource(pack, codes.study.rendering) {
   if (!codes.study.protocol->interval_plan(codes.study)) return;
   for (const auto& [code, index] : codes.stimuli) {
     const Mix alone{index, index, 0.0};
     mixes_.emplace(alone, applied(alone, codes));
   }
-  for (const design::Interval& interval : codes.study.protocol->mixtures(codes.study)) {
+  for (const study::Interval& interval : codes.study.protocol->mixtures(codes.study)) {
     const Mix mix = mix_of(interval);
     if (!mixes_.contains(mix)) mixes_.emplace(mix, applied(mix, codes));
   }
 }
 
 StimulusSource::Applied StimulusSource::applied(const Mix& mix,
-                                                const design::StudyCodes& codes) const {
+                                                const study::StudyCodes& codes) const {
   const Stimulus& one = stimulus(codes.code_of(mix.one));
   const std::array<engine::FieldWithGains, 1> alone = {{{one.field, one.gains}}};
   if (mix.share == 0.0) return {engine::applied_sum(alone), 1.0};
@@ -104,7 +104,7 @@ StimulusSource::Applied StimulusSource::applied(const Mix& mix,
   return sum;
 }
 
-engine::RenderingModel StimulusSource::plane_of(const design::Interval& interval) const {
+engine::RenderingModel StimulusSource::plane_of(const study::Interval& interval) const {
   const auto found = mixes_.find(mix_of(interval));
   if (found == mixes_.end()) {
     throw std::logic_error("StimulusSource: a plane that the protocol did not name");

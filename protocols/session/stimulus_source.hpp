@@ -3,7 +3,7 @@
 
 #include "engine/pack/pack.hpp"
 #include "engine/rendering/rendering_model.hpp"
-#include "protocols/design/study_key.hpp"
+#include "study/study_key.hpp"
 
 #include <map>
 #include <optional>
@@ -22,7 +22,7 @@ class StimulusSource {
   ///   or the pack is empty
   StimulusSource(const engine::Pack& pack, const engine::RenderingOptions& rendering);
   /// The same for sessions, whose trials may have intervals.
-  StimulusSource(const engine::Pack& pack, const design::StudyCodes& codes);
+  StimulusSource(const engine::Pack& pack, const study::StudyCodes& codes);
 
   /// The model of a field.
   /// \throws FileError if the pack has no such code
@@ -41,7 +41,7 @@ class StimulusSource {
   /// height is taken out. Gains are applied to forces, which are linear in them up to limits and as
   /// long as contact lasts.
   /// \throws std::logic_error if the study has no intervals, or its protocol did not name the mix
-  [[nodiscard]] engine::RenderingModel plane_of(const design::Interval& interval) const;
+  [[nodiscard]] engine::RenderingModel plane_of(const study::Interval& interval) const;
 
   /// A plane without texture, for catch trials.
   [[nodiscard]] const engine::RenderingModel& flat() const noexcept { return *flat_; }
@@ -67,8 +67,8 @@ class StimulusSource {
 
   /// Two stimuli, or one twice, and the share of the second.
   struct Mix {
-    design::StimulusIndex one;
-    design::StimulusIndex other;
+    study::StimulusIndex one;
+    study::StimulusIndex other;
     double share = 0.0;
     friend auto operator<=>(const Mix&, const Mix&) = default;
   };
@@ -77,8 +77,8 @@ class StimulusSource {
     engine::TextureField field;
     double factor = 1.0;
   };
-  [[nodiscard]] static Mix mix_of(const design::Interval& interval) noexcept;
-  [[nodiscard]] Applied applied(const Mix& mix, const design::StudyCodes& codes) const;
+  [[nodiscard]] static Mix mix_of(const study::Interval& interval) noexcept;
+  [[nodiscard]] Applied applied(const Mix& mix, const study::StudyCodes& codes) const;
 
   std::map<std::string, Stimulus, std::less<>> stimuli_;
   std::optional<engine::RenderingModel> flat_;

@@ -17,13 +17,13 @@ struct ContactSums {
   double force_squares = 0.0;
 };
 
-ContactSums sums_of(const store::Trace& trace, double max_force_n,
-                    const design::ValidityRule& rule) {
+ContactSums sums_of(const record::Trace& trace, double max_force_n,
+                    const study::ValidityRule& rule) {
   const auto squared = [](double value) { return value * value; };
   const double saturation = squared(0.999 * max_force_n);
   ContactSums sums;
-  const store::TraceSample* before = nullptr;  // the previous sample, if it had contact
-  for (const store::TraceSample& sample : trace.samples) {
+  const record::TraceSample* before = nullptr;  // the previous sample, if it had contact
+  for (const record::TraceSample& sample : trace.samples) {
     const Vec3& f = sample.force_n;
     if (!(f.z > 0.0)) {
       before = nullptr;
@@ -43,12 +43,12 @@ ContactSums sums_of(const store::Trace& trace, double max_force_n,
 
 /// What the hand did at the plane. No texture's force is used but the one across the plane, which
 /// on average is the hand's own push.
-store::HandWindows hand_windows(const store::Trace& trace, const design::ValidityRule& rule) {
+record::HandWindows hand_windows(const record::Trace& trace, const study::ValidityRule& rule) {
   double samples = 0.0;
   double path_mm = 0.0;
   double normal_n = 0.0;
-  const store::TraceSample* before = nullptr;  // the previous sample, if it was at the plane
-  for (const store::TraceSample& sample : trace.samples) {
+  const record::TraceSample* before = nullptr;  // the previous sample, if it was at the plane
+  for (const record::TraceSample& sample : trace.samples) {
     if (sample.position_mm.z > kLandingHeightMm) {
       before = nullptr;
       continue;
@@ -69,18 +69,18 @@ store::HandWindows hand_windows(const store::Trace& trace, const design::Validit
   return {.contact = time_s >= rule.least_contact_s,
           .path = path_mm >= rule.least_path_mm,
           .force = is_within(normal_n / samples, rule.least_median_n, rule.largest_median_n),
-          .speed = is_within(path_mm / time_s, design::kSlowestMmS, design::kFastestMmS)};
+          .speed = is_within(path_mm / time_s, study::kSlowestMmS, study::kFastestMmS)};
 }
 
-double exploring_s(const store::Trace& trace) {
-  const auto landing = std::ranges::find_if(trace.samples, [](const store::TraceSample& sample) {
+double exploring_s(const record::Trace& trace) {
+  const auto landing = std::ranges::find_if(trace.samples, [](const record::TraceSample& sample) {
     return sample.position_mm.z <= kLandingHeightMm;
   });
   return static_cast<double>(trace.samples.end() - landing) / trace.rate_hz;
 }
 
 /// All but the verdict.
-store::TrialMeasures measures_of(const ContactSums& sums, double rate_hz) {
+record::TrialMeasures measures_of(const ContactSums& sums, double rate_hz) {
   if (sums.samples == 0) return {};
   const auto samples = static_cast<double>(sums.samples);
   return {samples / rate_hz, sums.path_mm, std::sqrt(sums.force_squares / samples),
@@ -88,7 +88,7 @@ store::TrialMeasures measures_of(const ContactSums& sums, double rate_hz) {
 }
 
 /// The worse of two explorations in every respect.
-store::ServoHealth joined(const store::ServoHealth& one, const store::ServoHealth& other) {
+record::ServoHealth joined(const record::ServoHealth& one, const record::ServoHealth& other) {
   return {.rate_hz = std::min(one.rate_hz, other.rate_hz),
           .lateness_p50_us = std::max(one.lateness_p50_us, other.lateness_p50_us),
           .lateness_p99_us = std::max(one.lateness_p99_us, other.lateness_p99_us),
@@ -100,10 +100,10 @@ store::ServoHealth joined(const store::ServoHealth& one, const store::ServoHealt
 
 }  // namespace
 
-TrialFindings findings_of(const store::Trace& trace, double max_force_n,
-                          const design::ValidityRule& rule) {
+TrialFindings findings_of(const record::Trace& trace, double max_force_n,
+                          const study::ValidityRule& rule) {
   const ContactSums sums = sums_of(trace, max_force_n, rule);
-  store::TrialMeasures measures = measures_of(sums, trace.rate_hz);
+  record::TrialMeasures measures = measures_of(sums, trace.rate_hz);
   // The median is within its bounds if at most half of the samples are beyond each: no sorting.
   const bool median_fits = 2 * sums.weak <= sums.samples && 2 * sums.strong <= sums.samples;
   measures.within_limits = measures.contact_s >= rule.least_contact_s &&
@@ -125,13 +125,13 @@ void TrialTrace::begin() {
   health_.reset();
 }
 
-store::Trace& TrialTrace::next_part() {
+record::Trace& TrialTrace::next_part() {
   if (packing_.valid()) packing_.wait();
   return explorations_.empty() ? trace_ : more_;
 }
 
 void TrialTrace::add(const Exploration& done, std::chrono::nanoseconds began) {
-  const store::Trace& part = explorations_.empty() ? trace_ : more_;
+  const record::Trace& part = explorations_.empty() ? trace_ : more_;
   explorations_.push_back(static_cast<std::int64_t>(part.samples.size()));
   began_ns_.push_back(began.count());
   if (explorations_.size() > 1) {
@@ -151,8 +151,8 @@ void TrialTrace::pack(const Session& session, bool beside) {
                         [this, &session, trial] { return judged(session, trial); });
 }
 
-store::TraceBody TrialTrace::body(int trial) const {
-  store::TraceBody body;
+record::TraceBody TrialTrace::body(int trial) const {
+  record::TraceBody body;
   body.trial = trial;
   body.rate_hz = trace_.rate_hz;
   body.overruns = overruns_;
@@ -165,7 +165,7 @@ store::TraceBody TrialTrace::body(int trial) const {
 JudgedEvidence TrialTrace::judged(const Session& session, int trial) const {
   TrialFindings findings = findings_of(trace_, force_limit_n_, session.options().validity);
   if (held_in_contact_ > 0) findings.measures.within_limits = false;
-  store::TraceBody body = this->body(trial);
+  record::TraceBody body = this->body(trial);
   body.valid = findings.long_enough;
   body.hand = findings.hand;
   body.saturated = findings.saturated;

@@ -4,8 +4,8 @@
 
 #include "protocols/session/exploration.hpp"
 #include "protocols/session/session.hpp"
-#include "protocols/store/payload.hpp"
-#include "protocols/store/trace.hpp"
+#include "record/payload.hpp"
+#include "record/trace.hpp"
 
 #include <chrono>
 #include <cstdint>
@@ -16,7 +16,7 @@
 namespace touchtrial::session {
 
 struct TrialFindings {
-  store::TrialMeasures measures;
+  record::TrialMeasures measures;
   /// Follows from the number of samples and the time of landing, which forces do not bend. In
   /// clear.
   bool long_enough = false;
@@ -26,7 +26,7 @@ struct TrialFindings {
   /// not hold the hand back: over a second the hand meets the force with which it pushes, whatever
   /// the relief, the lateral force or the force limit. In clear. Source:
   /// docs/decisions/0054-what-a-trial-shows.md.
-  store::HandWindows hand{};
+  record::HandWindows hand{};
   bool saturated = false;  ///< by the rule's share; sealed
 
   /// Whether the whole rule is met, except that no tick in contact may be missing.
@@ -37,12 +37,12 @@ struct TrialFindings {
 /// is within 0.1 % of the limit. The stylus has landed at the first sample that is not above
 /// kLandingHeightMm.
 /// \param max_force_n  limit of the norm of the force, > 0
-[[nodiscard]] TrialFindings findings_of(const store::Trace& trace, double max_force_n,
-                                        const design::ValidityRule& rule = {});
+[[nodiscard]] TrialFindings findings_of(const record::Trace& trace, double max_force_n,
+                                        const study::ValidityRule& rule = {});
 
 /// Evidence, and whether the trial was valid.
 struct JudgedEvidence {
-  store::TrialEvidence evidence;
+  record::TrialEvidence evidence;
   bool valid = false;
 };
 
@@ -53,7 +53,7 @@ class TrialTrace {
   /// Begins a new presentation.
   void begin();
   /// The trace of the next exploration, for the explorer. Waits until packing is over.
-  [[nodiscard]] store::Trace& next_part();
+  [[nodiscard]] record::Trace& next_part();
   /// Appends that exploration.
   /// \param began  its first tick, since the presentation began
   void add(const Exploration& done, std::chrono::nanoseconds began);
@@ -70,11 +70,11 @@ class TrialTrace {
   [[nodiscard]] JudgedEvidence take_evidence() { return packing_.get(); }
 
  private:
-  [[nodiscard]] store::TraceBody body(int trial) const;
+  [[nodiscard]] record::TraceBody body(int trial) const;
   [[nodiscard]] JudgedEvidence judged(const Session& session, int trial) const;
 
-  store::Trace trace_;
-  store::Trace more_;                       ///< of an exploration after the first
+  record::Trace trace_;
+  record::Trace more_;                      ///< of an exploration after the first
   std::vector<std::int64_t> explorations_;  ///< samples of each
   std::vector<std::int64_t> began_ns_;      ///< of each, since the presentation began
   std::int64_t ticks_ = 0;
@@ -82,7 +82,7 @@ class TrialTrace {
   std::int64_t limited_ticks_ = 0;
   std::int64_t held_in_contact_ = 0;
   double force_limit_n_ = 0.0;
-  std::optional<store::ServoHealth> health_;
+  std::optional<record::ServoHealth> health_;
   std::future<JudgedEvidence> packing_;
 };
 

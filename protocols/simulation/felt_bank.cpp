@@ -24,7 +24,7 @@ void check(const FeltBankOptions& options) {
 /// Reports progress, from any thread.
 class Count {
  public:
-  Count(const design::Progress& progress, int of) : progress_(progress), of_(of) {}
+  Count(const study::Progress& progress, int of) : progress_(progress), of_(of) {}
   void one_more() {
     if (!progress_) return;
     const std::lock_guard lock(mutex_);
@@ -32,7 +32,7 @@ class Count {
   }
 
  private:
-  const design::Progress& progress_;
+  const study::Progress& progress_;
   int of_;
   int done_ = 0;
   std::mutex mutex_;
@@ -40,9 +40,9 @@ class Count {
 
 }  // namespace
 
-FeltBank::FeltBank(const LabelledFields& fields, const design::Study& study,
+FeltBank::FeltBank(const LabelledFields& fields, const study::Study& study,
                    const SubjectModel& subject, const FeltBankOptions& options,
-                   const design::Progress& progress)
+                   const study::Progress& progress)
     : explorations_(options.explorations) {
   check(options);
   for (const LabelledField& field : fields.all()) stimuli_.push_back(field.stimulus);
@@ -62,7 +62,7 @@ FeltBank::FeltBank(const LabelledFields& fields, const design::Study& study,
   in_parallel(options.jobs, felt_.size(), feel);
 }
 
-int FeltBank::place_of(const design::StimulusIndex& stimulus) const {
+int FeltBank::place_of(const study::StimulusIndex& stimulus) const {
   const auto found = std::ranges::lower_bound(stimuli_, stimulus);
   if (found == stimuli_.end() || *found != stimulus) {
     throw std::invalid_argument("FeltBank: the study does not present this stimulus");
@@ -71,7 +71,7 @@ int FeltBank::place_of(const design::StimulusIndex& stimulus) const {
 }
 
 engine::FeltFeatures feel_trial(const LabelledField& field, double gain_db,
-                                const PlaneGeometry& plane, const design::Study& study,
+                                const PlaneGeometry& plane, const study::Study& study,
                                 const SubjectModel& subject, std::uint64_t seed, int number,
                                 std::uint64_t nth) {
   return feel_exploration(field.model(gain_db), plane, subject,

@@ -4,9 +4,9 @@
 
 #include "core/random.hpp"
 #include "engine/perception/felt_features.hpp"
-#include "protocols/design/prepare.hpp"
 #include "protocols/simulation/felt_knowledge.hpp"
 #include "protocols/simulation/subject_model.hpp"
+#include "study/prepare.hpp"
 
 #include <cstdint>
 #include <span>
@@ -33,18 +33,18 @@ class FeltBank {
   /// \param study  the study of the fields; it sets the exploration limit and the force limit
   /// \param progress  counts explorations; called from one thread at a time
   /// \throws std::invalid_argument if an option is out of range
-  FeltBank(const LabelledFields& fields, const design::Study& study, const SubjectModel& subject,
-           const FeltBankOptions& options, const design::Progress& progress = {});
+  FeltBank(const LabelledFields& fields, const study::Study& study, const SubjectModel& subject,
+           const FeltBankOptions& options, const study::Progress& progress = {});
 
   [[nodiscard]] int stimuli() const noexcept { return static_cast<int>(stimuli_.size()); }
   [[nodiscard]] int explorations() const noexcept { return explorations_; }
   /// The stimulus at a place. Places are in the order of LabelledFields::all and of the knowledge's
   /// prototypes.
-  [[nodiscard]] const design::StimulusIndex& stimulus(int place) const noexcept {
+  [[nodiscard]] const study::StimulusIndex& stimulus(int place) const noexcept {
     return stimuli_[place];
   }
   /// \throws std::invalid_argument if the study does not present it
-  [[nodiscard]] int place_of(const design::StimulusIndex& stimulus) const;
+  [[nodiscard]] int place_of(const study::StimulusIndex& stimulus) const;
   /// All explorations of one stimulus.
   /// \param place  0 .. stimuli() - 1
   [[nodiscard]] std::span<const engine::FeltFeatures> felt(int place) const noexcept {
@@ -54,7 +54,7 @@ class FeltBank {
 
  private:
   int explorations_;
-  std::vector<design::StimulusIndex> stimuli_;
+  std::vector<study::StimulusIndex> stimuli_;
   std::vector<engine::FeltFeatures> felt_;
 };
 
@@ -66,8 +66,7 @@ class FeltBank {
 /// \param nth  place of the presentation among those that the participant begins, from 1; unscored
 ///   ones count
 [[nodiscard]] engine::FeltFeatures feel_trial(const LabelledField& field, double gain_db,
-                                              const PlaneGeometry& plane,
-                                              const design::Study& study,
+                                              const PlaneGeometry& plane, const study::Study& study,
                                               const SubjectModel& subject, std::uint64_t seed,
                                               int number, std::uint64_t nth);
 

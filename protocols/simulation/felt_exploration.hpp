@@ -3,8 +3,8 @@
 
 #include "core/plane_geometry.hpp"
 #include "core/random.hpp"
+#include "device/drivers/simulated/simulated_hand.hpp"
 #include "device/servo/servo.hpp"
-#include "device/simulated/simulated_hand.hpp"
 #include "engine/perception/felt_features.hpp"
 #include "engine/perception/texture_sense.hpp"
 #include "engine/rendering/rendering_model.hpp"

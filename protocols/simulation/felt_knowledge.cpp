@@ -20,9 +20,9 @@ device::ServoOptions training_options(const SubjectModel& subject, double max_fo
 
 }  // namespace
 
-LabelledFields::LabelledFields(const design::StudyCodes& key, const session::StimulusSource& source)
+LabelledFields::LabelledFields(const study::StudyCodes& key, const session::StimulusSource& source)
     : plane_(source.plane()), trials_(key.study.trials) {
-  for (const design::KeyedStimulus& keyed : key.stimuli) {
+  for (const study::KeyedStimulus& keyed : key.stimuli) {
     static_cast<void>(source.model(keyed.code));
     fields_.push_back(
         {key.study.classes[keyed.stimulus.class_index].label, keyed.stimulus, &source, keyed.code});
@@ -32,7 +32,7 @@ LabelledFields::LabelledFields(const design::StudyCodes& key, const session::Sti
 }
 
 double LabelledFields::draw_gain_db(RandomStream random) const {
-  return trials_.own_gain_db() + design::drawn_rove_db(trials_.rove_db, random);
+  return trials_.own_gain_db() + study::drawn_rove_db(trials_.rove_db, random);
 }
 
 FeltKnowledge learn_by_feeling(const LabelledFields& fields, const SubjectModel& subject,

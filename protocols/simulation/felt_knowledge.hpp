@@ -3,9 +3,9 @@
 
 #include "core/random.hpp"
 #include "engine/perception/felt_classifier.hpp"
-#include "protocols/design/study_key.hpp"
 #include "protocols/session/stimulus_source.hpp"
 #include "protocols/simulation/subject_model.hpp"
+#include "study/study_key.hpp"
 
 #include <cstdint>
 #include <string>
@@ -16,7 +16,7 @@ namespace touchtrial::simulation {
 /// A field with the name of its class: one image of the class by one method. Refers to the source.
 struct LabelledField {
   std::string label;
-  design::StimulusIndex stimulus{};
+  study::StimulusIndex stimulus{};
   const session::StimulusSource* source = nullptr;
   std::string code{};
 
@@ -32,7 +32,7 @@ struct LabelledField {
 class LabelledFields {
  public:
   /// \throws FileError if the pack lacks a stimulus of the study
-  LabelledFields(const design::StudyCodes& key, const session::StimulusSource& source);
+  LabelledFields(const study::StudyCodes& key, const session::StimulusSource& source);
 
   [[nodiscard]] const std::vector<LabelledField>& all() const noexcept { return fields_; }
   [[nodiscard]] const PlaneGeometry& plane() const noexcept { return plane_; }
@@ -42,7 +42,7 @@ class LabelledFields {
  private:
   std::vector<LabelledField> fields_;
   PlaneGeometry plane_;
-  design::TrialOptions trials_;
+  study::TrialOptions trials_;
 };
 
 /// Remembered explorations. An example's label is the index of its prototype, which is one

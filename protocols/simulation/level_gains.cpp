@@ -60,7 +60,7 @@ Fields largest(std::span<const engine::FieldView> views, engine::RenderingOption
 /// Works out levels of one study's fields on its device.
 class LevelMeter {
  public:
-  LevelMeter(const design::Study& study, const device::DeviceModel& device, const LevelCurve& curve,
+  LevelMeter(const study::Study& study, const device::DeviceModel& device, const LevelCurve& curve,
              int jobs)
       : study_(study), devices_{device}, curve_(curve), jobs_(jobs) {}
 
@@ -75,7 +75,7 @@ class LevelMeter {
   }
 
  private:
-  const design::Study& study_;
+  const study::Study& study_;
   std::vector<device::DeviceModel> devices_;
   LevelCurve curve_;
   int jobs_;
@@ -92,7 +92,7 @@ std::optional<std::size_t> weakest(const std::vector<double>& levels) {
 }
 
 /// What to change for a level that is out of reach, and what that would give.
-std::string levers(const design::Study& study, std::span<const engine::FieldView> views,
+std::string levers(const study::Study& study, std::span<const engine::FieldView> views,
                    const device::DeviceModel& device, const LevelMeter& meter) {
   std::string text;
   if (study.trials.rove_db > 0.0) {
@@ -139,10 +139,10 @@ void apply(const LevelCurve& curve, StimulusLevels& levels) {
   levels.provisional = levels.simulated_pilots = curve.simulated_pilots;
 }
 
-LevelledGains gains_at_level(const design::StudyCodes& key,
+LevelledGains gains_at_level(const study::StudyCodes& key,
                              std::span<const engine::FieldView> fields,
                              const device::DeviceModel& device, const LevelCurve& curve, int jobs) {
-  const design::Study& study = key.study;
+  const study::Study& study = key.study;
   const double wanted_db = study.level.value().db;
   const double bound = stiffness_bound(study.rendering, device);
   const LevelMeter meter(study, device, curve, jobs);

@@ -5,8 +5,8 @@
 #include "device/model/device_model.hpp"
 #include "engine/perception/vibration_threshold.hpp"
 #include "engine/rendering/gains.hpp"
-#include "protocols/design/study_key.hpp"
 #include "protocols/simulation/stimulus_levels.hpp"
+#include "study/study_key.hpp"
 
 #include <optional>
 #include <span>
@@ -50,7 +50,7 @@ struct LevelledGains {
 /// \param device  the study's
 /// \param jobs  threads, >= 1
 /// \pre the study has a level
-[[nodiscard]] LevelledGains gains_at_level(const design::StudyCodes& key,
+[[nodiscard]] LevelledGains gains_at_level(const study::StudyCodes& key,
                                            std::span<const engine::FieldView> fields,
                                            const device::DeviceModel& device,
                                            const LevelCurve& curve, int jobs);

@@ -58,7 +58,7 @@ void misremember(FeltKnowledge& known, double noise, RandomStream random) {
 
 }  // namespace
 
-std::shared_ptr<const FeltKnowledge> learn(const LabelledFields& fields, const design::Study& study,
+std::shared_ptr<const FeltKnowledge> learn(const LabelledFields& fields, const study::Study& study,
                                            const SubjectModel& subject, std::uint64_t seed,
                                            int jobs) {
   SubjectModel felt = subject;

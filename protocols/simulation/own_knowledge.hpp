@@ -2,9 +2,9 @@
 /// Source: docs/planning.md, "Training".
 #pragma once
 
-#include "protocols/design/study.hpp"
 #include "protocols/simulation/felt_knowledge.hpp"
 #include "protocols/simulation/subject_model.hpp"
+#include "study/study.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -16,7 +16,7 @@ namespace touchtrial::simulation {
 /// of its arguments, except for `jobs`. Cost: that of the explorations, 1.5 ms each for 10 s.
 /// \param study  of the fields
 [[nodiscard]] std::shared_ptr<const FeltKnowledge> learn(const LabelledFields& fields,
-                                                         const design::Study& study,
+                                                         const study::Study& study,
                                                          const SubjectModel& subject,
                                                          std::uint64_t seed, int jobs);
 

@@ -1,7 +1,7 @@
 #include "protocols/simulation/population.hpp"
 
 #include "core/errors.hpp"
-#include "protocols/design/protocol.hpp"
+#include "study/protocol.hpp"
 
 #include <map>
 
@@ -20,7 +20,7 @@ void add_population(std::string_view protocol, MakePopulation make) {
 }
 
 std::unique_ptr<const Population> population_of(const PopulationSetting& setting) {
-  const design::Study& study = setting.key.study;
+  const study::Study& study = setting.key.study;
   const auto found = known_populations().find(study.protocol->name());
   if (found != known_populations().end()) return found->second(setting);
   throw StudyError(one_line("study " + study.name + ": the protocol " + study.protocol_name() +

@@ -1,10 +1,10 @@
 /// \file The simulated participants of a study. How they answer is up to its protocol.
 #pragma once
 
-#include "protocols/design/study_key.hpp"
 #include "protocols/session/stimulus_source.hpp"
 #include "protocols/simulation/simulated_participant.hpp"
 #include "protocols/simulation/subject_model.hpp"
+#include "study/study_key.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -14,7 +14,7 @@ namespace touchtrial::simulation {
 
 /// What a population is made from; everything must outlive it.
 struct PopulationSetting {
-  const design::StudyCodes& key;
+  const study::StudyCodes& key;
   const session::StimulusSource& source;
   const SubjectModel& subject;
   std::uint64_t seed = 1;  ///< of everything random in participants

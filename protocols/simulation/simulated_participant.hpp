@@ -2,13 +2,13 @@
 #pragma once
 
 #include "core/random.hpp"
-#include "device/simulated/simulated_hand.hpp"
+#include "device/drivers/simulated/simulated_hand.hpp"
 #include "engine/perception/felt_features.hpp"
-#include "protocols/design/adaptive_order.hpp"
 #include "protocols/session/participant.hpp"
 #include "protocols/simulation/felt_exploration.hpp"
 #include "protocols/simulation/subject_model.hpp"
 #include "protocols/simulation/trial_course.hpp"
+#include "study/adaptive_order.hpp"
 
 #include <chrono>
 #include <cstdint>
@@ -78,7 +78,7 @@ class SimulatedParticipant : public PromptParticipant {
   }
   /// Gets what decides the presentations, for observers who are told the level.
   /// \param order  of this visit; null: the schedule says all
-  virtual void follow(std::unique_ptr<design::AdaptiveOrder> /*order*/) {}
+  virtual void follow(std::unique_ptr<study::AdaptiveOrder> /*order*/) {}
   /// How many trials a visit counts as coming after: more than any session has.
   [[nodiscard]] static std::uint64_t trials_before(int visit) noexcept {
     constexpr std::uint64_t kTrialsOfVisit = 1'000'000;

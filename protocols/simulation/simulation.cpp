@@ -30,7 +30,7 @@ int most_jobs() noexcept {
 
 /// Shared by all sessions of a simulation, read-only.
 struct Setting {
-  const design::StudyKey& key;
+  const study::StudyKey& key;
   const session::StimulusSource& source;
   const Population& population;
   std::string device;  ///< recorded_device
@@ -48,8 +48,8 @@ struct Place {
 /// A session on its way to the database.
 struct FinishedSession {
   int visit = 1;
-  store::BufferedEvents events;
-  store::NewKeys keys;
+  record::BufferedEvents events;
+  record::NewKeys keys;
   session::SessionTally tally;
 };
 
@@ -60,13 +60,13 @@ std::string participant_id(int number) {
   return "P" + digits;
 }
 
-store::SessionOpening opening_of(const Setting& setting, const Place& place) {
-  store::SessionOpening opening;
+record::SessionOpening opening_of(const Setting& setting, const Place& place) {
+  record::SessionOpening opening;
   opening.participant = participant_id(place.number);
   opening.enrolment = place.number;
   opening.visit = place.visit;
-  const design::GroupPlan& groups = setting.key.study.groups;
-  const auto group = setting.key.group_of(place.number, design::Draws::rehearsal);
+  const study::GroupPlan& groups = setting.key.study.groups;
+  const auto group = setting.key.group_of(place.number, study::Draws::rehearsal);
   if (group && groups.open) opening.group = groups.labels[static_cast<std::size_t>(*group)];
   opening.study_id = setting.key.study_id;
   opening.seal = setting.seal;
@@ -87,20 +87,20 @@ SecretKey participant_key(const Setting& setting, const Place& place) {
 FinishedSession run_session(const Setting& setting, const Place& place) {
   FinishedSession finished{.visit = place.visit, .events = {}, .keys = {}, .tally = {}};
   const SecretKey key = participant_key(setting, place);
-  const design::ScheduleDraw draw =
-      setting.key.draw_of(place.number, design::Draws::rehearsal, place.visit);
-  const design::Schedule schedule = design::make_schedule(setting.key.study, draw);
+  const study::ScheduleDraw draw =
+      setting.key.draw_of(place.number, study::Draws::rehearsal, place.visit);
+  const study::Schedule schedule = study::make_schedule(setting.key.study, draw);
   session::Session session(schedule, setting.key.study.trials,
-                           store::SessionRecorder(place.session, key, finished.events), {},
-                           design::adaptive_order(setting.key.study, draw));
-  session.open({}, opening_of(setting, place), design::schedule_to_json(schedule, setting.key));
+                           record::SessionRecorder(place.session, key, finished.events), {},
+                           study::adaptive_order(setting.key.study, draw));
+  session.open({}, opening_of(setting, place), study::schedule_to_json(schedule, setting.key));
   const std::unique_ptr<SimulatedParticipant> participant =
       setting.population.participant(place.number);
   participant->come_to(place.visit, course_of(setting.key.study, schedule));
-  participant->follow(design::adaptive_order(setting.key.study, draw));
+  participant->follow(study::adaptive_order(setting.key.study, draw));
   finished.tally =
       session::run_session_in_virtual_time(session, setting.key, setting.source, *participant);
-  finished.keys = store::wrap_participant_key(setting.key.investigator_box, place.session, key);
+  finished.keys = record::wrap_participant_key(setting.key.investigator_box, place.session, key);
   return finished;
 }
 
@@ -108,10 +108,10 @@ FinishedSession run_session(const Setting& setting, const Place& place) {
 class Collector {
  public:
   /// \param sessions  how many will come
-  Collector(store::StudyStore& store, const design::Progress& progress,
-            const design::VisitPlan& visits, int sessions)
+  Collector(record::StudyStore& store, const study::Progress& progress,
+            const study::VisitPlan& visits, int sessions)
       : store_(store), progress_(progress), visits_(visits), sessions_(sessions) {
-    const std::vector<store::Event> file_chain = store.events(0);
+    const std::vector<record::Event> file_chain = store.events(0);
     if (!file_chain.empty()) at_ = file_chain.back().at;
   }
 
@@ -133,9 +133,9 @@ class Collector {
   [[nodiscard]] const SimulationReport& report() const noexcept { return report_; }
 
  private:
-  store::StudyStore& store_;
-  const design::Progress& progress_;
-  const design::VisitPlan& visits_;
+  record::StudyStore& store_;
+  const study::Progress& progress_;
+  const study::VisitPlan& visits_;
   int sessions_;
   int visit_ = 1;
   std::chrono::nanoseconds at_{};
@@ -201,9 +201,9 @@ void run_sessions(const Setting& setting, const SimulationOptions& options, int 
 
 }  // namespace
 
-SimulationReport simulate_study(const design::StudyKey& key, const engine::Pack& pack,
+SimulationReport simulate_study(const study::StudyKey& key, const engine::Pack& pack,
                                 const SubjectModel& subject, const SimulationOptions& options,
-                                store::StudyStore& store, const design::Progress& progress) {
+                                record::StudyStore& store, const study::Progress& progress) {
   check(options);
   const session::StimulusSource source(pack, key);
   const std::unique_ptr<const Population> population =

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "engine/pack/pack.hpp"
-#include "protocols/design/prepare.hpp"
-#include "protocols/design/study_key.hpp"
 #include "protocols/simulation/subject_model.hpp"
-#include "protocols/store/study_store.hpp"
+#include "record/study_store.hpp"
+#include "study/prepare.hpp"
+#include "study/study_key.hpp"
 
 #include <cstdint>
 #include <string>
@@ -39,8 +39,8 @@ struct SimulationReport {
 /// \throws StoreError if a participant is already in the database or it refuses a write; the
 ///   sessions stored before remain
 /// \throws std::invalid_argument if an option is out of range
-SimulationReport simulate_study(const design::StudyKey& key, const engine::Pack& pack,
+SimulationReport simulate_study(const study::StudyKey& key, const engine::Pack& pack,
                                 const SubjectModel& subject, const SimulationOptions& options,
-                                store::StudyStore& store, const design::Progress& progress = {});
+                                record::StudyStore& store, const study::Progress& progress = {});
 
 }  // namespace touchtrial::simulation

@@ -2,7 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
-#include "device/registry.hpp"
+#include "device/drivers/registry.hpp"
 #include "engine/perception/texture_sense.hpp"
 #include "engine/perception/threshold_weights.hpp"
 #include "protocols/session/exploration.hpp"
@@ -223,7 +223,7 @@ StimulusLevel level_of(const std::string& device, engine::ThresholdCurve curve, 
 
 }  // namespace
 
-device::DeviceModel device_of(const design::Study& study) {
+device::DeviceModel device_of(const study::Study& study) {
   const bool is_file =
       study.device.find('/') != std::string::npos || study.device.ends_with(".json");
   try {
@@ -233,13 +233,13 @@ device::DeviceModel device_of(const design::Study& study) {
   }
 }
 
-std::vector<device::DeviceModel> level_devices(const design::Study& study) {
+std::vector<device::DeviceModel> level_devices(const study::Study& study) {
   if (study.device.empty()) return device::shipped_device_models();
   return {device_of(study)};
 }
 
 FieldLevels levels_of_fields(std::span<const engine::FieldWithGains> fields,
-                             const design::Study& study,
+                             const study::Study& study,
                              const std::vector<device::DeviceModel>& devices, int jobs,
                              std::uint64_t seed) {
   PlaneGeometry plane = fields.front().field.geometry;
@@ -312,7 +312,7 @@ FieldLevels levels_of_fields(std::span<const engine::FieldWithGains> fields,
   return result;
 }
 
-StimulusLevels levels_of(const design::StudyCodes& key, const session::StimulusSource& source,
+StimulusLevels levels_of(const study::StudyCodes& key, const session::StimulusSource& source,
                          const std::vector<device::DeviceModel>& devices, int jobs,
                          std::uint64_t seed) {
   StimulusLevels result;
@@ -328,8 +328,8 @@ StimulusLevels levels_of(const design::StudyCodes& key, const session::StimulusS
   return result;
 }
 
-std::string name_of_stimulus(const design::Study& study, const design::StimulusIndex& index) {
-  const design::StudyClass& shown = study.classes[index.class_index];
+std::string name_of_stimulus(const study::Study& study, const study::StimulusIndex& index) {
+  const study::StudyClass& shown = study.classes[index.class_index];
   std::string name = shown.label;
   if (shown.images.size() > 1) name += fmt::format(" {}", index.exemplar + 1);
   if (study.presented_methods() > 1) name += ", " + study.methods[index.method].label;

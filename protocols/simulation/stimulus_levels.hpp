@@ -5,8 +5,8 @@
 #include "device/model/device_model.hpp"
 #include "engine/perception/vibration_threshold.hpp"
 #include "engine/rendering/texture_field.hpp"
-#include "protocols/design/study_key.hpp"
 #include "protocols/session/stimulus_source.hpp"
+#include "study/study_key.hpp"
 
 #include <array>
 #include <cstdint>
@@ -47,9 +47,9 @@ inline constexpr double kNoLevelDb = -100.0;
 using PlaneLevels = std::vector<StimulusLevel>;
 
 struct StimulusLevels {
-  std::vector<design::StimulusIndex> stimuli;  ///< by class, exemplar and method
-  std::vector<PlaneLevels> levels;             ///< of each stimulus
-  PlaneLevels blank;                           ///< of the same wall without a texture
+  std::vector<study::StimulusIndex> stimuli;  ///< by class, exemplar and method
+  std::vector<PlaneLevels> levels;            ///< of each stimulus
+  PlaneLevels blank;                          ///< of the same wall without a texture
   /// By curves of other people; false: by thresholds that the laboratory measured on its device.
   bool provisional = true;
   bool simulated_pilots = false;  ///< by thresholds of simulated people
@@ -62,12 +62,12 @@ inline constexpr double kMinLevelDb = 10.0;
 /// the study's folder.
 /// \pre the study names one
 /// \throws StudyError with its place in the study and the remedy if there is no such model
-[[nodiscard]] device::DeviceModel device_of(const design::Study& study);
+[[nodiscard]] device::DeviceModel device_of(const study::Study& study);
 
 /// The models that a study's levels are computed for: the device that the study names, else all
 /// that the program ships.
 /// \throws as device_of
-[[nodiscard]] std::vector<device::DeviceModel> level_devices(const design::Study& study);
+[[nodiscard]] std::vector<device::DeviceModel> level_devices(const study::Study& study);
 
 struct FieldLevels {
   std::vector<PlaneLevels> levels;  ///< of each field
@@ -81,20 +81,20 @@ struct FieldLevels {
 /// \param fields  at least one, of the study's rendering model
 /// \param jobs  threads, >= 1
 [[nodiscard]] FieldLevels levels_of_fields(std::span<const engine::FieldWithGains> fields,
-                                           const design::Study& study,
+                                           const study::Study& study,
                                            const std::vector<device::DeviceModel>& devices,
                                            int jobs, std::uint64_t seed = 1);
 
 /// The same for a pack.
 /// \throws FileError if the pack lacks a stimulus
-[[nodiscard]] StimulusLevels levels_of(const design::StudyCodes& key,
+[[nodiscard]] StimulusLevels levels_of(const study::StudyCodes& key,
                                        const session::StimulusSource& source,
                                        const std::vector<device::DeviceModel>& devices, int jobs,
                                        std::uint64_t seed = 1);
 
 /// \return a stimulus in a few words: its class, and exemplar and method where there are several
-[[nodiscard]] std::string name_of_stimulus(const design::Study& study,
-                                           const design::StimulusIndex& index);
+[[nodiscard]] std::string name_of_stimulus(const study::Study& study,
+                                           const study::StimulusIndex& index);
 
 /// The least and the greatest level of a plane on a device, over the curves.
 struct LevelRange {

@@ -4,7 +4,7 @@
 #include "core/files.hpp"
 #include "core/nearest_name.hpp"
 #include "core/strict_json.hpp"
-#include "device/simulated/simulated_hand.hpp"
+#include "device/drivers/simulated/simulated_hand.hpp"
 #include "protocols/simulation/subject_changes_json.hpp"
 
 #include <algorithm>
@@ -173,9 +173,9 @@ SubjectModel load_subject_model(const std::filesystem::path& path) {
   return parse_subject_model(text_of(content), path.string());
 }
 
-void SubjectModel::check_labels(const design::Study& study) const {
+void SubjectModel::check_labels(const study::Study& study) const {
   std::vector<std::string_view> known;
-  for (const design::StudyClass& study_class : study.classes) known.emplace_back(study_class.label);
+  for (const study::StudyClass& study_class : study.classes) known.emplace_back(study_class.label);
   for (std::size_t i = 0; i < class_bias.size(); ++i) {
     const std::string pointer = "/bias/classes/" + std::to_string(i) + "/label";
     check_label(class_bias[i].label, pointer, source, known);

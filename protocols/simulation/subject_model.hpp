@@ -2,11 +2,11 @@
 /// Format: docs/planning.md and config/schema/subject.schema.json.
 #pragma once
 
+#include "device/drivers/simulated/hand_on_tip.hpp"
 #include "device/model/device_model.hpp"
-#include "device/simulated/hand_on_tip.hpp"
 #include "engine/perception/vibration_threshold.hpp"
-#include "protocols/design/study.hpp"
 #include "protocols/simulation/subject_changes.hpp"
+#include "study/study.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -84,10 +84,10 @@ struct SubjectModel {
 
   /// Checks that the study has every label.
   /// \throws StudyError with this file's JSON pointer if it lacks one
-  void check_labels(const design::Study& study) const;
+  void check_labels(const study::Study& study) const;
 };
 
-/// \return the device as sessions of this subject record it (store::SessionOpening):
+/// \return the device as sessions of this subject record it (record::SessionOpening):
 ///   device::words_of_simulated, or "given-function" if nothing is felt
 [[nodiscard]] std::string recorded_device(const SubjectModel& model);
 

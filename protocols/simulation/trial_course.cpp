@@ -1,15 +1,15 @@
 #include "protocols/simulation/trial_course.hpp"
 
-#include "protocols/design/study.hpp"
+#include "study/study.hpp"
 
 namespace touchtrial::simulation {
 
-TrialCourse course_of(const design::Study& study, const design::Schedule& schedule) {
+TrialCourse course_of(const study::Study& study, const study::Schedule& schedule) {
   TrialCourse course;
-  for (const design::Presentation& presentation : schedule.presentations) {
+  for (const study::Presentation& presentation : schedule.presentations) {
     TrialPlace& place = course.emplace_back();
     place.block = presentation.block;
-    place.carries_over = presentation.kind != design::PresentationKind::catch_trial;
+    place.carries_over = presentation.kind != study::PresentationKind::catch_trial;
     if (place.carries_over) {
       place.label =
           study.classes[static_cast<std::size_t>(presentation.stimulus.class_index)].label;

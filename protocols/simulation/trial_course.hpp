@@ -1,12 +1,12 @@
 /// \file What of a visit's schedule affects how a simulated participant answers later trials of it.
 #pragma once
 
-#include "protocols/design/schedule.hpp"
+#include "study/schedule.hpp"
 
 #include <string>
 #include <vector>
 
-namespace touchtrial::design {
+namespace touchtrial::study {
 struct Study;
 }
 
@@ -24,6 +24,6 @@ struct TrialPlace {
 /// By presentation of one visit.
 using TrialCourse = std::vector<TrialPlace>;
 
-[[nodiscard]] TrialCourse course_of(const design::Study& study, const design::Schedule& schedule);
+[[nodiscard]] TrialCourse course_of(const study::Study& study, const study::Schedule& schedule);
 
 }  // namespace touchtrial::simulation

@@ -1,7 +1,7 @@
 #include "analysis/fake_study.hpp"
 
 #include "engine/pack/pack.hpp"
-#include "protocols/design/signed_pack.hpp"
+#include "study/signed_pack.hpp"
 
 #include <algorithm>
 
@@ -14,7 +14,7 @@ using std::chrono::milliseconds;
 
 constexpr int kRepeats = 4;
 
-design::StudyKey fake_key(const design::Protocol& protocol, const FakeOptions& options) {
+study::StudyKey fake_key(const study::Protocol& protocol, const FakeOptions& options) {
   nlohmann::json text = nlohmann::json::parse(fake_study_text(protocol, options.label));
   if (!options.trials.empty()) text["trials"].update(nlohmann::json::parse(options.trials));
   if (!options.registration.empty()) {
@@ -22,33 +22,33 @@ design::StudyKey fake_key(const design::Protocol& protocol, const FakeOptions& o
   }
   if (!options.sections.empty()) text.update(nlohmann::json::parse(options.sections));
   if (!options.session.empty()) text["session"] = nlohmann::json::parse(options.session);
-  const design::Study study = design::parse_study(text.dump(), ".", "fake.json");
+  const study::Study study = study::parse_study(text.dump(), ".", "fake.json");
   SeededEntropy entropy(11);
-  design::StudyKey key = design::make_study_key(study, entropy, options.simulated);
+  study::StudyKey key = study::make_study_key(study, entropy, options.simulated);
   if (!options.stations.empty()) {
-    std::vector<design::Station> stations = design::stations_named(options.stations);
-    design::hand_out_enrolments(stations, 8);
-    design::divide(key, std::move(stations));
+    std::vector<study::Station> stations = study::stations_named(options.stations);
+    study::hand_out_enrolments(stations, 8);
+    study::divide(key, std::move(stations));
   }
   return key;
 }
 
-store::StudyCommitment fake_commitment(const design::StudyKey& key, const FakeOptions& options,
-                                       const std::filesystem::path& pack) {
-  store::StudyCommitment commitment;
+record::StudyCommitment fake_commitment(const study::StudyKey& key, const FakeOptions& options,
+                                        const std::filesystem::path& pack) {
+  record::StudyCommitment commitment;
   commitment.study = key.study.name;
   commitment.protocol = key.study.protocol_name();
   commitment.study_id = key.study_id;
-  commitment.seal = design::study_seal(key);
+  commitment.seal = study::study_seal(key);
   if (std::filesystem::exists(pack)) commitment.pack = engine::Pack(pack).digest();
-  commitment.configuration = design::blinded_configuration(key);
+  commitment.configuration = study::blinded_configuration(key);
   commitment.scored_trials = key.study.scored_trials();
   commitment.positions = static_cast<int>(key.study.classes.size());
   commitment.simulated = key.simulated;
   commitment.pilot = options.pilot;
   commitment.program_version = "0.0.0";
   commitment.investigator = key.investigator_signature;
-  const design::StationKey station = design::station_key(key, key.stations.front().name);
+  const study::StationKey station = study::station_key(key, key.stations.front().name);
   commitment.station = {.name = station.station.name,
                         .key = station.signer().public_half(),
                         .certificate = station.certificate};
@@ -56,40 +56,40 @@ store::StudyCommitment fake_commitment(const design::StudyKey& key, const FakeOp
 }
 
 /// A pack of 2 x 2 pixel fields, one for each code.
-std::filesystem::path fake_pack(const design::StudyKey& key, const std::filesystem::path& folder) {
+std::filesystem::path fake_pack(const study::StudyKey& key, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   engine::PackManifest manifest{key.study_id, {}};
-  for (const design::KeyedStimulus& stimulus : key.stimuli) {
+  for (const study::KeyedStimulus& stimulus : key.stimuli) {
     const engine::TextureField field({.geometry = {0.2, 2, 2}}, Plane<float>(2, 2));
     const Digest checksum = engine::write_field(folder, stimulus.code, field.view());
     manifest.entries.push_back({stimulus.code, checksum, {}, {0.01, 0.02}});
   }
-  design::sign(manifest, key, {});
+  study::sign(manifest, key, {});
   engine::write_manifest(folder, manifest);
   return folder;
 }
 
-store::StudyStore fake_store(const design::StudyKey& key, const FakeOptions& options,
-                             const std::filesystem::path& folder) {
+record::StudyStore fake_store(const study::StudyKey& key, const FakeOptions& options,
+                              const std::filesystem::path& folder) {
   const auto pack = folder / "study.pack";
   if (options.with_pack) fake_pack(key, pack);
-  return store::StudyStore::create(folder / "study.db", fake_commitment(key, options, pack),
-                                   milliseconds(0), key.signer());
+  return record::StudyStore::create(folder / "study.db", fake_commitment(key, options, pack),
+                                    milliseconds(0), key.signer());
 }
 
-store::Trace fake_trace() {
-  store::Trace trace;
+record::Trace fake_trace() {
+  record::Trace trace;
   for (int i = 0; i < 20; ++i) trace.samples.push_back({{0.1 * i, 0.0, -0.5}, {0.0, 0.0, 0.25}});
   return trace;
 }
 
-int position_of(const design::Schedule& schedule, int class_index) {
+int position_of(const study::Schedule& schedule, int class_index) {
   const auto found = std::find(schedule.layout.begin(), schedule.layout.end(), class_index);
   return static_cast<int>(found - schedule.layout.begin());
 }
 
 /// The n-th presentation begins at 10 n seconds.
-void interrupt_trial(store::SessionRecorder& recorder, const design::Presentation& shown,
+void interrupt_trial(record::SessionRecorder& recorder, const study::Presentation& shown,
                      int place) {
   const milliseconds start(10'000 * place);
   recorder.presented(start, shown.trial, shown.block);
@@ -97,8 +97,8 @@ void interrupt_trial(store::SessionRecorder& recorder, const design::Presentatio
 }
 
 /// The plane is touched after 0.5 s, and the answer comes 4.25 s later.
-void record_trial(store::SessionRecorder& recorder, const FakeSession& session,
-                  const design::Schedule& schedule, const design::Presentation& shown, int place) {
+void record_trial(record::SessionRecorder& recorder, const FakeSession& session,
+                  const study::Schedule& schedule, const study::Presentation& shown, int place) {
   const milliseconds start(10'000 * place);
   recorder.presented(start, shown.trial, shown.block);
   recorder.first_contact(start + milliseconds(500), shown.trial);
@@ -108,7 +108,7 @@ void record_trial(store::SessionRecorder& recorder, const FakeSession& session,
   } else {
     recorder.timed_out(start + milliseconds(4250), shown.trial);
   }
-  store::TraceBody body;
+  record::TraceBody body;
   body.trial = shown.trial;
   body.rate_hz = 1000.0;
   body.valid = session.valid;
@@ -125,13 +125,13 @@ FakeSession talkative(const std::string& participant, int enrolment, const std::
   return {.participant = participant,
           .enrolment = enrolment,
           .answers = FakeStudy::always_right(),
-          .before_trials = [closing](store::SessionRecorder& recorder) {
+          .before_trials = [closing](record::SessionRecorder& recorder) {
             recorder.questioned(
                 milliseconds(10), "handedness",
                 R"({"pen_hand":0,"spoon":1,"throwing":0,"toothbrush":0,"writing":0})");
             recorder.paused(milliseconds(20), {.text = "a phone rang"});
             recorder.resumed(milliseconds(30), {.after = "pause", .away_s = 0.01});
-            recorder.remarked(milliseconds(40), store::EventKind::noted, "wears a ring");
+            recorder.remarked(milliseconds(40), record::EventKind::noted, "wears a ring");
             for (int i = 1; i <= 3; ++i) {
               recorder.presented(milliseconds(1000 * i), 1, 0);
               recorder.interrupted(milliseconds(1000 * i + 500), 1, "comfort stop");
@@ -140,7 +140,7 @@ FakeSession talkative(const std::string& participant, int enrolment, const std::
           }};
 }
 
-std::string fake_study_text(const design::Protocol& protocol, const std::string& first_label) {
+std::string fake_study_text(const study::Protocol& protocol, const std::string& first_label) {
   const bool comparison = protocol.presents_all_methods();
   nlohmann::json study{{"study", comparison ? "pair" : "single"},
                        {"protocol", std::string(protocol.name())},
@@ -154,22 +154,22 @@ std::string fake_study_text(const design::Protocol& protocol, const std::string&
   return study.dump();
 }
 
-FakeStudy::FakeStudy(const design::Protocol& protocol, const FakeOptions& options)
+FakeStudy::FakeStudy(const study::Protocol& protocol, const FakeOptions& options)
     : key_(fake_key(protocol, options)), store_(fake_store(key_, options, folder_.path())) {}
 
 void FakeStudy::add(const FakeSession& session) {
   const int number = store_.next_session();
   SeededEntropy entropy(static_cast<std::uint64_t>(number));
   const SecretKey own = entropy.secret("participant");
-  store::BufferedEvents buffer;
-  store::SessionRecorder recorder(number, own, buffer);
-  const design::Draws draws = key_.simulated || store_.commitment().pilot ? design::Draws::rehearsal
-                                                                          : design::Draws::people;
-  const design::Schedule schedule =
-      design::make_schedule(key_.study, key_.draw_of(session.enrolment, draws, session.visit));
-  store::SessionOpening opening;
+  record::BufferedEvents buffer;
+  record::SessionRecorder recorder(number, own, buffer);
+  const study::Draws draws =
+      key_.simulated || store_.commitment().pilot ? study::Draws::rehearsal : study::Draws::people;
+  const study::Schedule schedule =
+      study::make_schedule(key_.study, key_.draw_of(session.enrolment, draws, session.visit));
+  record::SessionOpening opening;
   opening.visit = session.visit;
-  const design::GroupPlan& groups = key_.study.groups;
+  const study::GroupPlan& groups = key_.study.groups;
   const auto group = key_.group_of(session.enrolment, draws);
   if (group && groups.open) opening.group = groups.labels[static_cast<std::size_t>(*group)];
   if (session.after.count() > 0) {
@@ -179,16 +179,16 @@ void FakeStudy::add(const FakeSession& session) {
   opening.participant = session.participant;
   opening.enrolment = session.enrolment;
   opening.study_id = key_.study_id;
-  opening.seal = design::study_seal(key_);
+  opening.seal = study::study_seal(key_);
   opening.device = "simulated";
   opening.simulated = key_.simulated;
   opening.pilot = store_.commitment().pilot;
   opening.station = session.station;
-  recorder.opened(milliseconds(0), opening, design::schedule_to_json(schedule, key_));
+  recorder.opened(milliseconds(0), opening, study::schedule_to_json(schedule, key_));
   if (session.before_trials) session.before_trials(recorder);
   int place = 0;
-  const design::Presentation* again = nullptr;
-  for (const design::Presentation& presentation : schedule.presentations) {
+  const study::Presentation* again = nullptr;
+  for (const study::Presentation& presentation : schedule.presentations) {
     if (place == session.stop_after) break;
     if (presentation.trial == session.interrupt_trial) {
       again = &presentation;
@@ -198,12 +198,12 @@ void FakeStudy::add(const FakeSession& session) {
     }
   }
   if (again != nullptr) record_trial(recorder, session, schedule, *again, ++place);
-  const store::NewKeys keys = store::wrap_participant_key(key_.investigator_box, number, own);
+  const record::NewKeys keys = record::wrap_participant_key(key_.investigator_box, number, own);
   if (!session.ends) {
     const auto sink = store_.begin_session(number, keys, [=] { return milliseconds(number); });
     auto trace = buffer.traces.begin();
-    for (const store::Event& event : buffer.events) {
-      const bool has_trace = event.kind == store::EventKind::trace_stored;
+    for (const record::Event& event : buffer.events) {
+      const bool has_trace = event.kind == record::EventKind::trace_stored;
       sink->accept(event, has_trace ? std::optional(*trace++) : std::nullopt);
     }
     return;
@@ -218,11 +218,11 @@ void FakeStudy::close_and_unblind() {
 }
 
 FakeAnswers FakeStudy::always_right() {
-  return [](const design::Presentation& shown) { return shown.stimulus.class_index; };
+  return [](const study::Presentation& shown) { return shown.stimulus.class_index; };
 }
 
 FakeAnswers FakeStudy::confusing(int from, int to) {
-  return [=](const design::Presentation& shown) {
+  return [=](const study::Presentation& shown) {
     return shown.stimulus.class_index == from ? to : shown.stimulus.class_index;
   };
 }

@@ -1,9 +1,9 @@
 /// \file A study whose answers a test chooses, recorded as a real one is.
 #pragma once
 
-#include "protocols/design/study_key.hpp"
-#include "protocols/identification/design/identification.hpp"
-#include "protocols/store/study_store.hpp"
+#include "protocols/identification/study/identification.hpp"
+#include "record/study_store.hpp"
+#include "study/study_key.hpp"
 #include "support/temp_folder.hpp"
 
 #include <chrono>
@@ -15,10 +15,10 @@
 namespace touchtrial {
 
 /// Class index of the answer to a presentation, or nothing to let the time run out.
-using FakeAnswers = std::function<std::optional<int>(const design::Presentation&)>;
+using FakeAnswers = std::function<std::optional<int>(const study::Presentation&)>;
 
 /// What was felt in a presentation.
-using FakeTraces = std::function<store::Trace(const design::Presentation&)>;
+using FakeTraces = std::function<record::Trace(const study::Presentation&)>;
 
 /// The course of one fake session.
 struct FakeSession {
@@ -27,17 +27,17 @@ struct FakeSession {
   FakeAnswers answers;
   bool complete = true;
   bool valid = true;
-  bool within_limits = true;                      ///< by the sealed measures
-  std::optional<store::StationRecord> station{};  ///< as in real time
-  std::optional<store::ServoHealth> servo{};      ///< of every trial
+  bool within_limits = true;                       ///< by the sealed measures
+  std::optional<record::StationRecord> station{};  ///< as in real time
+  std::optional<record::ServoHealth> servo{};      ///< of every trial
   int interrupt_trial = 0;   ///< interrupted, and presented again at the end; 0: none
   int stop_after = 1 << 20;  ///< presentations
   /// Recorded after the opening, before 10 s have passed.
-  std::function<void(store::SessionRecorder&)> before_trials{};
-  bool one_key = false;       ///< that the session ends with
-  FakeTraces traces{};        ///< empty: a touch too short to feel anything
-  store::HandWindows hand{};  ///< of every second trial
-  bool ends = true;           ///< false: it is left open after its last presentation
+  std::function<void(record::SessionRecorder&)> before_trials{};
+  bool one_key = false;        ///< that the session ends with
+  FakeTraces traces{};         ///< empty: a touch too short to feel anything
+  record::HandWindows hand{};  ///< of every second trial
+  bool ends = true;            ///< false: it is left open after its last presentation
   int visit = 1;
   std::chrono::hours after{};  ///< later on the file's chain than sessions usually are
 };
@@ -58,10 +58,10 @@ struct FakeOptions {
 /// Three classes, each with one image, four presentations a method.
 class FakeStudy {
  public:
-  explicit FakeStudy(const design::Protocol& protocol, const FakeOptions& options = {});
+  explicit FakeStudy(const study::Protocol& protocol, const FakeOptions& options = {});
 
-  [[nodiscard]] const design::StudyKey& key() const noexcept { return key_; }
-  [[nodiscard]] store::StudyStore& store() noexcept { return store_; }
+  [[nodiscard]] const study::StudyKey& key() const noexcept { return key_; }
+  [[nodiscard]] record::StudyStore& store() noexcept { return store_; }
   [[nodiscard]] const std::filesystem::path& folder() const noexcept { return folder_.path(); }
   [[nodiscard]] std::filesystem::path pack_folder() const { return folder() / "study.pack"; }
   [[nodiscard]] std::filesystem::path database() const { return folder() / "study.db"; }
@@ -76,8 +76,8 @@ class FakeStudy {
 
  private:
   TempFolder folder_;
-  design::StudyKey key_;
-  store::StudyStore store_;
+  study::StudyKey key_;
+  record::StudyStore store_;
 };
 
 /// A pause, a note, three interruptions of trial 1 and a stop that did not last, with the answers
@@ -86,7 +86,7 @@ class FakeStudy {
                                     const std::string& closing);
 
 /// Its study file.
-[[nodiscard]] std::string fake_study_text(const design::Protocol& protocol,
+[[nodiscard]] std::string fake_study_text(const study::Protocol& protocol,
                                           const std::string& first_label);
 
 }  // namespace touchtrial

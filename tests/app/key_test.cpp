@@ -1,6 +1,6 @@
 // The investigator's key: checked, copied and protected, as a user does it.
 #include "app/study_folder.hpp"
-#include "protocols/design/key_protection.hpp"
+#include "study/key_protection.hpp"
 #include "support/catch.hpp"
 
 using namespace touchtrial;
@@ -98,8 +98,8 @@ TEST_CASE("a protected key opens with its passphrase alone, and stays protected"
   const std::string one = (secrets.path() / "one.txt").string();
   replace_file(one, kSecret + "\n", FileMode::owner_only);
   const KeyedStudy study({"--passphrase", "--passphrase-file", one});
-  CHECK(design::is_protected(study.path() / "cloths.key"));
-  CHECK_FALSE(design::is_protected(study.path() / "cloths.station"));
+  CHECK(study::is_protected(study.path() / "cloths.key"));
+  CHECK_FALSE(study::is_protected(study.path() / "cloths.station"));
   const std::vector<std::string> check = {"check", study.in("cloths.json")};
   check_refused(study.key(check), 1, {"protected by a passphrase", "--passphrase-file"});
   check_refused(study.type("key check @cloths.json --passphrase-file @two.txt"), 1,
@@ -114,7 +114,7 @@ TEST_CASE("a protected key opens with its passphrase alone, and stays protected"
   int keys = 0;
   for (const auto& file : fs::directory_iterator(study.path())) {
     if (file.path().filename().string().find(".key") == std::string::npos) continue;
-    CHECK(design::is_protected(file.path()));
+    CHECK(study::is_protected(file.path()));
     ++keys;
   }
   CHECK(keys == 2);  // the new one, and the one from before the change
@@ -147,7 +147,7 @@ TEST_CASE("run and prepare open a station's file with its passphrase") {
   succeeded(study.session("P01", {"--passphrase-file", study.in("two.txt")}));
   check_refused(study.type("prepare @cloths.json"), 1, {"cloths.station"});
   study.done("prepare @cloths.json --passphrase-file @two.txt");
-  CHECK(design::is_protected(station));
+  CHECK(study::is_protected(station));
 }
 
 TEST_CASE("a protected file of another station is refused before its passphrase is asked for") {
@@ -186,7 +186,7 @@ TEST_CASE("a terminal asks for passphrases and shows nothing of them") {
     run.answer("the same again: ", kSecret);
     CHECK(run.finish() == 0);
     CHECK(run.shown().find(kSecret.substr(0, 6)) == std::string::npos);
-    CHECK(design::is_protected(study.path() / "cloths.key"));
+    CHECK(study::is_protected(study.path() / "cloths.key"));
   }
   {
     TerminalRun run({"key", "check", study.in("cloths.json")});

@@ -1,7 +1,7 @@
 // What docs/when-something-goes-wrong.md says to type, typed in the situation that it is for.
 #include "app/study_folder.hpp"
 #include "core/files.hpp"
-#include "protocols/store/study_store.hpp"
+#include "record/study_store.hpp"
 #include "support/catch.hpp"
 #include "support/child_process.hpp"
 
@@ -259,8 +259,8 @@ void flip_one_bit(const fs::path& file, double place) {
 
 /// What the database keeps of a session's key.
 Bytes key_of_session(const fs::path& database, const std::string& participant) {
-  const store::StudyStore store =
-      store::StudyStore::open(database, store::StudyStore::Access::read_only);
+  const record::StudyStore store =
+      record::StudyStore::open(database, record::StudyStore::Access::read_only);
   return store.wrapped_key(store.session_of(participant).value().session).value();
 }
 

@@ -2,11 +2,11 @@
 // note.
 #include "app/study_folder.hpp"
 #include "core/cipher.hpp"
-#include "protocols/design/deviation_codes.hpp"
-#include "protocols/design/study_key.hpp"
-#include "protocols/store/payload_json.hpp"
-#include "protocols/store/personal_data.hpp"
-#include "protocols/store/study_store.hpp"
+#include "record/payload_json.hpp"
+#include "record/personal_data.hpp"
+#include "record/study_store.hpp"
+#include "study/deviation_codes.hpp"
+#include "study/study_key.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -18,8 +18,8 @@
 #include <SQLiteCpp/Database.h>
 
 using namespace touchtrial;
-using namespace touchtrial::design;
-using namespace touchtrial::store;
+using namespace touchtrial::study;
+using namespace touchtrial::record;
 
 namespace {
 
@@ -346,7 +346,7 @@ TEST_CASE("after a withdrawal, nobody can open the person's sealed data again") 
   const PeopleStudy study;
   succeeded(study.session("P005"));
   study.put_person("P005", "somebody@example.org");
-  const design::StudyKey investigator = key_of(study);
+  const study::StudyKey investigator = key_of(study);
   const int session = session_of(study.store(), "P005").session;
   const Bytes wrapped = study.store().wrapped_key(session).value();
   const SecretKey lost = unwrap_participant_key(investigator.box(), session, wrapped).value();
@@ -508,7 +508,7 @@ TEST_CASE("notes and deviations are on the file's chain, before and after closin
 
 TEST_CASE("the data dictionary explains every code of a deviation") {
   const std::string page = content(fs::path(TOUCHTRIAL_SOURCE_DIR) / "docs/data-dictionary.md");
-  for (const std::string_view code : design::kDeviationCodes) {
+  for (const std::string_view code : study::kDeviationCodes) {
     INFO(code);
     CHECK(page.find("`" + std::string(code) + "`") != std::string::npos);
   }

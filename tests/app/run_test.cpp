@@ -1,6 +1,6 @@
 // Sessions with a simulated participant, run as an experimenter runs them.
 #include "app/study_folder.hpp"
-#include "protocols/store/study_store.hpp"
+#include "record/study_store.hpp"
 #include "support/catch.hpp"
 #include "support/child_process.hpp"
 
@@ -8,7 +8,7 @@
 #include <set>
 
 using namespace touchtrial;
-using namespace touchtrial::store;
+using namespace touchtrial::record;
 using touchtrial::testing::ChildProcess;
 
 namespace {

@@ -1,10 +1,10 @@
 // status: how collection stands, and the next participant's command.
 #include "app/study_folder.hpp"
 #include "core/cipher.hpp"
-#include "protocols/design/study_key.hpp"
-#include "protocols/store/personal_data.hpp"
-#include "protocols/store/session_recorder.hpp"
-#include "protocols/store/study_store.hpp"
+#include "record/personal_data.hpp"
+#include "record/session_recorder.hpp"
+#include "record/study_store.hpp"
+#include "study/study_key.hpp"
 #include "support/catch.hpp"
 
 #include <chrono>
@@ -15,8 +15,8 @@ namespace {
 /// A database of people, without a session, as the first `run` makes it.
 void begin_database(const StudyFolder& folder, const std::string& station_file,
                     bool pilot = false) {
-  const design::StationKey key = design::load_station_key(folder.path() / station_file);
-  store::StudyCommitment commitment;
+  const study::StationKey key = study::load_station_key(folder.path() / station_file);
+  record::StudyCommitment commitment;
   commitment.study = key.study.name;
   commitment.protocol = key.study.protocol_name();
   commitment.study_id = key.study_id;
@@ -28,23 +28,23 @@ void begin_database(const StudyFolder& folder, const std::string& station_file,
   commitment.investigator = key.investigator_signature;
   commitment.station = {
       .name = key.station.name, .key = key.signer().public_half(), .certificate = key.certificate};
-  static_cast<void>(store::StudyStore::create(folder.path() / "study.db", commitment,
-                                              std::chrono::seconds(1), key.signer()));
+  static_cast<void>(record::StudyStore::create(folder.path() / "study.db", commitment,
+                                               std::chrono::seconds(1), key.signer()));
 }
 
 /// A participant's complete session, opened so long ago.
 void add_session(const StudyFolder& folder, const std::string& participant, int enrolment,
                  int visit, std::chrono::hours ago) {
-  const design::StationKey key = design::load_station_key(folder.path() / "cloths.station");
-  store::StudyStore store =
-      store::StudyStore::open(folder.path() / "study.db", store::StudyStore::Access::read_write);
+  const study::StationKey key = study::load_station_key(folder.path() / "cloths.station");
+  record::StudyStore store =
+      record::StudyStore::open(folder.path() / "study.db", record::StudyStore::Access::read_write);
   store.sign_with(key.signer());
   const int number = store.next_session();
   SystemEntropy entropy;
   const SecretKey own = entropy.secret("participant");
-  store::BufferedEvents buffer;
-  store::SessionRecorder recorder(number, own, buffer);
-  store::SessionOpening opening;
+  record::BufferedEvents buffer;
+  record::SessionRecorder recorder(number, own, buffer);
+  record::SessionOpening opening;
   opening.participant = participant;
   opening.enrolment = enrolment;
   opening.visit = visit;
@@ -55,7 +55,7 @@ void add_session(const StudyFolder& folder, const std::string& participant, int 
   recorder.opened({}, opening, "{}");
   recorder.closed(std::chrono::seconds(1), true);
   const auto now = std::chrono::system_clock::now().time_since_epoch();
-  store.add_session(buffer, store::wrap_participant_key(key.investigator_box, number, own),
+  store.add_session(buffer, record::wrap_participant_key(key.investigator_box, number, own),
                     std::chrono::duration_cast<std::chrono::nanoseconds>(now - ago));
 }
 
@@ -83,7 +83,7 @@ TEST_CASE("status names the next participant and has the lines to copy") {
                                            " --participant P01 --version VERSION --details -");
   CHECK(first["next"][1]["command"] == "touchtrial run " + folder.in("cloths.json") +
                                            " --participant P01 --db " + folder.in("study.db"));
-  store::PersonalData(store::personal_data_path(folder.path() / "study.db"))
+  record::PersonalData(record::personal_data_path(folder.path() / "study.db"))
       .put({.participant = "P01",
             .consent_version = "1",
             .consented_utc = "2026-01-02T03:04:05Z",

@@ -2,7 +2,7 @@
 #include "app/study_folder.hpp"
 #include "core/bytes.hpp"
 #include "core/hash.hpp"
-#include "protocols/store/store_fixture.hpp"
+#include "record/store_fixture.hpp"
 #include "support/catch.hpp"
 
 #include <functional>

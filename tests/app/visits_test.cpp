@@ -1,6 +1,6 @@
 // Studies with several visits and groups, as the program runs them.
 #include "app/study_folder.hpp"
-#include "protocols/store/study_store.hpp"
+#include "record/study_store.hpp"
 #include "support/catch.hpp"
 
 #include <map>
@@ -47,8 +47,8 @@ TEST_CASE("simulated participants come as often as the study says") {
   study.done("export @all.db --format csv --out @out");
   CHECK(content(study.path() / "out" / "trials.csv").find(",visit,group\n") != std::string::npos);
   const auto store =
-      store::StudyStore::open(study.path() / "all.db", store::StudyStore::Access::read_only);
-  for (const store::SessionRow& row : store.sessions()) {
+      record::StudyStore::open(study.path() / "all.db", record::StudyStore::Access::read_only);
+  for (const record::SessionRow& row : store.sessions()) {
     CHECK(row.visit == (row.session > 4 ? 2 : 1));
     CHECK(row.enrolment == (row.session - 1) % 4 + 1);
   }
@@ -80,8 +80,8 @@ TEST_CASE("stations of a study with visits merge into what one simulation makes"
   static_cast<void>(study.checks("merged.db"));
   const auto sessions = [&](const std::string& db) {
     std::vector<std::string> all;
-    for (const store::SessionRow& row :
-         store::StudyStore::open(study.path() / db, store::StudyStore::Access::read_only)
+    for (const record::SessionRow& row :
+         record::StudyStore::open(study.path() / db, record::StudyStore::Access::read_only)
              .sessions()) {
       all.push_back(row.participant + " " + std::to_string(row.visit));
     }
@@ -122,8 +122,8 @@ TEST_CASE("an exclusion is of the participant, with all visits, and ends them") 
     study.done("exclude @study.db --reason asleep --participant " + participant);
   }
   const auto store =
-      store::StudyStore::open(study.path() / "study.db", store::StudyStore::Access::read_only);
-  for (const store::SessionRow& row : store.sessions()) CHECK(row.excluded);
+      record::StudyStore::open(study.path() / "study.db", record::StudyStore::Access::read_only);
+  for (const record::SessionRow& row : store.sessions()) CHECK(row.excluded);
   CHECK(says(study.visit("P08", "2"), "cannot follow session 3, whose participant was excluded"));
 }
 

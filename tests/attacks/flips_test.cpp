@@ -3,7 +3,7 @@
 #include "attacks/forger.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "protocols/store/head_file.hpp"
+#include "record/head_file.hpp"
 #include "support/catch.hpp"
 
 #include <cstdint>
@@ -62,9 +62,9 @@ TEST_CASE("a flipped bit in any byte of a key or a station's file is refused") {
   AttackedStudy study(0);
   study.close();
   flip_each("the key", study.key_file(), 1,
-            [&] { return refused_by([&] { return design::load_study_key(study.key_file()); }); });
+            [&] { return refused_by([&] { return study::load_study_key(study.key_file()); }); });
   flip_each("a station's file", study.station_file(), 1, [&] {
-    return refused_by([&] { return design::load_station_key(study.station_file()); });
+    return refused_by([&] { return study::load_station_key(study.station_file()); });
   });
 }
 
@@ -72,8 +72,8 @@ TEST_CASE("a flipped bit in any byte of a head file is told") {
   AttackedStudy study(0);
   study.close();
   const std::vector<PublicKey> signers = {study.station().signer().public_half()};
-  const store::HeadFile head(study.head());
-  // tests/protocols/store/head_file_test.cpp has every byte of another one.
+  const record::HeadFile head(study.head());
+  // tests/record/head_file_test.cpp has every byte of another one.
   const std::uintmax_t step = places(0) > 0 ? 1 : 61;
   flip_each("a head file", study.head(), step, [&] {
     const auto reading = head.reading(signers);

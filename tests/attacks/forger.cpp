@@ -3,10 +3,10 @@
 #include "analysis/verification/study_files.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "protocols/store/head_file.hpp"
-#include "protocols/store/rows.hpp"
-#include "protocols/store/schema.hpp"
-#include "protocols/store/store_fixture.hpp"
+#include "record/head_file.hpp"
+#include "record/rows.hpp"
+#include "record/schema.hpp"
+#include "record/store_fixture.hpp"
 
 #include <array>
 #include <cstdlib>
@@ -21,9 +21,9 @@ namespace touchtrial::attacks {
 namespace {
 
 using nlohmann::json;
+using record::EventKind;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
-using store::EventKind;
 
 std::string failed_checks(const analysis::Verification& verification) {
   std::string failed;
@@ -43,11 +43,11 @@ std::string setting(const char* name) {
 }  // namespace
 
 AttackedStudy::AttackedStudy(int answered)
-    : FakeStudy(design::identification::classification(),
+    : FakeStudy(study::identification::classification(),
                 {.simulated = false, .trials = R"({"repeats": 2})", .with_pack = true}),
-      station_(design::station_key(key(), key().stations.front().name)) {
-  design::save_study_key(key_file(), key());
-  design::save_station_key(station_file(), station_);
+      station_(study::station_key(key(), key().stations.front().name)) {
+  study::save_study_key(key_file(), key());
+  study::save_station_key(station_file(), station_);
   fs::create_directory(folder() / "elsewhere");
   open();
   store().record_heads(fs::weakly_canonical(second_head().parent_path()).string(), seconds(0));
@@ -64,44 +64,44 @@ AttackedStudy::AttackedStudy(int answered)
 }
 
 void AttackedStudy::open() {
-  store() = store::StudyStore::open(database(), store::StudyStore::Access::read_write);
+  store() = record::StudyStore::open(database(), record::StudyStore::Access::read_write);
   const Signer signer = station_.signer();
   store().sign_with(signer);
-  const store::HeadFiles heads(database(), {key().investigator_signature, signer.public_half()},
-                               folder() / "elsewhere");
+  const record::HeadFiles heads(database(), {key().investigator_signature, signer.public_half()},
+                                folder() / "elsewhere");
   store().keep_heads(
-      [heads, signer](const store::HeadChange& change) { heads.update(signer, change); });
+      [heads, signer](const record::HeadChange& change) { heads.update(signer, change); });
 }
 
 void AttackedStudy::close() {
   recorder_.reset();
   sink_.reset();
-  const store::StudyStore closed = std::move(store());
+  const record::StudyStore closed = std::move(store());
 }
 
 void AttackedStudy::begin_open_session() {
   constexpr int kEnrolment = 4;
   own_ = SystemEntropy().secret("participant key");
   sink_ = store().begin_session(
-      open_session(), store::wrap_participant_key(station_.investigator_box, open_session(), own_),
+      open_session(), record::wrap_participant_key(station_.investigator_box, open_session(), own_),
       [] { return seconds(3); },
-      store::keep_participant_key(station_.station.secret, open_session(), own_));
+      record::keep_participant_key(station_.station.secret, open_session(), own_));
   recorder_.emplace(open_session(), own_, *sink_);
   schedule_ =
-      design::make_schedule(station_.study, station_.draw_of(kEnrolment, design::Draws::people));
-  store::SessionOpening opening;
+      study::make_schedule(station_.study, station_.draw_of(kEnrolment, study::Draws::people));
+  record::SessionOpening opening;
   opening.participant = "P04";
   opening.enrolment = kEnrolment;
   opening.study_id = station_.study_id;
   opening.seal = station_.seal;
   opening.device = "simulated";
-  recorder_->opened({}, opening, design::schedule_to_json(schedule_, station_));
+  recorder_->opened({}, opening, study::schedule_to_json(schedule_, station_));
 }
 
 void AttackedStudy::answer(int trials) {
-  const store::Trace trace = fixture::stroking(20, 0.05);
+  const record::Trace trace = fixture::stroking(20, 0.05);
   for (int i = 0; i < trials; ++i) {
-    const design::Presentation& shown =
+    const study::Presentation& shown =
         schedule_.presentations.at(static_cast<std::size_t>(answered_++));
     const seconds at(10 * answered_);
     recorder_->presented(at, shown.trial, shown.block);
@@ -141,15 +141,16 @@ std::string AttackedStudy::found_by_head(const Digest& head) const {
 }
 
 Forgery::Forgery(const fs::path& database) : path(database) {
-  const store::Database read = store::Database::open(path, store::Database::Mode::read_only);
-  store::for_each_event(read, store::EventFilter{},
-                        [&](const store::Event& event) { chains[event.session].push_back(event); });
+  const record::Database read = record::Database::open(path, record::Database::Mode::read_only);
+  record::for_each_event(read, record::EventFilter{}, [&](const record::Event& event) {
+    chains[event.session].push_back(event);
+  });
   for (const auto& [session, chain] : chains) {
-    if (session > 0) keys[session] = store::read_keys(read, session);
+    if (session > 0) keys[session] = record::read_keys(read, session);
   }
-  store::Query copies = read.query("SELECT session, kept FROM station_keys");
+  record::Query copies = read.query("SELECT session, kept FROM station_keys");
   while (copies.step()) kept[static_cast<int>(copies.integer(0))] = copies.blob(1);
-  store::Query query = read.query("SELECT session, trial, box FROM traces");
+  record::Query query = read.query("SELECT session, trial, box FROM traces");
   while (query.step()) {
     traces.push_back({.session = static_cast<int>(query.integer(0)),
                       .trial = static_cast<int>(query.integer(1)),
@@ -157,8 +158,8 @@ Forgery::Forgery(const fs::path& database) : path(database) {
   }
 }
 
-store::Event& Forgery::first(int session, EventKind kind) {
-  for (store::Event& event : chains.at(session)) {
+record::Event& Forgery::first(int session, EventKind kind) {
+  for (record::Event& event : chains.at(session)) {
     if (event.kind == kind) return event;
   }
   throw StoreError("no such event to forge");
@@ -168,9 +169,9 @@ void Forgery::drop(int session) {
   chains.erase(session);
   keys.erase(session);
   kept.erase(session);
-  std::erase_if(traces, [&](const store::SealedTrace& trace) { return trace.session == session; });
-  std::erase_if(file(), [&](const store::Event& event) {
-    return event.kind != EventKind::study_committed && store::session_about(event) == session;
+  std::erase_if(traces, [&](const record::SealedTrace& trace) { return trace.session == session; });
+  std::erase_if(file(), [&](const record::Event& event) {
+    return event.kind != EventKind::study_committed && record::session_about(event) == session;
   });
 }
 
@@ -178,8 +179,8 @@ void Forgery::relink(const Signer* signer) {
   for (auto chain = chains.rbegin(); chain != chains.rend(); ++chain) {  // the file's comes last
     Digest previous{};
     std::int64_t sequence = 0;
-    for (store::Event& event : chain->second) {
-      const int about = chain->first == 0 ? store::session_about(event) : 0;
+    for (record::Event& event : chain->second) {
+      const int about = chain->first == 0 ? record::session_about(event) : 0;
       if (event.kind == EventKind::session_opened) {
         set(event, "first", json(to_hex(chains.at(about).front().hash)).dump());
         set(event, "key", json(to_hex(sha256(keys.at(about).participant.value()))).dump());
@@ -191,30 +192,31 @@ void Forgery::relink(const Signer* signer) {
       }
       event.sequence = sequence++;
       event.previous = previous;
-      previous = event.hash = store::event_hash(event);
-      if (chain->first == 0 && signer != nullptr) event = store::signed_event(event, *signer);
+      previous = event.hash = record::event_hash(event);
+      if (chain->first == 0 && signer != nullptr) event = record::signed_event(event, *signer);
     }
   }
 }
 
 void Forgery::write() const {
-  const store::Database database = store::Database::open(path, store::Database::Mode::read_write);
+  const record::Database database =
+      record::Database::open(path, record::Database::Mode::read_write);
   fixture::without_triggers(database.connection(), [&] {
     database.change([&] {
-      for (const std::string table : store::kTables) {
+      for (const std::string table : record::kTables) {
         database.connection().exec("DELETE FROM " + table);
       }
       for (auto chain = chains.rbegin(); chain != chains.rend(); ++chain) {
-        for (const store::Event& event : chain->second) store::insert_event(database, event);
+        for (const record::Event& event : chain->second) record::insert_event(database, event);
       }
-      for (const auto& [session, own] : keys) store::insert_keys(database, session, own);
-      for (const auto& [session, one] : kept) store::insert_station_key(database, session, one);
-      for (const store::SealedTrace& trace : traces) store::insert_trace(database, trace);
+      for (const auto& [session, own] : keys) record::insert_keys(database, session, own);
+      for (const auto& [session, one] : kept) record::insert_station_key(database, session, one);
+      for (const record::SealedTrace& trace : traces) record::insert_trace(database, trace);
     });
   });
 }
 
-void set(store::Event& event, const std::string& member, const std::string& value) {
+void set(record::Event& event, const std::string& member, const std::string& value) {
   json body = json::parse(event.body);
   body[member] = json::parse(value);
   event.body = body.dump();
@@ -230,7 +232,7 @@ std::string rows_of(const fs::path& database) {
   std::string rows;
   try {
     SQLite::Database raw(database.string(), SQLite::OPEN_READONLY);
-    for (const std::string table : store::kTables) {
+    for (const std::string table : record::kTables) {
       const std::string columns =
           raw.execAndGet(
                  "SELECT group_concat('quote(' || name || ')', ' || '','' || ') FROM "

@@ -4,9 +4,9 @@
 
 #include "analysis/fake_study.hpp"
 #include "core/random.hpp"
-#include "protocols/design/study_key.hpp"
-#include "protocols/store/event.hpp"
-#include "protocols/store/sealing.hpp"
+#include "record/event.hpp"
+#include "record/sealing.hpp"
+#include "study/study_key.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -28,7 +28,7 @@ class AttackedStudy : public FakeStudy {
   /// \param answered  trials of the open session; 0: there is none
   explicit AttackedStudy(int answered = 3);
 
-  [[nodiscard]] const design::StationKey& station() const noexcept { return station_; }
+  [[nodiscard]] const study::StationKey& station() const noexcept { return station_; }
   [[nodiscard]] fs::path key_file() const { return folder() / "study.key"; }
   [[nodiscard]] fs::path station_file() const { return folder() / "study.station"; }
   [[nodiscard]] fs::path head() const { return folder() / "study.db.head"; }
@@ -54,11 +54,11 @@ class AttackedStudy : public FakeStudy {
  private:
   void begin_open_session();
 
-  design::StationKey station_;
-  design::Schedule schedule_;  ///< of the open session
-  SecretKey own_{};            ///< its participant's
-  std::unique_ptr<store::EventSink> sink_;
-  std::optional<store::SessionRecorder> recorder_;
+  study::StationKey station_;
+  study::Schedule schedule_;  ///< of the open session
+  SecretKey own_{};           ///< its participant's
+  std::unique_ptr<record::EventSink> sink_;
+  std::optional<record::SessionRecorder> recorder_;
   int answered_ = 0;
 };
 
@@ -73,21 +73,21 @@ struct Forgery {
   void relink(const Signer* signer = nullptr);
   void write() const;
 
-  [[nodiscard]] std::vector<store::Event>& file() { return chains.at(0); }
+  [[nodiscard]] std::vector<record::Event>& file() { return chains.at(0); }
   /// The first event of a kind on a chain.
-  [[nodiscard]] store::Event& first(int session, store::EventKind kind);
+  [[nodiscard]] record::Event& first(int session, record::EventKind kind);
   /// Removes a session, with its lines on the file's chain.
   void drop(int session);
 
   fs::path path;
-  std::map<int, std::vector<store::Event>> chains;  ///< by session; 0: the file's
-  std::map<int, store::WrappedKeys> keys;           ///< participants'
-  std::map<int, Bytes> kept;                        ///< the station's copies
-  std::vector<store::SealedTrace> traces;
+  std::map<int, std::vector<record::Event>> chains;  ///< by session; 0: the file's
+  std::map<int, record::WrappedKeys> keys;           ///< participants'
+  std::map<int, Bytes> kept;                         ///< the station's copies
+  std::vector<record::SealedTrace> traces;
 };
 
 /// Sets a member of an event's body to a value, as JSON.
-void set(store::Event& event, const std::string& member, const std::string& json);
+void set(record::Event& event, const std::string& member, const std::string& json);
 
 /// Runs SQL while the triggers of a database are gone.
 void with_sql(const fs::path& database, const std::string& sql);

@@ -1,6 +1,6 @@
 // What the holder of the investigator's key can do.
 #include "attacks/forger.hpp"
-#include "protocols/store/payload_json.hpp"
+#include "record/payload_json.hpp"
 #include "support/catch.hpp"
 
 #include <string>
@@ -8,25 +8,25 @@
 
 using namespace touchtrial;
 using namespace touchtrial::attacks;
-using store::EventKind;
+using record::EventKind;
 
 namespace {
 
 /// Seals a session anew, with another answer in its first trial.
-void alter_first_answer(std::vector<store::Event>& chain, const SecretKey& own) {
+void alter_first_answer(std::vector<record::Event>& chain, const SecretKey& own) {
   bool is_altered = false;
   Digest previous{};
-  for (store::Event& event : chain) {
-    auto [opened, secret] = store::opened_event(event, own).value();
+  for (record::Event& event : chain) {
+    auto [opened, secret] = record::opened_event(event, own).value();
     if (opened.kind == EventKind::answered && !is_altered) {
       set(opened, "position", "2");
       is_altered = true;
     }
     if (opened.kind == EventKind::closed) {
-      secret = store::to_json(store::ChainEnd{.length = event.sequence, .head = previous});
+      secret = record::to_json(record::ChainEnd{.length = event.sequence, .head = previous});
     }
     opened.previous = previous;
-    event = store::sealed_event(opened, secret, own);
+    event = record::sealed_event(opened, secret, own);
     previous = event.hash;
   }
 }
@@ -39,7 +39,7 @@ TEST_CASE("whoever holds the investigator's key can write anything; a head elsew
   study.close();
   Forgery forged(study.database());
   const SecretKey own =
-      store::unwrap_participant_key(study.key().box(), 2, forged.keys.at(2).participant.value())
+      record::unwrap_participant_key(study.key().box(), 2, forged.keys.at(2).participant.value())
           .value();
   alter_first_answer(forged.chains.at(2), own);
   const Signer investigator = study.key().signer();

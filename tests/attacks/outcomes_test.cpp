@@ -1,13 +1,13 @@
 // Attacks by whoever reads what is in clear of many people, and guesses from it how well each of
 // them did. Reports and exports without the key show what follows from these numbers alone.
-#include "analysis/outcomes.hpp"
+#include "analysis/outcomes/outcomes.hpp"
 
 #include "attacks/forger.hpp"
 #include "protocols/session/commitment.hpp"
 #include "protocols/session/tiny_study.hpp"
 #include "protocols/simulation/confusion_of.hpp"
 #include "protocols/simulation/simulation.hpp"
-#include "protocols/store/payload_json.hpp"
+#include "record/payload_json.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -109,19 +109,19 @@ void add_database(const fs::path& path, Numbers& seen) {
 /// How well each person did: the share of right answers in all trials, in those of a kind, of a
 /// class, and with one right answer; which answers they gave; and how high tracks were. And what is
 /// sealed since it tells that.
-void open(const store::StudyStore& store, const design::StudyKey& key, Numbers& truth,
+void open(const record::StudyStore& store, const study::StudyKey& key, Numbers& truth,
           Numbers& sealed) {
-  std::map<int, design::Schedule> schedules;
-  for (const store::SessionRow& row : store.sessions()) {
+  std::map<int, study::Schedule> schedules;
+  for (const record::SessionRow& row : store.sessions()) {
     schedules[row.session] = schedule_of_session(store, key, row.session);
   }
   std::map<std::pair<int, int>, double> answers;
-  for (const store::TrialRow& row : opened_trials(store, key)) {
-    const design::Schedule& schedule = schedules.at(row.session);
+  for (const record::TrialRow& row : opened_trials(store, key)) {
+    const study::Schedule& schedule = schedules.at(row.session);
     const auto place = static_cast<std::size_t>(row.trial - 1);
-    const design::Presentation& shown = schedule.presentations.at(place);
+    const study::Presentation& shown = schedule.presentations.at(place);
     const int answer = schedule.layout.at(static_cast<std::size_t>(row.position.value()));
-    const bool is_blank = !row.target && shown.kind == design::PresentationKind::catch_trial;
+    const bool is_blank = !row.target && shown.kind == study::PresentationKind::catch_trial;
     const int target = is_blank ? -1 : row.target.value_or(shown.stimulus.class_index);
     const double right = answer == target ? 1.0 : 0.0;
     truth.add("right", row.session, right);
@@ -140,11 +140,11 @@ void open(const store::StudyStore& store, const design::StudyKey& key, Numbers& 
       if (id.first == session) share = std::max(share, count);
     }
     sealed.add("answers at one position", session, share);
-    for (const store::Event& event :
+    for (const record::Event& event :
          as_recorded(store.events(session), key_of_session(store, key, session))) {
-      if (event.kind != store::EventKind::trace_stored) continue;
+      if (event.kind != record::EventKind::trace_stored) continue;
       sealed.add("saturated", session,
-                 store::trace_body_from_json(event.body).saturated ? 1.0 : 0.0);
+                 record::trace_body_from_json(event.body).saturated ? 1.0 : 0.0);
     }
   }
 }
@@ -233,7 +233,7 @@ void attack(const std::string& protocol, const TinyStudyOptions& options,
   const int sessions = std::min(kMostPeople, places(kPeopleOfCTest));
   TinyStudy tiny(options);
   const fs::path path = tiny.next_database();
-  store::StudyStore store = store::StudyStore::create(
+  record::StudyStore store = record::StudyStore::create(
       path, session::commitment_of(tiny.key(), tiny.pack(), true, false), {}, tiny.key().signer());
   static_cast<void>(simulation::simulate_study(
       tiny.key(), tiny.pack(), people(), {.participants = sessions, .seed = 5, .jobs = 2}, store));

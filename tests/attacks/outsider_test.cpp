@@ -5,8 +5,8 @@
 #include "attacks/forger.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "protocols/store/head_file.hpp"
-#include "protocols/store/payload_json.hpp"
+#include "record/head_file.hpp"
+#include "record/payload_json.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 
 using namespace touchtrial;
 using namespace touchtrial::attacks;
-using store::EventKind;
+using record::EventKind;
 
 namespace {
 
@@ -31,18 +31,18 @@ Signer forger() {
   return Signer(sha256(bytes_of("the forger's own key")));
 }
 
-void forge_answer(store::Event& event) {
+void forge_answer(record::Event& event) {
   event.sealed[event.sealed.size() / 2] ^= 1U;
 }
 
 /// Signs the station in the first event as if `investigator` were the study's.
 void certify(Forgery& forged, const Signer& investigator, const Signer& station) {
-  store::StudyCommitment commitment = store::commitment_from_json(forged.file().front().body);
+  record::StudyCommitment commitment = record::commitment_from_json(forged.file().front().body);
   commitment.investigator = investigator.public_half();
   commitment.station->key = station.public_half();
   commitment.station->certificate = investigator.sign(
       station_statement(commitment.study_id, commitment.station->name, station.public_half()));
-  forged.file().front().body = store::to_json(commitment);
+  forged.file().front().body = record::to_json(commitment);
 }
 
 struct Attack {
@@ -74,12 +74,12 @@ const std::vector<Attack> kAttacks = {
      kUnsigned},
     {"the station's clock shifted",
      [](Forgery& it) {
-       for (store::Event& event : it.file()) event.at += std::chrono::hours(1);
+       for (record::Event& event : it.file()) event.at += std::chrono::hours(1);
      },
      kUnsigned},
     {"two participants' sessions exchanged",
      [](Forgery& it) {
-       for (store::Event* event :
+       for (record::Event* event :
             {&it.chains.at(2).front(), &it.chains.at(3).front(), &it.file()[6], &it.file()[8]}) {
          const bool is_second = contains(event->body, "P02");
          set(*event, "participant", is_second ? "\"P03\"" : "\"P02\"");
@@ -98,13 +98,13 @@ const std::vector<Attack> kAttacks = {
      [](Forgery& it) { it.file()[4].signature = it.file()[5].signature; }, kUnsignedLook},
     {"signatures taken off",
      [](Forgery& it) {
-       for (store::Event& event : it.file()) event.signature.clear();
+       for (record::Event& event : it.file()) event.signature.clear();
      },
      kUnsigned},
     {"everything signed with one's own key",
      [](Forgery& it) {
        const Signer own = forger();
-       for (store::Event& event : it.file()) event = store::signed_event(event, own);
+       for (record::Event& event : it.file()) event = record::signed_event(event, own);
      },
      kUnsigned},
     {"a station of one's own that the investigator did not sign for",
@@ -139,8 +139,8 @@ const std::vector<Attack> kAttacksOnOpenSession = {
        for (const int at : {3, 7}) {
          set(it.chains.at(4).at(static_cast<std::size_t>(at)), "trial", at == 3 ? "1" : "2");
        }
-       store::SealedTrace* ours = nullptr;
-       for (store::SealedTrace& trace : it.traces) {
+       record::SealedTrace* ours = nullptr;
+       for (record::SealedTrace& trace : it.traces) {
          if (trace.session != 4 || trace.trial > 2) continue;
          if (ours != nullptr) std::swap(ours->box, trace.box);
          ours = &trace;
@@ -152,7 +152,7 @@ const std::vector<Attack> kAttacksOnOpenSession = {
      "the time of the event is not sealed"},
     {"the session's end invented",
      [](Forgery& it) {
-       store::Event end = it.chains.at(4).back();
+       record::Event end = it.chains.at(4).back();
        end.kind = EventKind::closed;
        end.body = R"({"complete":true})";
        it.chains.at(4).push_back(end);
@@ -173,16 +173,16 @@ void require_found(AttackedStudy& study, const Attack& attack) {
 
 /// Whether this station can go on with the open session: every event opens with the key it kept.
 bool can_resume(const AttackedStudy& study) {
-  const store::StudyStore store =
-      store::StudyStore::open(study.database(), store::StudyStore::Access::read_only);
+  const record::StudyStore store =
+      record::StudyStore::open(study.database(), record::StudyStore::Access::read_only);
   const std::optional<Bytes> kept = store.kept_key(AttackedStudy::open_session());
   if (!kept) return false;
-  const auto own = store::kept_participant_key(study.station().station.secret,
-                                               AttackedStudy::open_session(), *kept);
+  const auto own = record::kept_participant_key(study.station().station.secret,
+                                                AttackedStudy::open_session(), *kept);
   if (!own) return false;
-  const std::vector<store::Event> events = store.events(AttackedStudy::open_session());
-  return std::ranges::all_of(events, [&](const store::Event& event) {
-    return store::opened_event(event, *own).has_value();
+  const std::vector<record::Event> events = store.events(AttackedStudy::open_session());
+  return std::ranges::all_of(events, [&](const record::Event& event) {
+    return record::opened_event(event, *own).has_value();
   });
 }
 
@@ -276,7 +276,8 @@ TEST_CASE("a participant's key wrapped by a forger for the investigator is named
   study.close();
   const SecretKey own = sha256(bytes_of("the forger's participant"));
   Forgery forged(study.database());
-  const store::NewKeys wrapped = store::wrap_participant_key(study.key().investigator_box, 2, own);
+  const record::NewKeys wrapped =
+      record::wrap_participant_key(study.key().investigator_box, 2, own);
   forged.keys[2] = {.participant = wrapped.participant, .safety = wrapped.safety};
   forged.write();
   CHECK(contains(study.found(), kKeyAltered));
@@ -291,7 +292,7 @@ TEST_CASE("a study made anew with an investigator of one's own is found by the k
   study.close();
   const Signer own = forger();
   Forgery forged(study.database());
-  std::erase_if(forged.file(), [](const store::Event& event) {
+  std::erase_if(forged.file(), [](const record::Event& event) {
     return event.kind == EventKind::study_unblinded || event.kind == EventKind::heads_kept;
   });
   certify(forged, own, own);
@@ -304,7 +305,7 @@ TEST_CASE("a study made anew with an investigator of one's own is found by the k
   fs::remove(study.head());
   CHECK(study.found_without_key().empty());
   const analysis::Verification verification = analysis::verify_study(
-      store::StudyStore::open(study.database(), store::StudyStore::Access::read_only), nullptr,
+      record::StudyStore::open(study.database(), record::StudyStore::Access::read_only), nullptr,
       nullptr);
   CHECK(verification.investigator == own.public_half());
   CHECK_FALSE(verification.investigator == study.key().investigator_signature);
@@ -351,7 +352,8 @@ TEST_CASE("the station signs nothing on top of a chain that somebody made anew")
   forged.file().erase(forged.file().begin() + 4);  // the interim look
   forged.relink();
   forged.write();
-  study.store() = store::StudyStore::open(study.database(), store::StudyStore::Access::read_write);
+  study.store() =
+      record::StudyStore::open(study.database(), record::StudyStore::Access::read_write);
   study.store().sign_with(study.station().signer());
   const std::string refusal =
       complaint_of<StoreError>([&] { study.store().note(2, std::chrono::seconds(9), "", "late"); });

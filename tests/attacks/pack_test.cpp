@@ -2,9 +2,9 @@
 #include "attacks/forger.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "protocols/design/laboratory.hpp"
-#include "protocols/design/signed_pack.hpp"
 #include "protocols/session/key_check.hpp"
+#include "study/laboratory.hpp"
+#include "study/signed_pack.hpp"
 #include "support/catch.hpp"
 
 #include <functional>
@@ -22,9 +22,9 @@ namespace {
 struct PreparedForPeople : Laboratory {
   PreparedForPeople() { static_cast<void>(prepare()); }
 
-  [[nodiscard]] Outcome outcome(const design::StationKey& own) const {
+  [[nodiscard]] Outcome outcome(const study::StationKey& own) const {
     try {
-      design::require_whole(engine::Pack(pack()), own);
+      study::require_whole(engine::Pack(pack()), own);
     } catch (const Error&) {
       return Outcome::refused;
     }
@@ -59,7 +59,7 @@ struct PreparedForPeople : Laboratory {
          static_cast<int>(size));
   }
 
-  design::StationKey station = design::station_key(key(), design::kOnlyStation);
+  study::StationKey station = study::station_key(key(), study::kOnlyStation);
 };
 
 void exchange(const fs::path& one, const fs::path& other) {
@@ -119,7 +119,7 @@ TEST_CASE("what a session would present cannot be altered without the investigat
        [](const PreparedForPeople& study) {
          write_noise(study.image(0), 99);
          engine::PackManifest list = study.list();
-         list.pictures = design::picture_digests(study.station.study);
+         list.pictures = study::picture_digests(study.station.study);
          study.write(list);
        }},
       {"a list of drafts in the pack's place",
@@ -145,7 +145,7 @@ TEST_CASE("another investigator's halves in a station's file do not fit the pack
   SeededEntropy entropy(66);
   const SecretKey own = entropy.secret("forger");
   const Signer forger(own);
-  design::StationKey forged = study.station;
+  study::StationKey forged = study.station;
   forged.investigator_box = box_keys(own).public_half;
   CHECK(study.outcome(forged) == Outcome::refused);
   note("another investigator's box in a station's file", Outcome::refused);

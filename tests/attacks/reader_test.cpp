@@ -1,6 +1,6 @@
 // Attacks by whoever wants to learn: what will be presented, or what somebody answered who has
 // withdrawn since.
-#include "analysis/sealed_sessions.hpp"
+#include "analysis/outcomes/sealed_sessions.hpp"
 #include "app/study_folder.hpp"
 #include "attacks/forger.hpp"
 #include "core/files.hpp"
@@ -20,12 +20,12 @@ namespace {
 constexpr int kParticipants = 6;
 
 /// The schedules of the study's first participants.
-std::vector<design::Schedule> schedules_of(const design::Study& study,
-                                           const design::Station& station, design::Draws draws) {
-  std::vector<design::Schedule> schedules;
+std::vector<study::Schedule> schedules_of(const study::Study& study, const study::Station& station,
+                                          study::Draws draws) {
+  std::vector<study::Schedule> schedules;
   for (int number = 1; number <= kParticipants; ++number) {
     schedules.push_back(
-        design::make_schedule(study, design::draw_for(study, station, number, draws)));
+        study::make_schedule(study, study::draw_for(study, station, number, draws)));
   }
   return schedules;
 }
@@ -41,12 +41,12 @@ std::vector<SecretKey> secrets_of(std::uint64_t small) {
 }
 
 /// Keys that somebody has who took everything but copies from before a withdrawal.
-std::vector<SecretKey> keys_in_reach(const AttackedStudy& study, const store::StudyStore& store) {
-  const design::StudyKey& key = study.key();
+std::vector<SecretKey> keys_in_reach(const AttackedStudy& study, const record::StudyStore& store) {
+  const study::StudyKey& key = study.key();
   std::vector<SecretKey> keys = {key.master, key.box().secret_half, study.station().station.secret};
-  for (const store::SessionRow& row : store.sessions()) {
+  for (const record::SessionRow& row : store.sessions()) {
     if (const auto own = analysis::participant_key(store, key, row)) keys.push_back(*own);
-    keys.push_back(key.draw_of(row.enrolment, design::Draws::people).secret);
+    keys.push_back(key.draw_of(row.enrolment, study::Draws::people).secret);
   }
   return keys;
 }
@@ -70,27 +70,27 @@ bool is_in_any_file(const AttackedStudy& study, const Bytes& bytes) {
 TEST_CASE("no seed, no rehearsal and no small secret gives the schedules of a prepared study") {
   const StudyFolder folder;
   REQUIRE(folder.run({"prepare", folder.in("cloths.json")}).exit_code == 0);
-  const design::StudyKey key = design::load_study_key(folder.in("cloths.key"));
-  const auto real = schedules_of(key.study, key.stations.front(), design::Draws::people);
+  const study::StudyKey key = study::load_study_key(folder.in("cloths.key"));
+  const auto real = schedules_of(key.study, key.stations.front(), study::Draws::people);
   REQUIRE(real == schedules_of(key.study,
-                               design::load_station_key(folder.in("cloths.station")).station,
-                               design::Draws::people));
-  CHECK_FALSE(real == schedules_of(key.study, key.stations.front(), design::Draws::rehearsal));
+                               study::load_station_key(folder.in("cloths.station")).station,
+                               study::Draws::people));
+  CHECK_FALSE(real == schedules_of(key.study, key.stations.front(), study::Draws::rehearsal));
 
-  const design::StudyKey simulated = design::simulated_study_key(key.study);
-  std::vector<design::Station> guesses = simulated.stations;
+  const study::StudyKey simulated = study::simulated_study_key(key.study);
+  std::vector<study::Station> guesses = simulated.stations;
   std::vector<std::uint64_t> seeds = {key.study.seed};
   for (int seed = 0; seed < places(200); ++seed) seeds.push_back(static_cast<std::uint64_t>(seed));
   for (const std::uint64_t seed : seeds) {
     SeededEntropy entropy(seed);
-    guesses.push_back(design::make_study_key(key.study, entropy, false).stations.front());
+    guesses.push_back(study::make_study_key(key.study, entropy, false).stations.front());
     for (const SecretKey& secret : secrets_of(seed)) {
       guesses.push_back(simulated.stations.front());
       guesses.back().secret = secret;
     }
   }
-  for (const design::Station& guess : guesses) {
-    for (const design::Draws draws : {design::Draws::people, design::Draws::rehearsal}) {
+  for (const study::Station& guess : guesses) {
+    for (const study::Draws draws : {study::Draws::people, study::Draws::rehearsal}) {
       CHECK_FALSE(schedules_of(key.study, guess, draws) == real);
     }
   }
@@ -103,36 +103,36 @@ TEST_CASE("nothing opens what a person answered who was erased, but a copy from 
   const fs::path copy = study.folder() / "copy.db";
   const Bytes wrapped = study.store().wrapped_key(2).value();
   const Bytes kept = study.store().kept_key(AttackedStudy::open_session()).value();
-  store::copy_database(study.database(), copy);
+  record::copy_database(study.database(), copy);
   // A session that has ended, and one that is open.
   const std::array erased = {2, AttackedStudy::open_session()};
   study.store().withdraw(erased, std::chrono::seconds(9), "asked to");
   study.close();
   CHECK(study.found().empty());
 
-  const store::StudyStore store =
-      store::StudyStore::open(study.database(), store::StudyStore::Access::read_only);
+  const record::StudyStore store =
+      record::StudyStore::open(study.database(), record::StudyStore::Access::read_only);
   const std::vector<SecretKey> keys = keys_in_reach(study, store);
   for (const int session : erased) {
     CHECK_FALSE(store.wrapped_key(session));
     CHECK_FALSE(store.kept_key(session));
-    for (const store::Event& event : store.events(session)) {
-      for (const SecretKey& key : keys) CHECK_FALSE(store::opened_event(event, key));
+    for (const record::Event& event : store.events(session)) {
+      for (const SecretKey& key : keys) CHECK_FALSE(record::opened_event(event, key));
     }
     for (const SecretKey& key : keys) {
-      CHECK_FALSE(store::unsealed_trace(store.sealed_trace(session, 1).value(), key));
+      CHECK_FALSE(record::unsealed_trace(store.sealed_trace(session, 1).value(), key));
     }
   }
   CHECK(std::ranges::any_of(keys, [&](const SecretKey& key) {
-    return store::opened_event(store.events(1).front(), key).has_value();
+    return record::opened_event(store.events(1).front(), key).has_value();
   }));
   note("an erased person's answers", Outcome::refused, static_cast<int>(erased.size()));
 
-  const store::StudyStore before =
-      store::StudyStore::open(copy, store::StudyStore::Access::read_only);
+  const record::StudyStore before =
+      record::StudyStore::open(copy, record::StudyStore::Access::read_only);
   const auto own = analysis::participant_key(before, study.key(), before.sessions().at(1));
   REQUIRE(own);
-  CHECK(store::opened_event(store.events(2).back(), *own));
+  CHECK(record::opened_event(store.events(2).back(), *own));
   note("an erased person's answers, with an older copy and the key", Outcome::possible);
   fs::remove(copy);
   CHECK_FALSE(is_in_any_file(study, wrapped));

@@ -2,7 +2,7 @@
 // write-ahead log that is damaged or gone.
 #include "analysis/text_matching.hpp"
 #include "analysis/verification/study_files.hpp"
-#include "app/heads.hpp"
+#include "app/commands/heads.hpp"
 #include "app/touchtrial_process.hpp"
 #include "attacks/forger.hpp"
 #include "core/bytes.hpp"
@@ -124,8 +124,8 @@ TEST_CASE("another folder for the second head file hides nothing that the one on
   const fs::path other = study.folder() / "other";
   fs::create_directory(other);
   const auto told = [&](const std::string& reason) {
-    store::StudyStore store =
-        store::StudyStore::open(study.database(), store::StudyStore::Access::read_write);
+    record::StudyStore store =
+        record::StudyStore::open(study.database(), record::StudyStore::Access::read_write);
     const Signer signer = study.station().signer();
     store.sign_with(signer);
     return complaint_of<StoreError>([&] {
@@ -165,8 +165,8 @@ TEST_CASE("a head file that was left for another folder gives a rolled back move
   const fs::path other = study.folder() / "other";
   fs::create_directory(other);
   {
-    store::StudyStore store =
-        store::StudyStore::open(study.database(), store::StudyStore::Access::read_write);
+    record::StudyStore store =
+        record::StudyStore::open(study.database(), record::StudyStore::Access::read_write);
     const Signer signer = study.station().signer();
     store.sign_with(signer);
     app::keep_heads(store, study.database(), signer, {.folder = other}, app::HeadUse::required);

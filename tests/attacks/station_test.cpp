@@ -13,33 +13,33 @@
 
 using namespace touchtrial;
 using namespace touchtrial::attacks;
+using record::EventKind;
 using std::chrono::seconds;
-using store::EventKind;
 
 namespace {
 
 constexpr const char* kUnsignedLook = "the investigator did not sign the event";
 
 /// Every key that a station's file leads to.
-std::vector<SecretKey> keys_of(const design::StationKey& station) {
+std::vector<SecretKey> keys_of(const study::StationKey& station) {
   std::vector<SecretKey> keys = {station.station.secret,
                                  box_keys(station.station.secret).secret_half};
   for (int number = 1; number <= 4; ++number) {
-    keys.push_back(station.draw_of(number, design::Draws::people).secret);
+    keys.push_back(station.draw_of(number, study::Draws::people).secret);
   }
   return keys;
 }
 
-bool opens(const std::vector<store::Event>& events, const std::vector<SecretKey>& keys) {
-  return std::ranges::any_of(events, [&](const store::Event& event) {
+bool opens(const std::vector<record::Event>& events, const std::vector<SecretKey>& keys) {
+  return std::ranges::any_of(events, [&](const record::Event& event) {
     return std::ranges::any_of(
-        keys, [&](const SecretKey& key) { return store::opened_event(event, key).has_value(); });
+        keys, [&](const SecretKey& key) { return record::opened_event(event, key).has_value(); });
   });
 }
 
 /// Everybody answers the first class.
 FakeAnswers invented() {
-  return [](const design::Presentation&) { return 0; };
+  return [](const study::Presentation&) { return 0; };
 }
 
 /// The program's own form of the database, with head files made anew from it.
@@ -125,7 +125,7 @@ TEST_CASE("a station can shift its clock") {
   Forgery forged(study.database());
   forged.file().resize(4);  // a look would have the investigator's signature of the true times
   for (int session = 2; session <= 4; ++session) forged.drop(session);
-  for (store::Event& event : forged.file()) event.at += std::chrono::hours(1);
+  for (record::Event& event : forged.file()) event.at += std::chrono::hours(1);
   forged.relink(&station);
   forged.write();
   with_new_heads(study);
@@ -151,20 +151,20 @@ TEST_CASE("a station cannot record a look") {
 
 TEST_CASE("a station opens its open session, and none that has ended") {
   AttackedStudy study;
-  const store::StudyStore& store = study.store();
+  const record::StudyStore& store = study.store();
   const std::vector<SecretKey> keys = keys_of(study.station());
   for (int session = 1; session <= 3; ++session) {
     CHECK_FALSE(store.kept_key(session));
     CHECK_FALSE(opens(store.events(session), keys));
     for (const SecretKey& key : keys) {
-      CHECK_FALSE(store::unwrap_participant_key({study.station().investigator_box, key}, session,
-                                                store.wrapped_key(session).value()));
-      CHECK_FALSE(store::unsealed_trace(store.sealed_trace(session, 1).value(), key).has_value());
+      CHECK_FALSE(record::unwrap_participant_key({study.station().investigator_box, key}, session,
+                                                 store.wrapped_key(session).value()));
+      CHECK_FALSE(record::unsealed_trace(store.sealed_trace(session, 1).value(), key).has_value());
     }
   }
   note("a session that has ended, opened with the station's file", Outcome::refused, 3);
   const auto kept =
-      store::kept_participant_key(study.station().station.secret, 4, store.kept_key(4).value());
+      record::kept_participant_key(study.station().station.secret, 4, store.kept_key(4).value());
   REQUIRE(kept);
   CHECK(opens(store.events(4), {*kept}));
   // Whoever keeps that key opens the session for ever.
@@ -172,47 +172,47 @@ TEST_CASE("a station opens its open session, and none that has ended") {
 }
 
 TEST_CASE("a station's file draws its own participants' schedules, and no other station's") {
-  const FakeStudy study(design::identification::classification(),
+  const FakeStudy study(study::identification::classification(),
                         {.simulated = false, .stations = {"here", "there"}});
-  const design::StationKey here = design::station_key(study.key(), "here");
-  const design::StationKey there = design::station_key(study.key(), "there");
+  const study::StationKey here = study::station_key(study.key(), "here");
+  const study::StationKey there = study::station_key(study.key(), "there");
   const int theirs = there.station.ranges.front().first;
-  const auto schedule = [&](const design::ScheduleDraw& draw) {
-    return design::make_schedule(study.key().study, draw);
+  const auto schedule = [&](const study::ScheduleDraw& draw) {
+    return study::make_schedule(study.key().study, draw);
   };
-  CHECK(schedule(here.draw_of(1, design::Draws::people)) ==
-        schedule(study.key().draw_of(1, design::Draws::people)));
+  CHECK(schedule(here.draw_of(1, study::Draws::people)) ==
+        schedule(study.key().draw_of(1, study::Draws::people)));
   note("one's own participants' schedules, with the station's file", Outcome::possible);
   CHECK_FALSE(complaint_of<UsageError>([&] {
-                static_cast<void>(here.draw_of(theirs, design::Draws::people));
+                static_cast<void>(here.draw_of(theirs, study::Draws::people));
               }).empty());
-  design::Station posing = here.station;
+  study::Station posing = here.station;
   posing.name = "there";
   posing.ranges = there.station.ranges;
   for (int number = theirs; number <= there.station.ranges.front().last; ++number) {
-    CHECK_FALSE(schedule(draw_for(here.study, posing, number, design::Draws::people)) ==
-                schedule(there.draw_of(number, design::Draws::people)));
+    CHECK_FALSE(schedule(draw_for(here.study, posing, number, study::Draws::people)) ==
+                schedule(there.draw_of(number, study::Draws::people)));
   }
   note("another station's schedules", Outcome::refused);
 }
 
 TEST_CASE("a station signs for no other, and passes no other's session off as its own") {
-  FakeStudy study(design::identification::classification(),
+  FakeStudy study(study::identification::classification(),
                   {.simulated = false, .stations = {"here", "there"}});
-  const design::StationKey there = design::station_key(study.key(), "there");
+  const study::StationKey there = study::station_key(study.key(), "there");
   const Signer other = there.signer();
   CHECK(contains(complaint_of<StoreError>([&] { study.store().sign_with(other); }),
                  "is the database of station here"));
-  study.store().sign_with(design::station_key(study.key(), "here").signer());
+  study.store().sign_with(study::station_key(study.key(), "here").signer());
   study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});
-  { const store::StudyStore closed = std::move(study.store()); }
+  { const record::StudyStore closed = std::move(study.store()); }
 
   Forgery forged(study.database());
   forged.relink(&other);
   forged.write();
   const auto faults = [&] {
-    const store::StudyStore store =
-        store::StudyStore::open(study.database(), store::StudyStore::Access::read_only);
+    const record::StudyStore store =
+        record::StudyStore::open(study.database(), record::StudyStore::Access::read_only);
     std::string failed;
     for (const analysis::Check& check :
          analysis::verify_study(store, &study.key(), nullptr).checks) {

@@ -2,7 +2,7 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "device/device_settings.hpp"
-#include "device/registry.hpp"
+#include "device/drivers/registry.hpp"
 #include "device/schema_against_reader.hpp"
 #include "support/catch.hpp"
 

@@ -7,7 +7,7 @@ import re
 import sys
 
 # Headers that others compile as C: they have no namespace, and the end that C's headers have.
-FOR_C = {"device/plugin/touchtrial_device.h"}
+FOR_C = {"device/drivers/plugin/touchtrial_device.h"}
 ENTRY = r"main\(|LLVMFuzzerTestOneInput\("  # functions that the linker looks for in no namespace
 ARGUMENTS = r"(?:<[^<>()]*(?:<[^<>()]*>[^<>()]*)*>)?"  # of a template
 OTHER_ENDINGS = {".h", ".hh", ".hxx", ".c", ".cc", ".cxx", ".inl", ".ipp", ".tpp"}

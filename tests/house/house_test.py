@@ -12,8 +12,8 @@ ARCHITECTURE = """
 | `core` | basics | - |
 | `engine` | textures | core |
 | `device` | devices | core |
-| `protocols/design` | studies | engine |
-| `analysis` | reports | protocols/design |
+| `study` | studies | engine |
+| `analysis` | reports | study |
 | `analysis/planning` | power | analysis |
 | `protocols/identification/analysis` | a part | analysis |
 | `app` | commands | analysis/planning, device |

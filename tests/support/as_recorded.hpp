@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/errors.hpp"
-#include "protocols/store/sealing.hpp"
+#include "record/sealing.hpp"
 
 #include <optional>
 #include <vector>
@@ -10,16 +10,16 @@
 namespace touchtrial {
 
 /// \param event  of a session, as it is stored
-inline store::Event as_recorded(const store::Event& event, const SecretKey& participant_key) {
-  std::optional<store::OpenedEvent> opened = store::opened_event(event, participant_key);
+inline record::Event as_recorded(const record::Event& event, const SecretKey& participant_key) {
+  std::optional<record::OpenedEvent> opened = record::opened_event(event, participant_key);
   if (!opened) throw VerificationError("an event does not open");
   return opened->event;
 }
 
-inline std::vector<store::Event> as_recorded(const std::vector<store::Event>& events,
-                                             const SecretKey& participant_key) {
-  std::vector<store::Event> recorded;
-  for (const store::Event& event : events) recorded.push_back(as_recorded(event, participant_key));
+inline std::vector<record::Event> as_recorded(const std::vector<record::Event>& events,
+                                              const SecretKey& participant_key) {
+  std::vector<record::Event> recorded;
+  for (const record::Event& event : events) recorded.push_back(as_recorded(event, participant_key));
   return recorded;
 }
 

@@ -1,7 +1,7 @@
 // The experimenter's window beside the participant's, on a virtual screen.
-#include "app/experimenter/experimenter_desk.hpp"
-#include "app/experimenter/terminal_face.hpp"
-#include "app/participant/participant_window.hpp"
+#include "app/windows/experimenter/experimenter_desk.hpp"
+#include "app/windows/experimenter/terminal_face.hpp"
+#include "app/windows/participant/participant_window.hpp"
 #include "device/servo/servo_control.hpp"
 #include "engine/pictures/colour_image.hpp"
 #include "support/catch.hpp"

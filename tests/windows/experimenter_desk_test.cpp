@@ -1,7 +1,7 @@
-#include "app/experimenter/experimenter_desk.hpp"
+#include "app/windows/experimenter/experimenter_desk.hpp"
 
-#include "app/experimenter/status_words.hpp"
-#include "app/experimenter/terminal_face.hpp"
+#include "app/windows/experimenter/status_words.hpp"
+#include "app/windows/experimenter/terminal_face.hpp"
 #include "protocols/simulation/simulated_participant.hpp"
 #include "support/catch.hpp"
 
@@ -229,7 +229,7 @@ struct SpokenTerminal : Terminal {
   SpokenTerminal() {
     spoken.see_pictures({"sand", "bark", "cloth"});
     step.trial = 7;
-    step.sight = design::Sight::blindfold;
+    step.sight = study::Sight::blindfold;
   }
   /// The reply after these keys.
   std::optional<session::StepReply> reply(const std::string& more) {
@@ -272,7 +272,7 @@ TEST_CASE("an unfinished entry is discarded at the next exploration") {
 
 TEST_CASE("participants who see answer for themselves") {
   SpokenTerminal terminal;
-  terminal.step.sight = design::Sight::curtain;
+  terminal.step.sight = study::Sight::curtain;
   const auto reply = terminal.reply("");
   REQUIRE(reply);
   CHECK(reply->position == 2);

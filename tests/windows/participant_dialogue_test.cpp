@@ -1,7 +1,7 @@
 // Who comes: the questions before a session whose participant no option names.
 #include "app/run/participant_dialogue.hpp"
 
-#include "protocols/design/languages.hpp"
+#include "study/languages.hpp"
 #include "support/catch.hpp"
 #include "windows/virtual_screen.hpp"
 
@@ -15,21 +15,21 @@ namespace {
 
 using Replies = std::deque<std::vector<std::string>>;
 
-store::SessionRow session_of(const std::string& participant, int enrolment) {
-  store::SessionRow row;
+record::SessionRow session_of(const std::string& participant, int enrolment) {
+  record::SessionRow row;
   row.participant = participant;
   row.enrolment = enrolment;
   return row;
 }
 
-design::Station station_with(int first, int last) {
-  design::Station station{"attic", {}, {}};
+study::Station station_with(int first, int last) {
+  study::Station station{"attic", {}, {}};
   station.ranges.push_back({first, last});
   return station;
 }
 
 TEST_CASE("the first of a station has the id of the plan, and others follow the one before") {
-  const design::Station all = station_with(1, 100);
+  const study::Station all = station_with(1, 100);
   CHECK(app::proposed_participant({}, all) == "P01");
   CHECK(app::proposed_participant({}, station_with(11, 20)) == "P11");
   CHECK(app::proposed_participant({session_of("P01", 1), session_of("P02", 2)}, all) == "P03");
@@ -89,8 +89,8 @@ TEST_CASE("a participant who cannot come is asked for again, with the reason") {
 }
 
 TEST_CASE("the dialogue is in the study's language, and what is recorded is not") {
-  for (const std::string_view code : design::language_codes()) {
-    const design::Language& language = design::language_of(code);
+  for (const std::string_view code : study::language_codes()) {
+    const study::Language& language = study::language_of(code);
     std::vector<std::string> seen;
     const app::ParticipantAnswers answers =
         answers_to({{"P07", "0"}, {"7", "0"}}, "", &seen, language.code);

@@ -1,5 +1,5 @@
 // The participant's window on a virtual screen, driven by real key and mouse events.
-#include "app/participant/participant_window.hpp"
+#include "app/windows/participant/participant_window.hpp"
 
 #include "device/servo/servo.hpp"
 #include "device/servo/servo_control.hpp"
@@ -358,7 +358,7 @@ TEST_CASE("the exploring screen does not depend on what is felt, to the last byt
 
 app::ParticipantWindowOptions with_intervals() {
   app::ParticipantWindowOptions wanted = options();
-  wanted.intervals = design::IntervalPlan{.question = "threshold_texture"};
+  wanted.intervals = study::IntervalPlan{.question = "threshold_texture"};
   wanted.stiffness_n_per_mm = 0.4;
   wanted.interval_pause = milliseconds(300);
   wanted.least_touch = {.contact_s = 0.5, .path_mm = 25.0};

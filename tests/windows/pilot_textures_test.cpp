@@ -1,7 +1,7 @@
 // Tests whether a pilot with a mouse shows the study's own textures (docs/devices/mouse.md). The
 // mouse's settings were not chosen with these textures.
 #include "core/plane_geometry.hpp"
-#include "device/mouse/path_observer.hpp"
+#include "device/drivers/mouse/path_observer.hpp"
 #include "engine/extraction.hpp"
 #include "engine/rendering/gains.hpp"
 #include "protocols/session/exploration.hpp"

@@ -1,7 +1,7 @@
 // The screens of a study as whoever designs it looks at them.
-#include "app/participant/preview_screens.hpp"
 #include "app/texts/study_texts.hpp"
 #include "app/touchtrial_process.hpp"
+#include "app/windows/participant/preview_screens.hpp"
 #include "core/files.hpp"
 #include "engine/image_file.hpp"
 #include "support/catch.hpp"
@@ -44,7 +44,7 @@ std::set<std::size_t> kinds_of(const std::vector<app::PreviewScreen>& screens) {
 }
 
 TEST_CASE("a preview has every kind of screen, each under a name of its own") {
-  const design::Study study = design::parse_study(
+  const study::Study study = study::parse_study(
       study_with_everything(), fs::path(TOUCHTRIAL_SOURCE_DIR) / "config", "study.json");
   const session::SessionTexts texts = app::session_texts(study);
   const std::vector<app::PreviewScreen> screens = app::preview_screens(study, texts);
@@ -60,8 +60,8 @@ TEST_CASE("a preview has every kind of screen, each under a name of its own") {
 }
 
 TEST_CASE("a preview of trials with several planes has every kind of screen") {
-  const design::Study study =
-      design::load_study(fs::path(TOUCHTRIAL_SOURCE_DIR) / "config/detection.json");
+  const study::Study study =
+      study::load_study(fs::path(TOUCHTRIAL_SOURCE_DIR) / "config/detection.json");
   const session::SessionTexts texts = app::session_texts(study);
   const std::vector<app::PreviewScreen> screens = app::preview_screens(study, texts);
   CHECK(kinds_of(screens).size() == std::variant_size_v<session::Step>);
@@ -140,7 +140,7 @@ TEST_CASE("screens are drawn into files, one or all, each of them another pictur
 TEST_CASE("whoever designs leafs through the screens with keys") {
   const auto screen = VirtualScreen::open("1280x720");
   const Drawer drawer;
-  const design::Study study = design::load_study(drawer.study());
+  const study::Study study = study::load_study(drawer.study());
   const std::vector<std::string> names =
       names_of(app::preview_screens(study, app::session_texts(study)));
   const auto line_of = [&](const std::string& name) {

@@ -1,10 +1,10 @@
 // "touchtrial run" as experimenter and participant have it, on a screen that nobody sees.
-#include "analysis/collection.hpp"
-#include "analysis/sealed_sessions.hpp"
-#include "app/participant/participant_window.hpp"
+#include "analysis/outcomes/collection.hpp"
+#include "analysis/outcomes/sealed_sessions.hpp"
 #include "app/touchtrial_process.hpp"
+#include "app/windows/participant/participant_window.hpp"
 #include "core/files.hpp"
-#include "protocols/store/study_store.hpp"
+#include "record/study_store.hpp"
 #include "support/catch.hpp"
 #include "support/child_process.hpp"
 #include "support/environment.hpp"
@@ -59,12 +59,12 @@ struct Laboratory {
 /// The positions that were chosen, in the order of the answers.
 std::vector<int> positions_as_answered(const Laboratory& lab, const std::string& database) {
   const auto store =
-      store::StudyStore::open(lab.in(database), store::StudyStore::Access::read_only);
-  std::vector<store::TrialRow> trials = analysis::open_trials(
-      store, analysis::person_keys(store, design::load_study_key(lab.in("config/study.key"))));
-  std::ranges::sort(trials, {}, &store::TrialRow::answered_at);
+      record::StudyStore::open(lab.in(database), record::StudyStore::Access::read_only);
+  std::vector<record::TrialRow> trials = analysis::open_trials(
+      store, analysis::person_keys(store, study::load_study_key(lab.in("config/study.key"))));
+  std::ranges::sort(trials, {}, &record::TrialRow::answered_at);
   std::vector<int> positions;
-  for (const store::TrialRow& trial : trials) positions.push_back(trial.position.value_or(-1));
+  for (const record::TrialRow& trial : trials) positions.push_back(trial.position.value_or(-1));
   return positions;
 }
 
@@ -170,7 +170,7 @@ TEST_CASE(
   CHECK(positions_as_answered(lab, "pilot.db") == pilot.meant());
   const analysis::SessionRecord session =
       analysis::load_collection(
-          store::StudyStore::open(lab.in("pilot.db"), store::StudyStore::Access::read_only))
+          record::StudyStore::open(lab.in("pilot.db"), record::StudyStore::Access::read_only))
           .sessions.at(0);
   CHECK(std::ranges::count(session.deviations, "focus-lost", &analysis::Deviation::code) >= 1);
   CHECK(session.pauses >= 1);

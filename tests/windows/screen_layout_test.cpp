@@ -1,15 +1,15 @@
 // Checks that everything a participant reads lies on the screen, in all languages and at several
 // sizes. The screens are drawn without a window, and the places of texts and buttons are compared.
-#include "app/participant/answer_screen.hpp"
-#include "app/participant/canvas.hpp"
-#include "app/participant/card_screen.hpp"
-#include "app/participant/exploring_screen.hpp"
-#include "app/participant/page_layout.hpp"
-#include "app/participant/screen.hpp"
 #include "app/texts/study_texts.hpp"
 #include "app/windows/look.hpp"
-#include "protocols/design/languages.hpp"
-#include "protocols/identification/design/identification.hpp"
+#include "app/windows/participant/answer_screen.hpp"
+#include "app/windows/participant/canvas.hpp"
+#include "app/windows/participant/card_screen.hpp"
+#include "app/windows/participant/exploring_screen.hpp"
+#include "app/windows/participant/page_layout.hpp"
+#include "app/windows/participant/screen.hpp"
+#include "protocols/identification/study/identification.hpp"
+#include "study/languages.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -44,7 +44,7 @@ class Squares final : public app::PictureShelf {
 const app::Words& words_in(const std::string& language) {
   static std::map<std::string, app::Words> all;
   const auto [place, is_new] = all.try_emplace(language);
-  if (is_new) place->second = app::words_of(design::language_of(language).texts);
+  if (is_new) place->second = app::words_of(study::language_of(language).texts);
   return place->second;
 }
 
@@ -155,8 +155,8 @@ std::string faults_of(const app::Canvas& canvas) {
   return faults;
 }
 
-design::Question choice(int options) {
-  design::Question question{"hand", design::QuestionKind::choice, {}, {}, true};
+study::Question choice(int options) {
+  study::Question question{"hand", study::QuestionKind::choice, {}, {}, true};
   question.text = {{"en", "Which hand do you use to hold a toothbrush, or the thing most like it?"},
                    {"de", "Mit welcher Hand halten Sie eine Zahnbürste oder etwas Ähnliches?"}};
   for (int i = 0; i < options; ++i) {
@@ -166,14 +166,14 @@ design::Question choice(int options) {
   return question;
 }
 
-const design::Questionnaire& questions() {
-  static const design::Questionnaire all = {
+const study::Questionnaire& questions() {
+  static const study::Questionnaire all = {
       "closing",
       {choice(5),
        choice(9),
-       {"age", design::QuestionKind::number, {{"en", "Age?"}, {"de", "Alter?"}}, {}},
+       {"age", study::QuestionKind::number, {{"en", "Age?"}, {"de", "Alter?"}}, {}},
        {"strategy",
-        design::QuestionKind::text,
+        study::QuestionKind::text,
         {{"en", "How did you decide, and what did you listen or look for?"},
          {"de", "Wie haben Sie entschieden, und worauf haben Sie geachtet?"}},
         {}}}};
@@ -199,7 +199,7 @@ std::vector<session::Step> steps_of_a_session() {
                               .confidence_levels = 9},
           session::AnswerStep{.trial = 2, .of = 5, .practice = true},
           session::AnswerStep{
-              .trial = 2, .of = 25, .time_is_up = true, .sight = design::Sight::blindfold},
+              .trial = 2, .of = 25, .time_is_up = true, .sight = study::Sight::blindfold},
           session::FeedbackStep{0, 1},
           session::FeedbackStep{1, 1},
           session::BreakStep{10, 25},
@@ -226,16 +226,16 @@ void check_all_pages(const Paper& paper, app::Screen& screen) {
 /// The texts of a language's files, and of the questions in this file.
 std::vector<std::string> all_texts(const std::string& language) {
   std::vector<std::string> texts = {"≤≥"};
-  for (const auto& [section, parts] : design::language_of(language).texts) {
+  for (const auto& [section, parts] : study::language_of(language).texts) {
     for (const auto& [key, text] : parts) texts.push_back(text);
   }
   return texts;
 }
 
 /// A study with every page of instructions.
-design::Study full_study(const std::string& language) {
-  design::Study study;
-  study.protocol = &design::identification::comparison();
+study::Study full_study(const std::string& language) {
+  study::Study study;
+  study.protocol = &study::identification::comparison();
   study.classes.resize(5);
   study.trials.practice = 5;
   study.session.language = language;
@@ -259,7 +259,7 @@ TEST_CASE("everything on every screen can be read, in all languages and at all s
   const double side_mm = GENERATE(25.0, 51.2, 100.0);
   const bool knows = side_mm < 100.0;
   // The largest letters are tried with the pictures that leave them least room.
-  const double text_scale = knows ? 1.0 : design::kLargestTextScale;
+  const double text_scale = knows ? 1.0 : study::kLargestTextScale;
   CAPTURE(size.x, language, side_mm, text_scale);
   const Paper paper(size, text_scale, app::letters_in(all_texts(language)));
   const session::SessionTexts texts = app::session_texts(full_study(language));
@@ -296,7 +296,7 @@ std::vector<session::Step> steps_with_intervals() {
                                       session::NoticeStep{What::hand_off}};
   for (const char* question : {"threshold_texture", "threshold_stronger", "threshold_coarser",
                                "threshold_odd", "threshold_same"}) {
-    for (const design::Sight sight : {design::Sight::curtain, design::Sight::blindfold}) {
+    for (const study::Sight sight : {study::Sight::curtain, study::Sight::blindfold}) {
       steps.push_back(session::AnswerStep{
           .trial = 2, .of = 60, .confidence_levels = 5, .question = question, .sight = sight});
     }
@@ -308,14 +308,14 @@ TEST_CASE("all screens of trials with several planes can be read, in all languag
   const Vec2 size = GENERATE(Vec2{1280.0, 720.0}, Vec2{1920.0, 1080.0}, Vec2{1280.0, 1024.0},
                              Vec2{3440.0, 1440.0});
   const std::string language = GENERATE("en", "de", "es", "fr", "ja", "zh");
-  const double text_scale = GENERATE(1.0, design::kLargestTextScale);
+  const double text_scale = GENERATE(1.0, study::kLargestTextScale);
   const bool feedback = GENERATE(false, true);
   const bool mouse = GENERATE(false, true);
   CAPTURE(size.x, language, text_scale, feedback, mouse);
   const Paper paper(size, text_scale, app::letters_in(all_texts(language)));
   Squares shelf(50.0);
   const app::Glass glass = {0.27, true};
-  design::IntervalPlan plan;
+  study::IntervalPlan plan;
   plan.count = 3;
   plan.feedback = feedback;
   const app::ScreenContext context = {.words = &words_in(language),
@@ -332,10 +332,10 @@ TEST_CASE("all screens of trials with several planes can be read, in all languag
       check_all_pages(paper, *app::screen_for(step, context, labels));
     }
   }
-  design::Study study = design::load_study(std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) /
-                                           "config/discrimination-order.json");
+  study::Study study = study::load_study(std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) /
+                                         "config/discrimination-order.json");
   study.session.language = language;
-  for (const design::Sight sight : {design::Sight::curtain, design::Sight::blindfold}) {
+  for (const study::Sight sight : {study::Sight::curtain, study::Sight::blindfold}) {
     study.session.sight = sight;
     const session::SessionTexts texts = app::session_texts(study);
     check_all_pages(paper,
@@ -675,10 +675,10 @@ TEST_CASE("a questionnaire can be answered with keys, and optional questions can
 }
 
 TEST_CASE("a number that the question does not accept does not go on, and its bounds are shown") {
-  design::Question age{"age", design::QuestionKind::number, {{"de", "Alter?"}}, {}};
+  study::Question age{"age", study::QuestionKind::number, {{"de", "Alter?"}}, {}};
   age.min = 18.0;
   age.max = 99.5;
-  const design::Questionnaire asked = {"closing", {age}};
+  const study::Questionnaire asked = {"closing", {age}};
   Drawn screen(session::QuestionStep{&asked}, "de");
   const auto has_text = [&](const std::string& text) {
     const std::vector<app::PlacedText> texts = screen.draw().texts();

@@ -1,7 +1,7 @@
 #include "app/run/session_device.hpp"
 
 #include "core/errors.hpp"
-#include "protocols/design/deviation_codes.hpp"
+#include "study/deviation_codes.hpp"
 #include "support/catch.hpp"
 
 namespace touchtrial {
@@ -32,7 +32,7 @@ TEST_CASE("a late session that is wanted all the same is recorded by a code of t
   REQUIRE(late);
   CHECK(late->kind == session::ExperimenterRequest::Kind::deviation);
   CHECK(late->code == "no-real-time");
-  CHECK(design::is_deviation_code(late->code));
+  CHECK(study::is_deviation_code(late->code));
   CHECK_THAT(late->text, holds_text("SCHED_FIFO was refused"));
 }
 

@@ -197,7 +197,7 @@ TEST_CASE("the marks of intervals stand out from the masking noise") {
     const auto count = static_cast<double>(noise.size());
     return db_of(2.0 * density_at(noise, kFirst, kLast) * (kLast - kFirst) / (count * count));
   };
-  const std::vector<float> usual = app::masking_noise(design::MaskingPlan{}.level_dbfs, 3);
+  const std::vector<float> usual = app::masking_noise(study::MaskingPlan{}.level_dbfs, 3);
   const std::vector<float> loudest = app::masking_noise(app::kHighestMaskingDbfs, 3);
   for (const app::Cue mark : {app::Cue::first_begins, app::Cue::second_begins,
                               app::Cue::third_begins, app::Cue::interval_over}) {
@@ -251,7 +251,7 @@ class AlsaConfiguration {
 
 TEST_CASE("without a sound card a session is silent, says why, and records it once") {
   const AlsaConfiguration nothing("pcm.!default { type hw card 99 }\n");
-  app::SessionSound sound(design::MaskingPlan{}, 1);
+  app::SessionSound sound(study::MaskingPlan{}, 1);
   sound.tone(app::Cue::plane_on);
   CHECK(sound.trouble().find("sound: ") == 0);
   const auto record = sound.to_record();

@@ -1,10 +1,10 @@
 #include "app/texts/study_texts.hpp"
 
-#include "app/participant/words.hpp"
-#include "protocols/design/deviation_codes.hpp"
-#include "protocols/design/languages.hpp"
-#include "protocols/design/protocol.hpp"
-#include "protocols/identification/design/identification.hpp"
+#include "app/windows/participant/words.hpp"
+#include "protocols/identification/study/identification.hpp"
+#include "study/deviation_codes.hpp"
+#include "study/languages.hpp"
+#include "study/protocol.hpp"
 #include "support/catch.hpp"
 
 #include <filesystem>
@@ -17,9 +17,9 @@
 namespace touchtrial {
 namespace {
 
-design::Study two_textures() {
-  design::Study study;
-  study.protocol = &design::identification::classification();
+study::Study two_textures() {
+  study::Study study;
+  study.protocol = &study::identification::classification();
   study.classes = {{"bark", {}}, {"cloth", {}}};
   return study;
 }
@@ -38,14 +38,14 @@ bool has(const std::vector<session::DaySheetItem>& sheet, std::string_view code)
 }
 
 /// One study for each combination of options that change texts.
-std::vector<design::Study> every_kind(const std::string& language) {
-  std::vector<design::Study> studies;
+std::vector<study::Study> every_kind(const std::string& language) {
+  std::vector<study::Study> studies;
   for (int bits = 0; bits < 32; ++bits) {
-    design::Study study = two_textures();
+    study::Study study = two_textures();
     study.session.language = language;
-    if ((bits & 1) != 0) study.protocol = &design::identification::comparison();
-    if ((bits & 2) != 0) study.session.sight = design::Sight::blindfold;
-    if ((bits & 4) != 0) study.trials.on_timeout = design::OnTimeout::no_response;
+    if ((bits & 1) != 0) study.protocol = &study::identification::comparison();
+    if ((bits & 2) != 0) study.session.sight = study::Sight::blindfold;
+    if ((bits & 4) != 0) study.trials.on_timeout = study::OnTimeout::no_response;
     if ((bits & 8) != 0) study.trials.practice = 5;
     if ((bits & 16) != 0) {
       study.session.confidence_levels = 5;
@@ -57,11 +57,11 @@ std::vector<design::Study> every_kind(const std::string& language) {
 }
 
 TEST_CASE("the window uses every text of the screens, and no other") {
-  design::Texts texts = design::language_of("en").texts;
+  study::Texts texts = study::language_of("en").texts;
   CHECK(app::words_of(texts).next == "Next");
-  for (const auto& [key, text] : design::language_of("en").texts.at("screens")) {
+  for (const auto& [key, text] : study::language_of("en").texts.at("screens")) {
     INFO(key);
-    design::Texts without = texts;
+    study::Texts without = texts;
     without.at("screens").erase(key);
     CHECK_THROWS_AS(app::words_of(without), std::out_of_range);
   }
@@ -74,10 +74,10 @@ TEST_CASE("values take the places of the words in braces, wherever these are") {
 }
 
 TEST_CASE("instructions of every study hold its numbers and no word in braces") {
-  for (const std::string_view code : design::language_codes()) {
+  for (const std::string_view code : study::language_codes()) {
     const std::string language(code);
     CAPTURE(language);
-    for (const design::Study& study : every_kind(language)) {
+    for (const study::Study& study : every_kind(language)) {
       const session::SessionTexts texts = app::session_texts(study);
       CHECK(texts.instructions.size() >= 6);
       std::string text = all_of(texts.instructions);
@@ -87,20 +87,20 @@ TEST_CASE("instructions of every study hold its numbers and no word in braces") 
       CHECK(text.find("bark") == std::string::npos);
       // Speeds and forces of good strokes.
       CHECK(text.find("50") != std::string::npos);
-      CHECK(text.find(design::has_decimal_comma(code) ? "0,5" : "0.5") != std::string::npos);
+      CHECK(text.find(study::has_decimal_comma(code) ? "0,5" : "0.5") != std::string::npos);
     }
   }
 }
 
 /// One study for each combination of options that change texts of trials with several planes.
-std::vector<design::Study> every_kind_with_intervals(const std::string& language) {
-  std::vector<design::Study> studies;
+std::vector<study::Study> every_kind_with_intervals(const std::string& language) {
+  std::vector<study::Study> studies;
   for (const char* name : {"detection", "discrimination", "discrimination-order"}) {
     for (int bits = 0; bits < 4; ++bits) {
-      design::Study study = design::load_study(std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) /
-                                               "config" / (std::string(name) + ".json"));
+      study::Study study = study::load_study(std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) /
+                                             "config" / (std::string(name) + ".json"));
       study.session.language = language;
-      if ((bits & 1) != 0) study.session.sight = design::Sight::blindfold;
+      if ((bits & 1) != 0) study.session.sight = study::Sight::blindfold;
       if ((bits & 2) != 0) study.session.confidence_levels = 5;
       studies.push_back(study);
     }
@@ -109,11 +109,11 @@ std::vector<design::Study> every_kind_with_intervals(const std::string& language
 }
 
 /// What of questionnaires is read in a language.
-std::string read_in(const std::string& language, const std::vector<design::Questionnaire>& all) {
+std::string read_in(const std::string& language, const std::vector<study::Questionnaire>& all) {
   std::string text;
-  for (const design::Questionnaire& one : all) {
+  for (const study::Questionnaire& one : all) {
     text += one.name + "\n";
-    for (const design::Question& question : one.questions) {
+    for (const study::Question& question : one.questions) {
       text += question.id + ": " + question.text.at(language) + "\n";
       for (const auto& option : question.options) text += "- " + option.at(language) + "\n";
     }
@@ -126,15 +126,15 @@ TEST_CASE("who wears a blindfold reads of no picture and nothing else to look at
       {"en", {"picture", "bars", "curtain"}}, {"de", {"Bild", "Balken", "Vorhang"}},
       {"fr", {"image", "barres", "rideau"}},  {"es", {"imagen", "imágenes", "barras", "cortina"}},
       {"zh", {"图", "横条", "帘"}},           {"ja", {"写真", "画像", "棒", "カーテン"}}};
-  for (const std::string_view code : design::language_codes()) {
+  for (const std::string_view code : study::language_codes()) {
     const std::string language(code);
     CAPTURE(language);
-    std::vector<design::Study> studies = every_kind(language);
-    for (const design::Study& study : every_kind_with_intervals(language)) studies.push_back(study);
-    for (const design::Study& study : studies) {
-      const app::Words words = app::words_of(design::texts_of(study.session));
+    std::vector<study::Study> studies = every_kind(language);
+    for (const study::Study& study : every_kind_with_intervals(language)) studies.push_back(study);
+    for (const study::Study& study : studies) {
+      const app::Words words = app::words_of(study::texts_of(study.session));
       std::string text = all_of(app::session_texts(study).instructions);
-      const bool sees = study.session.sight != design::Sight::blindfold;
+      const bool sees = study.session.sight != study::Sight::blindfold;
       if (!sees) text += words.practice_text_blindfold + words.practice_text_intervals;
       for (const std::string* const card :
            {&words.practice_over_text, &words.practice_over_text_feedback, &words.ready_text,
@@ -153,11 +153,11 @@ TEST_CASE("who wears a blindfold reads of no picture and nothing else to look at
 }
 
 TEST_CASE("a study's questionnaires alone are those of its session, in its language") {
-  for (const std::string_view code : design::language_codes()) {
+  for (const std::string_view code : study::language_codes()) {
     const std::string language(code);
-    for (const design::Study& study : every_kind(language)) {
+    for (const study::Study& study : every_kind(language)) {
       const session::SessionTexts texts = app::session_texts(study);
-      std::vector<design::Questionnaire> expected;
+      std::vector<study::Questionnaire> expected;
       for (const auto& one : {texts.handedness, texts.closing}) {
         if (one) expected.push_back(*one);
       }
@@ -167,12 +167,12 @@ TEST_CASE("a study's questionnaires alone are those of its session, in its langu
 }
 
 TEST_CASE("instructions of trials with several planes hold their numbers and their question") {
-  for (const std::string_view code : design::language_codes()) {
+  for (const std::string_view code : study::language_codes()) {
     const std::string language(code);
     CAPTURE(language);
-    const app::Words words = app::words_of(design::language_of(code).texts);
-    for (const design::Study& study : every_kind_with_intervals(language)) {
-      const design::IntervalPlan plan = study.protocol->interval_plan(study).value();
+    const app::Words words = app::words_of(study::language_of(code).texts);
+    for (const study::Study& study : every_kind_with_intervals(language)) {
+      const study::IntervalPlan plan = study.protocol->interval_plan(study).value();
       const session::SessionTexts texts = app::session_texts(study);
       CHECK(texts.instructions.size() == 7);
       const std::string text = all_of(texts.instructions);
@@ -181,7 +181,7 @@ TEST_CASE("instructions of trials with several planes hold their numbers and the
       CHECK(app::title_of(words, plan.question) != words.answer_title);
       for (const std::string& number :
            {std::to_string(plan.count), std::string("15"),
-            std::string(design::has_decimal_comma(code) ? "2,5" : "2.5")}) {
+            std::string(study::has_decimal_comma(code) ? "2,5" : "2.5")}) {
         CHECK(text.find(number) != std::string::npos);
       }
     }
@@ -189,7 +189,7 @@ TEST_CASE("instructions of trials with several planes hold their numbers and the
 }
 
 TEST_CASE("where a trial has several planes, no text speaks of pictures or of names of textures") {
-  for (const design::Study& study : every_kind_with_intervals("en")) {
+  for (const study::Study& study : every_kind_with_intervals("en")) {
     const session::SessionTexts texts = app::session_texts(study);
     const std::string text = all_of(texts.instructions);
     CHECK(text.find("picture") == std::string::npos);
@@ -199,7 +199,7 @@ TEST_CASE("where a trial has several planes, no text speaks of pictures or of na
 }
 
 TEST_CASE("choices that are words are in the words' language, and others stay as they are") {
-  const app::Words german = app::words_of(design::language_of("de").texts);
+  const app::Words german = app::words_of(study::language_of("de").texts);
   CHECK(app::choice_text(german, "third") == "Die dritte");
   CHECK(app::choice_text(german, "different") == "Verschieden");
   CHECK(app::choice_text(german, "bark") == "bark");
@@ -208,7 +208,7 @@ TEST_CASE("choices that are words are in the words' language, and others stay as
 }
 
 TEST_CASE("a study's own instructions replace the program's in their language only") {
-  design::Study study = two_textures();
+  study::Study study = two_textures();
   study.session.instructions["de"] = {"Nur das, {limit}."};
   CHECK(app::session_texts(study).instructions.size() > 1);
   study.session.language = "de";
@@ -216,7 +216,7 @@ TEST_CASE("a study's own instructions replace the program's in their language on
 }
 
 TEST_CASE("a study replaces one page of the instructions by its own") {
-  design::Study study = two_textures();
+  study::Study study = two_textures();
   const std::size_t pages = app::session_texts(study).instructions.size();
   study.session.texts["en"]["instructions"]["welcome"] = "Hello.";
   study.session.texts["de"]["instructions"]["comfort"] = "Halt.";
@@ -227,14 +227,14 @@ TEST_CASE("a study replaces one page of the instructions by its own") {
 }
 
 TEST_CASE("texts are in English if the program does not have the study's language") {
-  design::Study study = two_textures();
+  study::Study study = two_textures();
   const session::SessionTexts english = app::session_texts(study);
   study.session.language = "xx";
   CHECK(app::session_texts(study).instructions == english.instructions);
 }
 
 TEST_CASE("the handedness inventory has four items with five options, then asks for the pen") {
-  design::Study study = two_textures();
+  study::Study study = two_textures();
   const auto inventory = app::session_texts(study).handedness;
   REQUIRE(inventory);
   REQUIRE(inventory->questions.size() == 5);
@@ -253,9 +253,9 @@ TEST_CASE("the handedness inventory has four items with five options, then asks 
 }
 
 TEST_CASE("a study's closing questions follow the program's or replace them") {
-  design::Study study = two_textures();
+  study::Study study = two_textures();
   const std::size_t own = app::session_texts(study).closing.value().questions.size();
-  design::Question more;
+  study::Question more;
   more.id = "tired";
   study.session.closing_questions = {more};
   CHECK(app::session_texts(study).closing.value().questions.size() == own + 1);
@@ -272,7 +272,7 @@ TEST_CASE("a study's closing questions follow the program's or replace them") {
 }
 
 TEST_CASE("the day sheet has what the study needs, each with a deviation code of its own") {
-  design::Study study = two_textures();
+  study::Study study = two_textures();
   study.session.consent_version = "2026-03";
   study.session.day_sheet = {"The window is shut"};
   const std::vector<session::DaySheetItem> sheet = app::session_texts(study).day_sheet;
@@ -284,13 +284,13 @@ TEST_CASE("the day sheet has what the study needs, each with a deviation code of
   CHECK(sheet.front().text.find("2026-03") != std::string::npos);
   CHECK(sheet.back().text == "The window is shut");
   study.session.masking.wanted = false;
-  study.session.sight = design::Sight::blindfold;
+  study.session.sight = study::Sight::blindfold;
   const std::vector<session::DaySheetItem> blind = app::session_texts(study).day_sheet;
   CHECK_FALSE(has(blind, "no-headphones"));
   CHECK_FALSE(has(blind, "no-curtain"));
   CHECK(has(blind, "no-labels-learnt"));
   for (const std::vector<session::DaySheetItem>* const items : {&sheet, &blind}) {
-    for (const session::DaySheetItem& item : *items) CHECK(design::is_deviation_code(item.code));
+    for (const session::DaySheetItem& item : *items) CHECK(study::is_deviation_code(item.code));
   }
 }
 

@@ -3,7 +3,7 @@
 
 #include "app/windows/look.hpp"
 #include "core/errors.hpp"
-#include "protocols/design/languages.hpp"
+#include "study/languages.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -109,8 +109,8 @@ TEST_CASE("bold words are runs of their own, and break like others") {
 }
 
 TEST_CASE("no language's text loses a letter by breaking, and no line is wider than it may be") {
-  for (const std::string_view code : design::language_codes()) {
-    const design::Language& language = design::language_of(code);
+  for (const std::string_view code : study::language_codes()) {
+    const study::Language& language = study::language_of(code);
     std::vector<std::string> texts;
     for (const auto& [section, parts] : language.texts) {
       for (const auto& [key, text] : parts) texts.push_back(text);
@@ -138,8 +138,8 @@ TEST_CASE("bytes that are not UTF-8 count as one unknown letter each") {
 }
 
 TEST_CASE("fonts are required for all letters of the texts; the message has letters and remedy") {
-  for (const std::string_view code : design::language_codes()) {
-    const design::Language& language = design::language_of(code);
+  for (const std::string_view code : study::language_codes()) {
+    const study::Language& language = study::language_of(code);
     INFO(language.code);
     std::vector<std::string> texts;
     for (const auto& [section, parts] : language.texts) {

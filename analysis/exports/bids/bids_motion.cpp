@@ -2,11 +2,11 @@
 
 #include "analysis/exports/bids/bids_sidecars_json.hpp"
 #include "analysis/exports/trial_tables.hpp"
-#include "analysis/sealed_sessions.hpp"
+#include "analysis/outcomes/sealed_sessions.hpp"
 #include "core/errors.hpp"
 #include "core/outputs.hpp"
-#include "protocols/store/marks.hpp"
-#include "protocols/store/payload_json.hpp"
+#include "record/marks.hpp"
+#include "record/payload_json.hpp"
 
 #include <algorithm>
 #include <array>
@@ -31,8 +31,8 @@ struct SharedReading {
   std::mutex store;  ///< held by the one thread that reads the store
 };
 
-store::Trace opened_trace(const DatasetSource& study, const store::TrialRow& row,
-                          SharedReading& shared) {
+record::Trace opened_trace(const DatasetSource& study, const record::TrialRow& row,
+                           SharedReading& shared) {
   const auto box = [&] {
     const std::lock_guard lock(shared.store);
     return study.store.sealed_trace(row.session, row.trial);
@@ -42,27 +42,27 @@ store::Trace opened_trace(const DatasetSource& study, const store::TrialRow& row
 
 /// What the events of a trial say of its recording.
 struct TraceEvents {
-  store::TraceBody body;
+  record::TraceBody body;
   std::vector<nanoseconds> timed_out{};  ///< of all presentations, since the session's opening
 };
 
-std::map<store::TrialId, TraceEvents> trace_events(const store::StudyStore& store,
-                                                   const SessionKeys& keys) {
-  std::map<store::TrialId, TraceEvents> all;
-  const auto visit = [&](const store::Event& stored) {
+std::map<record::TrialId, TraceEvents> trace_events(const record::StudyStore& store,
+                                                    const SessionKeys& keys) {
+  std::map<record::TrialId, TraceEvents> all;
+  const auto visit = [&](const record::Event& stored) {
     const auto own = keys.find(stored.session);
     if (own == keys.end() || !own->second.participant) return;
-    const store::Event event = whole_event(stored, *own->second.participant).event;
-    if (event.kind == store::EventKind::timed_out) {
-      const int trial = store::trial_from_json(event.body).trial;
+    const record::Event event = whole_event(stored, *own->second.participant).event;
+    if (event.kind == record::EventKind::timed_out) {
+      const int trial = record::trial_from_json(event.body).trial;
       all[{stored.session, trial}].timed_out.push_back(event.at);
     } else {
-      store::TraceBody body = store::trace_body_from_json(event.body);
+      record::TraceBody body = record::trace_body_from_json(event.body);
       all[{stored.session, body.trial}].body = std::move(body);
     }
   };
-  store.for_each(store::EventKind::timed_out, visit);
-  store.for_each(store::EventKind::trace_stored, visit);
+  store.for_each(record::EventKind::timed_out, visit);
+  store.for_each(record::EventKind::trace_stored, visit);
   return all;
 }
 
@@ -93,7 +93,7 @@ void put_fixed(std::string& text, std::int64_t steps, char after) {
   text += after;
 }
 
-void put_sample(std::string& text, const store::TraceSample& sample) {
+void put_sample(std::string& text, const record::TraceSample& sample) {
   const Vec3& at = sample.position_mm;
   const Vec3& force = sample.force_n;
   for (const double position_mm : {at.x, at.y, at.z}) {
@@ -116,26 +116,26 @@ DataCell texture_of(const DatasetSource& study, const TrialOutcome& trial) {
 /// The explorations of a run and what happened in it, by their times since its first sample; times
 /// that are not known come last.
 DataTable motion_events(const Recording& recording, const TraceEvents& events,
-                        const store::TrialRow& row, const DataCell& texture) {
+                        const record::TrialRow& row, const DataCell& texture) {
   DataTable table{motion_event_columns(), {}};
-  const auto add = [&](DataCell onset, nanoseconds duration, store::Mark mark,
+  const auto add = [&](DataCell onset, nanoseconds duration, record::Mark mark,
                        DataCell exploration) {
     table.rows.push_back(
         {std::move(onset), duration, texture, std::string(name_of(mark)), std::move(exploration)});
   };
   for (std::size_t i = 0; i < recording.samples.size(); ++i) {
     add(recording.began[i] ? DataCell(*recording.began[i]) : DataCell(),
-        lasting(recording.samples[i], recording.rate_hz), store::Mark::plane_on,
+        lasting(recording.samples[i], recording.rate_hz), record::Mark::plane_on,
         static_cast<std::int64_t>(i) + 1);
   }
-  const auto add_moment = [&](nanoseconds at, store::Mark mark) {
+  const auto add_moment = [&](nanoseconds at, record::Mark mark) {
     add(at - recording.first_sample, {}, mark, {});
   };
-  if (row.contact_at) add_moment(*row.contact_at, store::Mark::contact);
+  if (row.contact_at) add_moment(*row.contact_at, record::Mark::contact);
   for (const nanoseconds at : events.timed_out) {
-    if (at >= row.presented_at) add_moment(at, store::Mark::time_up);
+    if (at >= row.presented_at) add_moment(at, record::Mark::time_up);
   }
-  if (row.answered_at) add_moment(*row.answered_at, store::Mark::answered);
+  if (row.answered_at) add_moment(*row.answered_at, record::Mark::answered);
   std::ranges::stable_sort(table.rows, {}, [](const std::vector<DataCell>& cells) {
     const auto* onset = std::get_if<nanoseconds>(&cells.front());
     return onset != nullptr ? *onset : nanoseconds::max();
@@ -190,14 +190,14 @@ class MotionFiles {
  private:
   /// \return when its first sample was taken
   nanoseconds add_run(const BidsSession& session, const TrialOutcome& trial) {
-    const store::TrialRow& row = trial.row;
+    const record::TrialRow& row = trial.row;
     const TraceEvents& own = events_.at({row.session, row.trial});
     const Recording recording = recording_of(row, own.body);
     const std::string path = session.folder() + "/" + motion_file(session, task_, row.trial);
     const std::string run = path.substr(0, path.size() - std::string_view("motion.tsv").size());
     files_.push_back({path,
                       [study = study_, row, recording, shared = shared_](const auto& to) {
-                        const store::Trace trace = opened_trace(study, row, *shared);
+                        const record::Trace trace = opened_trace(study, row, *shared);
                         write_output(to, motion_text(trace, recording));
                       },
                       true});
@@ -212,13 +212,13 @@ class MotionFiles {
   const DatasetOptions& options_;
   const std::string& task_;
   std::shared_ptr<SharedReading> shared_;
-  std::map<store::TrialId, TraceEvents> events_;
+  std::map<record::TrialId, TraceEvents> events_;
   std::vector<ExportFile> files_;
 };
 
 }  // namespace
 
-Recording recording_of(const store::TrialRow& row, const store::TraceBody& body) {
+Recording recording_of(const record::TrialRow& row, const record::TraceBody& body) {
   Recording recording;
   recording.rate_hz = row.rate_hz;
   recording.samples = body.explorations;
@@ -257,7 +257,7 @@ DataTable motion_channels() {
            force("force_z", "z", "Force sent to the device out of the plane")}};
 }
 
-std::string motion_text(const store::Trace& trace, const Recording& recording) {
+std::string motion_text(const record::Trace& trace, const Recording& recording) {
   std::string text;
   text.reserve(trace.samples.size() * 60);
   auto sample = trace.samples.begin();

@@ -5,8 +5,8 @@
 #include "analysis/exports/bids/bids_people.hpp"
 #include "analysis/exports/data_table.hpp"
 #include "analysis/exports/export_folder.hpp"
-#include "protocols/store/payload.hpp"
-#include "protocols/store/trace.hpp"
+#include "record/payload.hpp"
+#include "record/trace.hpp"
 
 #include <chrono>
 #include <optional>
@@ -26,14 +26,14 @@ struct Recording {
 
 /// \param row  opened
 /// \param body  of its `trace-stored`, opened
-[[nodiscard]] Recording recording_of(const store::TrialRow& row, const store::TraceBody& body);
+[[nodiscard]] Recording recording_of(const record::TrialRow& row, const record::TraceBody& body);
 
 /// The channels of every recording, in the order of the columns of motion_text: *_channels.tsv.
 [[nodiscard]] DataTable motion_channels();
 
 /// One row a sample, without a header. Latencies have six decimals, millimetres three and newtons
 /// four, which keeps apart all steps that a trace stores (1 um and 1/4096 N).
-[[nodiscard]] std::string motion_text(const store::Trace& trace, const Recording& recording);
+[[nodiscard]] std::string motion_text(const record::Trace& trace, const Recording& recording);
 
 /// The recording of a trial, below the folder of its session, as in *_scans.tsv.
 [[nodiscard]] std::string motion_file(const BidsSession& session, const std::string& task,

@@ -1,9 +1,9 @@
 #include "analysis/exports/bids/bids_people.hpp"
 
-#include "analysis/answers.hpp"
-#include "analysis/collection.hpp"
-#include "analysis/demographics.hpp"
 #include "analysis/exports/study_tables.hpp"
+#include "analysis/outcomes/answers.hpp"
+#include "analysis/outcomes/collection.hpp"
+#include "analysis/outcomes/demographics.hpp"
 
 #include <algorithm>
 #include <array>
@@ -73,7 +73,7 @@ const std::vector<std::string>& session_columns() {
 }
 
 std::vector<DataCell> session_cells(const BidsSession& session) {
-  const store::SessionRow& row = session.row;
+  const record::SessionRow& row = session.row;
   return {std::int64_t{row.session},
           std::int64_t{row.enrolment},
           std::string(name_of(row.state)),
@@ -189,18 +189,18 @@ std::string BidsSession::stem() const {
   return subject + (label.empty() ? "" : "_" + label);
 }
 
-std::vector<BidsSession> bids_sessions(const store::StudyStore& store) {
-  const store::StudyState state = store.state();
+std::vector<BidsSession> bids_sessions(const record::StudyStore& store) {
+  const record::StudyState state = store.state();
   std::vector<BidsSession> sessions;
   const Collection collection = load_collection(store);
-  std::vector<store::SessionRow> rows = store.sessions();
-  std::erase_if(rows, [&](const store::SessionRow& row) {
+  std::vector<record::SessionRow> rows = store.sessions();
+  std::erase_if(rows, [&](const record::SessionRow& row) {
     return row.erased || (state.unblinded && !state.reports(row.session));
   });
   const std::set<int> counted = counted_sessions(rows, store.commitment());
   std::map<std::string, std::chrono::sys_days> first_days;
   for (const SessionRecord& record : collection.sessions) {
-    const store::SessionRow& row = record.row;
+    const record::SessionRow& row = record.row;
     if (row.erased || (state.unblinded && !state.reports(row.session))) continue;
     BidsSession& session = sessions.emplace_back();
     session.row = row;
@@ -218,7 +218,7 @@ std::vector<BidsSession> bids_sessions(const store::StudyStore& store) {
 
 DataTable bids_participants(const DatasetSource& source, const std::vector<BidsSession>& sessions,
                             const Collection& collection,
-                            const std::vector<store::PersonalRecord>& consents) {
+                            const std::vector<record::PersonalRecord>& consents) {
   std::map<int, Demographics> by_session;
   if (source.outcomes != nullptr) {
     by_session = demographics_of(source.outcomes->answers, source.outcomes->design);
@@ -233,7 +233,7 @@ DataTable bids_participants(const DatasetSource& source, const std::vector<BidsS
     row = {session->subject, session->row.participant};
     if (!has_sessions) append_cells(row, session_cells(*session));
     people.push_back(said_by(session->subject, sessions, by_session));
-    for (const store::PersonalRecord& one : consents) {
+    for (const record::PersonalRecord& one : consents) {
       if (one.participant != session->row.participant) continue;
       people.back().consent_version = one.consent_version;
     }

@@ -2,9 +2,9 @@
 /// exports.
 #pragma once
 
-#include "analysis/collection.hpp"
 #include "analysis/exports/data_table.hpp"
 #include "analysis/exports/dataset.hpp"
+#include "analysis/outcomes/collection.hpp"
 
 #include <chrono>
 #include <string>
@@ -14,7 +14,7 @@ namespace touchtrial::analysis {
 
 /// A session in the dataset.
 struct BidsSession {
-  store::SessionRow row;
+  record::SessionRow row;
   bool counted = false;
   int interruptions = 0;
   int pauses = 0;
@@ -31,7 +31,7 @@ struct BidsSession {
 
 /// All sessions except those of participants who withdrew and those that an interim look does not
 /// show.
-[[nodiscard]] std::vector<BidsSession> bids_sessions(const store::StudyStore& store);
+[[nodiscard]] std::vector<BidsSession> bids_sessions(const record::StudyStore& store);
 
 /// Participants' answers to one questionnaire in one session each, as phenotype/<name>.tsv, in
 /// which BIDS wants one row a participant.
@@ -40,7 +40,7 @@ struct BidsQuestionnaire {
   std::string name;  ///< the same, and if there are sessions, which
   DataTable table;   ///< participant_id, and one column a question
   /// The questions of the columns after these; null: nobody knows the wording.
-  std::vector<const design::Question*> questions;
+  std::vector<const study::Question*> questions;
 };
 
 /// The questionnaires that somebody answered.
@@ -57,7 +57,7 @@ struct BidsQuestionnaire {
 [[nodiscard]] DataTable bids_participants(const DatasetSource& source,
                                           const std::vector<BidsSession>& sessions,
                                           const Collection& collection,
-                                          const std::vector<store::PersonalRecord>& consents);
+                                          const std::vector<record::PersonalRecord>& consents);
 
 /// sub-*_sessions.tsv of one subject.
 [[nodiscard]] DataTable bids_sessions_of(const std::string& subject,

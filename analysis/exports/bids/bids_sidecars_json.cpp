@@ -1,10 +1,10 @@
 #include "analysis/exports/bids/bids_sidecars_json.hpp"
 
-#include "analysis/collection.hpp"
 #include "analysis/exports/bids/bids_motion.hpp"
-#include "analysis/json_figures.hpp"
+#include "analysis/outcomes/collection.hpp"
+#include "analysis/report/json_figures.hpp"
 #include "core/version.hpp"
-#include "protocols/design/languages.hpp"
+#include "study/languages.hpp"
 
 #include <algorithm>
 #include <map>
@@ -45,7 +45,7 @@ void put_columns(Json& object, const std::vector<std::string>& columns) {
 }
 
 std::string task_description(const DatasetSource& study) {
-  const store::StudyCommitment& commitment = study.store.commitment();
+  const record::StudyCommitment& commitment = study.store.commitment();
   if (const int planes = prescription_from_json(commitment.configuration).intervals; planes > 0) {
     return fmt::format(
         "Each trial presents {} planes through a force-feedback device, one after the other and "
@@ -60,10 +60,10 @@ std::string task_description(const DatasetSource& study) {
 }
 
 /// The study's own instructions, or the name of the program's instructions that it uses.
-std::string instructions(const design::Study& study) {
+std::string instructions(const study::Study& study) {
   const auto own = study.session.instructions.find(study.session.language);
   if (own == study.session.instructions.end()) {
-    const std::string draft = design::draft_notice(study.session.language);
+    const std::string draft = study::draft_notice(study.session.language);
     return "Touchtrial's own, in the language \"" + study.session.language + "\"" +
            (study.session.texts.contains(study.session.language) ? ", some replaced" : "") +
            (draft.empty() ? "" : "; " + draft);
@@ -86,7 +86,7 @@ void put_presentation(Json& object, const DatasetSource& study) {
 
 /// What describes the task in the sidecars of every datatype.
 Json task_object(const DatasetSource& study, const DatasetOptions& options) {
-  const store::StudyCommitment& commitment = study.store.commitment();
+  const record::StudyCommitment& commitment = study.store.commitment();
   Json object{{"TaskName", commitment.study}, {"TaskDescription", task_description(study)}};
   if (study.key != nullptr) object["Instructions"] = instructions(study.key->study);
   put_if_given(object, "InstitutionName", options.institution);
@@ -107,7 +107,7 @@ std::map<std::string_view, int> channel_counts() {
 }  // namespace
 
 std::string dataset_description_json(const DatasetSource& study, const DatasetOptions& options) {
-  const store::StudyCommitment& commitment = study.store.commitment();
+  const record::StudyCommitment& commitment = study.store.commitment();
   Json object{{"Name", stamped(commitment.study, commitment.simulated)},
               {"BIDSVersion", kBidsVersion},
               {"DatasetType", "raw"}};
@@ -124,7 +124,7 @@ std::string dataset_description_json(const DatasetSource& study, const DatasetOp
 }
 
 std::string derivative_description_json(const DatasetSource& study) {
-  const store::StudyCommitment& commitment = study.store.commitment();
+  const record::StudyCommitment& commitment = study.store.commitment();
   Json object{{"Name", stamped("Report of " + commitment.study, commitment.simulated)},
               {"BIDSVersion", kBidsVersion},
               {"DatasetType", "derivative"},
@@ -155,7 +155,7 @@ std::string task_json(const DatasetSource& study, const DatasetOptions& options,
 // Every recording has all fields, and no others than those of the specification: the validator that
 // npm serves looks at each file alone and refuses any other field.
 std::string motion_json(const DatasetSource& study, const DatasetOptions& options,
-                        const BidsSession& session, const store::TraceBody& body) {
+                        const BidsSession& session, const record::TraceBody& body) {
   Json object = task_object(study, options);
   object["SamplingFrequency"] = body.rate_hz;
   object["SamplingFrequencyEffective"] = body.servo ? body.servo->rate_hz : body.rate_hz;
@@ -205,7 +205,7 @@ std::string questionnaire_json(const BidsQuestionnaire& questionnaire, const std
   const std::vector<std::string>& columns = questionnaire.table.columns;
   const std::size_t before = columns.size() - questionnaire.questions.size();
   for (std::size_t i = 0; i < questionnaire.questions.size(); ++i) {
-    const design::Question* const question = questionnaire.questions[i];
+    const study::Question* const question = questionnaire.questions[i];
     Json described{{"Description", "Answer to the question " + columns[before + i]}};
     if (question != nullptr) described["Description"] = in_language(question->text, language);
     for (std::size_t k = 0; question != nullptr && k < question->options.size(); ++k) {

@@ -4,7 +4,7 @@
 
 #include "analysis/exports/bids/bids_people.hpp"
 #include "analysis/exports/dataset.hpp"
-#include "protocols/store/payload.hpp"
+#include "record/payload.hpp"
 
 #include <string>
 #include <vector>
@@ -39,7 +39,7 @@ inline constexpr const char* kBidsVersion = "1.11.1";
 /// \param study  unblinded
 /// \param body  of the trial's `trace-stored`, opened
 [[nodiscard]] std::string motion_json(const DatasetSource& study, const DatasetOptions& options,
-                                      const BidsSession& session, const store::TraceBody& body);
+                                      const BidsSession& session, const record::TraceBody& body);
 
 /// task-*_channels.json: the frame of positions and forces.
 [[nodiscard]] std::string channels_json();

@@ -8,8 +8,8 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/outputs.hpp"
-#include "protocols/store/marks.hpp"
-#include "protocols/store/study_store.hpp"
+#include "record/marks.hpp"
+#include "record/study_store.hpp"
 
 #include <algorithm>
 #include <map>
@@ -55,15 +55,15 @@ std::string bids_readme(const DatasetSource& study, const DatasetOptions& option
 
 /// The name of an image below stimuli/: the numbers of its class and of the image, from 1, with the
 /// letters and digits of the class between them, for example "01-bark-01.png".
-std::string stimulus_name(const design::Study& study, int class_index, int exemplar) {
-  const design::StudyClass& of = study.classes.at(class_index);
+std::string stimulus_name(const study::Study& study, int class_index, int exemplar) {
+  const study::StudyClass& of = study.classes.at(class_index);
   return fmt::format("{:02}-{}-{:02}{}", class_index + 1, plain_label(of.label), exemplar + 1,
                      of.images.at(exemplar).extension().string());
 }
 
 /// Copies of every image.
 /// \throws FileError if an image is missing
-Files stimulus_files(const design::Study& study) {
+Files stimulus_files(const study::Study& study) {
   Files files;
   for (int i = 0; i < static_cast<int>(study.classes.size()); ++i) {
     for (int k = 0; k < static_cast<int>(study.classes[i].images.size()); ++k) {
@@ -95,20 +95,20 @@ bool is_shown(const TrialColumn& column, bool unblinded) {
 }
 
 DataCell stimulus_file(const TrialView& trial) {
-  if (trial.outcome->kind == design::PresentationKind::catch_trial || trial.outcome->chosen) {
+  if (trial.outcome->kind == study::PresentationKind::catch_trial || trial.outcome->chosen) {
     return std::monostate{};
   }
-  const design::StimulusIndex& shown = trial.outcome->stimulus;
+  const study::StimulusIndex& shown = trial.outcome->stimulus;
   return stimulus_name(trial.study->design, shown.class_index, shown.exemplar);
 }
 
 /// What each row may show: trials with their outcomes, or before unblinding the rows in clear.
 std::vector<TrialView> views_of(const DatasetSource& study,
-                                const std::vector<store::TrialRow>& in_clear) {
+                                const std::vector<record::TrialRow>& in_clear) {
   static const std::string kNobody;
   const bool simulated = study.store.commitment().simulated;
   std::vector<TrialView> views;
-  for (const store::TrialRow& row : in_clear) views.push_back({kNobody, row, simulated});
+  for (const record::TrialRow& row : in_clear) views.push_back({kNobody, row, simulated});
   if (study.outcomes == nullptr) return views;
   std::vector<const TrialOutcome*> trials;
   for (const TrialOutcome& trial : study.outcomes->trials) trials.push_back(&trial);
@@ -146,8 +146,8 @@ BidsTrials bids_trials(const DatasetSource& study, const DatasetOptions& options
     by_number[session.row.session] = &session;
     trials.by_session[session.row.session].columns = trials.columns;
   }
-  const std::vector<store::TrialRow> in_clear =
-      unblinded ? std::vector<store::TrialRow>() : study.store.trials();
+  const std::vector<record::TrialRow> in_clear =
+      unblinded ? std::vector<record::TrialRow>() : study.store.trials();
   for (const TrialView& trial : views_of(study, in_clear)) {
     const auto table = trials.by_session.find(trial.row.session);
     if (table == trials.by_session.end()) continue;
@@ -215,7 +215,7 @@ std::vector<DataCell> mark_cells(const InstrumentMark& mark,
         std::move(cell);
   };
   set("onset", mark.at);
-  set("incident", std::string(name_of(static_cast<store::Mark>(mark.code))));
+  set("incident", std::string(name_of(static_cast<record::Mark>(mark.code))));
   if (mark.trial > 0) set("trial", std::int64_t{mark.trial});
   set("value", std::int64_t{mark.code});
   if (mark.lsl_s) set("lsl_time", *mark.lsl_s);
@@ -243,7 +243,7 @@ void add_what_was_said(Files& files, const DatasetSource& study, const DatasetOp
     DataTable table{columns, {}};
     for (const Incident& one : study.outcomes->incidents) {
       if (one.session != session.row.session || !one.at) continue;
-      table.rows.push_back({*one.at, std::monostate{}, std::string(store::name_of(one.kind)),
+      table.rows.push_back({*one.at, std::monostate{}, std::string(record::name_of(one.kind)),
                             one.trial ? DataCell(std::int64_t{*one.trial}) : DataCell(), one.code,
                             one.safety_fault, one.device_fault});
       if (has_marks) table.rows.back().resize(table.rows.back().size() + 2);
@@ -317,7 +317,7 @@ std::vector<std::filesystem::path> export_bids(const DatasetSource& study,
                                                const DatasetOptions& options,
                                                const std::filesystem::path& folder) {
   require_unblinded(study, options);
-  const store::StudyCommitment& commitment = study.store.commitment();
+  const record::StudyCommitment& commitment = study.store.commitment();
   const std::string task = plain_label(commitment.study);
   const std::vector<BidsSession> sessions = bids_sessions(study.store);
   Files files{text_file("dataset_description.json", dataset_description_json(study, options)),
@@ -331,7 +331,7 @@ std::vector<std::filesystem::path> export_bids(const DatasetSource& study,
   if (!options.database.empty()) {
     files.push_back({"sourcedata/" + options.database.filename().string(),
                      [from = options.database](const std::filesystem::path& path) {
-                       store::copy_database(from, path);
+                       record::copy_database(from, path);
                      }});
   }
   tell_progress(files, options);

@@ -33,7 +33,7 @@ std::vector<PlacedBlock> blocks_of(const Outcomes& outcomes, int method) {
   std::map<std::tuple<int, int, int>, int> next_place;
   for (const TrialOutcome& trial : outcomes.trials) {
     const bool has_place = trial.scored && trial.stimulus.method == method &&
-                           trial.row.state != store::TrialState::voided;
+                           trial.row.state != record::TrialState::voided;
     if (!has_place) continue;
     const int person = people.of(trial.row.session);
     const std::tuple id(person, trial.row.session, trial.row.block);

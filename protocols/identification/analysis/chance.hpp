@@ -2,7 +2,7 @@
 /// produced.
 #pragma once
 
-#include "analysis/outcomes.hpp"
+#include "analysis/outcomes/outcomes.hpp"
 #include "analysis/statistics/chance_test.hpp"
 #include "analysis/statistics/prevalence.hpp"
 

@@ -62,7 +62,7 @@ OwnTrials of_class(const OwnTrials& trials, int class_index) {
 std::vector<const TrialOutcome*> as_felt(const Outcomes& outcomes) {
   std::vector<const TrialOutcome*> felt;
   for (const TrialOutcome& trial : outcomes.trials) {
-    if (trial.row.state != store::TrialState::voided) felt.push_back(&trial);
+    if (trial.row.state != record::TrialState::voided) felt.push_back(&trial);
   }
   std::ranges::stable_sort(felt, {}, [](const TrialOutcome* trial) {
     return std::tuple(trial->row.session, trial->row.presented_at, trial->row.trial);
@@ -71,8 +71,8 @@ std::vector<const TrialOutcome*> as_felt(const Outcomes& outcomes) {
 }
 
 bool has_ended(const TrialOutcome& trial) noexcept {
-  return trial.row.state == store::TrialState::answered ||
-         trial.row.state == store::TrialState::timed_out;
+  return trial.row.state == record::TrialState::answered ||
+         trial.row.state == record::TrialState::timed_out;
 }
 
 }  // namespace touchtrial::analysis::identification

@@ -2,7 +2,7 @@
 /// protocols/identification/analysis.
 #pragma once
 
-#include "analysis/outcomes.hpp"
+#include "analysis/outcomes/outcomes.hpp"
 #include "analysis/statistics/confusion.hpp"
 
 #include <map>

@@ -99,7 +99,7 @@ class IdentificationAnalysis final : public ProtocolAnalysis {
     return tables;
   }
   std::vector<std::filesystem::path> export_model(
-      const store::StudyStore& store, const Outcomes& outcomes,
+      const record::StudyStore& store, const Outcomes& outcomes,
       const std::filesystem::path& folder) const override {
     return export_mixed_model(store, outcomes, folder);
   }

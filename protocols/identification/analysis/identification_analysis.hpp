@@ -2,7 +2,7 @@
 /// comparisons of methods, and ideal observers.
 #pragma once
 
-#include "analysis/results.hpp"
+#include "analysis/report/results.hpp"
 
 namespace touchtrial::analysis::identification {
 

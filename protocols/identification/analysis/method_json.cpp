@@ -1,6 +1,6 @@
 #include "protocols/identification/analysis/method_json.hpp"
 
-#include "analysis/json_figures.hpp"
+#include "analysis/report/json_figures.hpp"
 
 #include <fmt/format.h>
 

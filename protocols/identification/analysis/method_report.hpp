@@ -1,7 +1,7 @@
 /// \file The numbers of one method. Private to protocols/identification.
 #pragma once
 
-#include "analysis/outcomes.hpp"
+#include "analysis/outcomes/outcomes.hpp"
 #include "protocols/identification/analysis/counted_trials.hpp"
 #include "protocols/identification/analysis/report.hpp"
 

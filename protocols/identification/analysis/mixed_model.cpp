@@ -44,13 +44,13 @@ std::vector<const TrialOutcome*> in_order_of_presentation(const Outcomes& outcom
 const TrialOutcome* before(const TrialOutcome* previous, const TrialOutcome& trial) {
   const bool told = previous != nullptr && previous->row.session == trial.row.session &&
                     previous->row.block == trial.row.block &&
-                    previous->kind != design::PresentationKind::catch_trial;
+                    previous->kind != study::PresentationKind::catch_trial;
   return told ? previous : nullptr;
 }
 
 std::vector<DataCell> row_of(const Outcomes& outcomes, const TrialOutcome& trial,
                              const TrialOutcome* previous, int place) {
-  const store::TrialRow& row = trial.row;
+  const record::TrialRow& row = trial.row;
   std::optional<int> previous_class;
   std::optional<int> previous_response;
   if (previous != nullptr) {
@@ -168,10 +168,10 @@ std::string mixed_model_formula(const Outcomes& outcomes) {
   return "correct ~ " + (several ? "method" + image + " + period + " : image) + random;
 }
 
-std::vector<std::filesystem::path> export_mixed_model(const store::StudyStore& store,
+std::vector<std::filesystem::path> export_mixed_model(const record::StudyStore& store,
                                                       const Outcomes& outcomes,
                                                       const std::filesystem::path& folder) {
-  const store::StudyCommitment& commitment = store.commitment();
+  const record::StudyCommitment& commitment = store.commitment();
   return write_export(folder, {commitment.study, commitment.study_id, "r"},
                       {text_file("mixed_model.csv", csv_text(mixed_model_table(outcomes))),
                        text_file("mixed_model.R", mixed_model_script(outcomes)),

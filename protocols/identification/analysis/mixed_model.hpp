@@ -2,7 +2,7 @@
 /// docs/exports.md.
 #pragma once
 
-#include "analysis/outcomes.hpp"
+#include "analysis/outcomes/outcomes.hpp"
 
 #include <filesystem>
 #include <string>
@@ -25,7 +25,7 @@ namespace touchtrial::analysis::identification {
 /// \return the files, in the order written
 /// \throws FileError if the folder or a file cannot be written, or the folder holds files of
 /// something else
-std::vector<std::filesystem::path> export_mixed_model(const store::StudyStore& store,
+std::vector<std::filesystem::path> export_mixed_model(const record::StudyStore& store,
                                                       const Outcomes& outcomes,
                                                       const std::filesystem::path& folder);
 

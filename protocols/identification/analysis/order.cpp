@@ -36,7 +36,7 @@ std::map<const TrialOutcome*, int> scheduled_places(const Outcomes& outcomes, in
   std::map<std::pair<int, int>, std::vector<const TrialOutcome*>> blocks;
   for (const TrialOutcome& trial : outcomes.trials) {
     const bool has_place = trial.scored && trial.stimulus.method == method &&
-                           trial.row.state != store::TrialState::voided;
+                           trial.row.state != record::TrialState::voided;
     if (has_place) blocks[{trial.row.session, trial.row.block}].push_back(&trial);
   }
   std::map<const TrialOutcome*, int> places;
@@ -50,7 +50,7 @@ std::map<const TrialOutcome*, int> scheduled_places(const Outcomes& outcomes, in
 
 FeltTrial felt_trial(const TrialOutcome& trial, const TrialOutcome* before) {
   FeltTrial felt;
-  if (trial.kind != design::PresentationKind::catch_trial) {
+  if (trial.kind != study::PresentationKind::catch_trial) {
     felt.presented = trial.stimulus.class_index;
     felt.answered = trial.response;
   }

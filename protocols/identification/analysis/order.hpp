@@ -2,7 +2,7 @@
 /// the orders that the design could have produced.
 #pragma once
 
-#include "analysis/outcomes.hpp"
+#include "analysis/outcomes/outcomes.hpp"
 #include "analysis/statistics/order_effects.hpp"
 
 #include <optional>

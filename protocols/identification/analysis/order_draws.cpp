@@ -1,7 +1,7 @@
 #include "protocols/identification/analysis/order_draws.hpp"
 
-#include "protocols/design/protocol.hpp"
-#include "protocols/design/schedule.hpp"
+#include "study/protocol.hpp"
+#include "study/schedule.hpp"
 
 #include <cstdint>
 #include <numeric>
@@ -15,10 +15,10 @@ constexpr int kOrders = 300;
 constexpr int kRenamings = 120;
 
 /// The classes of the scored presentations of one method, in the order of a schedule.
-std::vector<int> order_in(const design::Schedule& schedule, int method) {
+std::vector<int> order_in(const study::Schedule& schedule, int method) {
   std::vector<int> order;
-  for (const design::Presentation& shown : schedule.presentations) {
-    if (shown.kind == design::PresentationKind::scored && shown.stimulus.method == method) {
+  for (const study::Presentation& shown : schedule.presentations) {
+    if (shown.kind == study::PresentationKind::scored && shown.stimulus.method == method) {
       order.push_back(shown.stimulus.class_index);
     }
   }
@@ -27,22 +27,22 @@ std::vector<int> order_in(const design::Schedule& schedule, int method) {
 
 }  // namespace
 
-DealtOrder dealt_order(const design::Study& study) {
-  const design::TrialOptions& trials = study.trials;
+DealtOrder dealt_order(const study::Study& study) {
+  const study::TrialOptions& trials = study.trials;
   const bool limited = trials.max_run > 0;
-  if (!limited && trials.order == design::TrialOrder::shuffled) return DealtOrder::permuted;
-  if (!limited && trials.order == design::TrialOrder::uniform) return DealtOrder::independent;
+  if (!limited && trials.order == study::TrialOrder::shuffled) return DealtOrder::permuted;
+  if (!limited && trials.order == study::TrialOrder::uniform) return DealtOrder::independent;
   return DealtOrder::redrawn;
 }
 
-OrderDraws::OrderDraws(const design::Study& study, int method, std::size_t blocks, int deals,
+OrderDraws::OrderDraws(const study::Study& study, int method, std::size_t blocks, int deals,
                        std::string_view purpose)
     : blocks_(blocks), random_(0, purpose, static_cast<std::uint64_t>(method)) {
   // A seed of its own keeps the participants' own orders out of the draws.
   SeededEntropy entropy(study.seed);
   for (int i = 1; i <= kOrders; ++i) {
-    const design::ScheduleDraw draw{entropy.secret("chance test: order " + std::to_string(i)), i};
-    orders_.push_back(order_in(design::make_schedule(study, draw), method));
+    const study::ScheduleDraw draw{entropy.secret("chance test: order " + std::to_string(i)), i};
+    orders_.push_back(order_in(study::make_schedule(study, draw), method));
   }
   std::vector<int> names(study.classes.size());
   std::iota(names.begin(), names.end(), 0);

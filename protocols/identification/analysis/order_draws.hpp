@@ -4,7 +4,7 @@
 
 #include "analysis/statistics/chance_test.hpp"
 #include "core/random.hpp"
-#include "protocols/design/study.hpp"
+#include "study/study.hpp"
 
 #include <cstddef>
 #include <string_view>
@@ -13,7 +13,7 @@
 namespace touchtrial::analysis::identification {
 
 /// How the study's rule draws the order of classes in a block.
-[[nodiscard]] DealtOrder dealt_order(const design::Study& study);
+[[nodiscard]] DealtOrder dealt_order(const study::Study& study);
 
 /// Draws orders of a block by the study's rule: takes one of 300 orders from the study's schedules
 /// and one of 120 renamings of the classes, because every rule treats all classes alike.
@@ -22,7 +22,7 @@ class OrderDraws {
   /// \param blocks  for which orders are drawn, each on its own
   /// \param deals  how often
   /// \param purpose  of the random numbers
-  OrderDraws(const design::Study& study, int method, std::size_t blocks, int deals,
+  OrderDraws(const study::Study& study, int method, std::size_t blocks, int deals,
              std::string_view purpose);
 
   /// The number of a block's scored presentations of the method.

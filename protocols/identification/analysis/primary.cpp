@@ -1,6 +1,6 @@
 #include "protocols/identification/analysis/primary.hpp"
 
-#include "analysis/departures.hpp"
+#include "analysis/outcomes/departures.hpp"
 #include "analysis/statistics/common.hpp"
 #include "analysis/statistics/descriptive.hpp"
 #include "analysis/statistics/paired_tests.hpp"
@@ -19,15 +19,15 @@
 namespace touchtrial::analysis::identification {
 namespace {
 
-using design::Estimand;
+using study::Estimand;
 
-int method_labelled(const design::Study& study, const std::string& label) {
-  const auto found = std::ranges::find(study.methods, label, &design::StudyMethod::label);
+int method_labelled(const study::Study& study, const std::string& label) {
+  const auto found = std::ranges::find(study.methods, label, &study::StudyMethod::label);
   return static_cast<int>(found - study.methods.begin());
 }
 
-PrimaryQuestion registered_question(const design::Study& study) {
-  const design::RegisteredAnalysis& registered = *study.registration.analysis;
+PrimaryQuestion registered_question(const study::Study& study) {
+  const study::RegisteredAnalysis& registered = *study.registration.analysis;
   PrimaryQuestion question;
   question.estimand = registered.estimand;
   if (registered.methods.size() == 2) {
@@ -185,7 +185,7 @@ void put_registered_choice(const PrimaryQuestion& question, int classes,
                            std::span<const CrossoverPerson> people, PrimaryResult& result) {
   result.p = primary_p(question, classes, people);
   result.bound = bound_of(question, people);
-  if (question.test != design::RegisteredTest::crossover) return;
+  if (question.test != study::RegisteredTest::crossover) return;
   result.crossover =
       crossover_estimate(people, result.null, question.sides, question.interval_level());
   result.permutation = crossover_permutation(people, result.null, question.sides);
@@ -196,7 +196,7 @@ std::optional<StratifiedMean> over_stations(const PrimaryQuestion& question,
                                             const Outcomes& outcomes,
                                             const SelectedPeople& selected) {
   // Periods are told apart within all stations together.
-  if (question.test == design::RegisteredTest::crossover) return std::nullopt;
+  if (question.test == study::RegisteredTest::crossover) return std::nullopt;
   std::map<int, int> station_of;
   for (const SessionOutcome& session : outcomes.sessions) {
     station_of[session.row.session] = session.row.station;
@@ -211,7 +211,7 @@ std::optional<StratifiedMean> over_stations(const PrimaryQuestion& question,
 }
 
 /// ", over all visits"; empty in a study with one.
-std::string visit_words(const design::Study& study) {
+std::string visit_words(const study::Study& study) {
   if (study.visits.count == 1) return "";
   if (study.decides(1) && study.decides(study.visits.count)) return ", over all visits";
   return study.decides(1) ? ", at the first visit" : ", at the last visit";
@@ -237,13 +237,13 @@ double null_of(const PrimaryQuestion& question, int classes) {
 
 }  // namespace
 
-std::optional<PrimaryQuestion> primary_question(const design::Study& study, int methods) {
+std::optional<PrimaryQuestion> primary_question(const study::Study& study, int methods) {
   if (study.registration.analysis) return registered_question(study);
   if (methods > 2) return std::nullopt;
   PrimaryQuestion question;
   if (methods == 2) {
     question.estimand = Estimand::difference;
-    question.test = design::usual_test_of(study);
+    question.test = study::usual_test_of(study);
     question.sides = Sides::two;
   }
   return question;
@@ -252,11 +252,11 @@ std::optional<PrimaryQuestion> primary_question(const design::Study& study, int 
 std::string test_words(const PrimaryQuestion& question) {
   const auto test = [&]() -> std::string {
     switch (question.test) {
-      case design::RegisteredTest::sign_flip:
+      case study::RegisteredTest::sign_flip:
         return "sign flips over participants";
-      case design::RegisteredTest::crossover:
+      case study::RegisteredTest::crossover:
         return "period-adjusted t test over participants";
-      case design::RegisteredTest::t:
+      case study::RegisteredTest::t:
         break;
     }
     return is_difference(question) ? "paired t test over participants"
@@ -273,7 +273,7 @@ std::vector<double> differences_of(std::span<const CrossoverPerson> people) {
 
 PrimaryEstimate primary_estimate(const PrimaryQuestion& question,
                                  std::span<const CrossoverPerson> people, double level) {
-  if (question.test == design::RegisteredTest::crossover) {
+  if (question.test == study::RegisteredTest::crossover) {
     const CrossoverEstimate found = crossover_estimate(people, 0.0, question.sides, level);
     return {found.effect, found.interval};
   }
@@ -285,11 +285,11 @@ std::optional<double> primary_p(const PrimaryQuestion& question, int classes,
                                 std::span<const CrossoverPerson> people) {
   const double null = null_of(question, classes);
   switch (question.test) {
-    case design::RegisteredTest::crossover:
+    case study::RegisteredTest::crossover:
       return crossover_estimate(people, null, question.sides).p;
-    case design::RegisteredTest::sign_flip:
+    case study::RegisteredTest::sign_flip:
       return sign_flip_p(differences_of(people), question.sides);
-    case design::RegisteredTest::t:
+    case study::RegisteredTest::t:
       break;
   }
   return t_test_p(differences_of(people), null, question.sides);

@@ -3,7 +3,7 @@
 /// docs/statistics.md, "The registered question".
 #pragma once
 
-#include "analysis/registered.hpp"
+#include "analysis/report/registered.hpp"
 
 #include <optional>
 #include <span>
@@ -13,10 +13,10 @@
 namespace touchtrial::analysis::identification {
 
 struct PrimaryQuestion {
-  design::Estimand estimand = design::Estimand::mean_accuracy;
+  study::Estimand estimand = study::Estimand::mean_accuracy;
   int first = 0;   ///< index of a method
   int second = 1;  ///< of a difference: the method that is subtracted
-  design::RegisteredTest test = design::RegisteredTest::t;
+  study::RegisteredTest test = study::RegisteredTest::t;
   Sides sides = Sides::one;
   double alpha = 0.05;
   std::optional<double> smallest_effect{};
@@ -35,7 +35,7 @@ struct PrimaryQuestion {
 /// two-sided sign flips, or by the period-adjusted t test if one came after the other.
 /// \param methods  the number that the study presents
 /// \return nothing if a study of three methods or more registers none
-[[nodiscard]] std::optional<PrimaryQuestion> primary_question(const design::Study& study,
+[[nodiscard]] std::optional<PrimaryQuestion> primary_question(const study::Study& study,
                                                               int methods);
 
 /// "one-sample t test over participants, one-sided"

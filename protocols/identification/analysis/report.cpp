@@ -1,6 +1,6 @@
 #include "protocols/identification/analysis/report.hpp"
 
-#include "analysis/departures.hpp"
+#include "analysis/outcomes/departures.hpp"
 #include "analysis/statistics/paired_tests.hpp"
 #include "protocols/identification/analysis/counted_trials.hpp"
 #include "protocols/identification/analysis/method_pairs.hpp"

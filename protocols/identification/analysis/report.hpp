@@ -2,7 +2,8 @@
 /// docs/data-dictionary.md, "Report".
 #pragma once
 
-#include "analysis/outcomes.hpp"
+#include "analysis/outcomes/outcomes.hpp"
+#include "analysis/outcomes/study_head.hpp"
 #include "analysis/statistics/chance_test.hpp"
 #include "analysis/statistics/choice_model.hpp"
 #include "analysis/statistics/confusion.hpp"
@@ -14,7 +15,6 @@
 #include "analysis/statistics/prevalence.hpp"
 #include "analysis/statistics/proportion.hpp"
 #include "analysis/statistics/spread.hpp"
-#include "analysis/study_head.hpp"
 #include "protocols/identification/analysis/cues/cue_report.hpp"
 #include "protocols/identification/analysis/subsets.hpp"
 

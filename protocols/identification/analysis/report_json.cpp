@@ -1,5 +1,5 @@
-#include "analysis/bibliography.hpp"
-#include "analysis/json_figures.hpp"
+#include "analysis/report/bibliography.hpp"
+#include "analysis/report/json_figures.hpp"
 #include "protocols/identification/analysis/cues/cues_json.hpp"
 #include "protocols/identification/analysis/method_json.hpp"
 

@@ -52,7 +52,7 @@ std::map<int, std::vector<int>> orders_of_methods(const Outcomes& outcomes, cons
   // Session, trial and method.
   std::map<int, std::vector<std::tuple<int, int, int>>> first_trials;
   for (const TrialOutcome& trial : outcomes.trials) {
-    if (trial.kind != design::PresentationKind::catch_trial) {
+    if (trial.kind != study::PresentationKind::catch_trial) {
       first_trials[people.of(trial.row.session)].emplace_back(trial.row.session, trial.row.trial,
                                                               trial.stimulus.method);
     }
@@ -155,7 +155,7 @@ struct Times {
   std::vector<double> from_contact;
   int paused = 0;
 
-  void add(const store::TrialRow& row) {
+  void add(const record::TrialRow& row) {
     if (row.paused) ++paused;
     if (const auto time = row.reaction_time()) from_plane_on.push_back(seconds(*time));
     if (const auto time = row.from_contact()) from_contact.push_back(seconds(*time));
@@ -194,7 +194,7 @@ std::vector<Breakdown> breakdowns(const Outcomes& outcomes, int method) {
   }
   add(BreakdownKind::trial,
       [](const PlacedTrial& placed) { return Group(placed.place, std::to_string(placed.place)); });
-  if (outcomes.methods.size() > 1 && outcomes.design.trials.blocks == design::Blocks::by_method) {
+  if (outcomes.methods.size() > 1 && outcomes.design.trials.blocks == study::Blocks::by_method) {
     const People people(outcomes);
     const std::map<int, std::vector<int>> orders = orders_of_methods(outcomes, people);
     add(BreakdownKind::order_group, [&](const PlacedTrial& placed) {
@@ -219,10 +219,10 @@ std::vector<Breakdown> breakdowns(const Outcomes& outcomes, int method) {
 std::set<int> excluded_sessions(const Outcomes& outcomes) {
   std::set<int> excluded;
   for (const SessionOutcome& session : outcomes.sessions) {
-    const store::SessionRow& row = session.row;
+    const record::SessionRow& row = session.row;
     const bool left_out = row.excluded && !row.erased && row.replaced_by != row.participant;
     const bool of_study = row.pilot == outcomes.pilot && row.simulated == outcomes.simulated;
-    if (left_out && of_study && row.state == store::SessionState::completed)
+    if (left_out && of_study && row.state == record::SessionState::completed)
       excluded.insert(row.session);
   }
   return excluded;

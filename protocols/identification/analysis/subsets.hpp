@@ -2,7 +2,7 @@
 /// may be left out; and reaction times.
 #pragma once
 
-#include "analysis/outcomes.hpp"
+#include "analysis/outcomes/outcomes.hpp"
 #include "analysis/statistics/descriptive.hpp"
 #include "analysis/statistics/proportion.hpp"
 

@@ -1,8 +1,8 @@
 #include "protocols/identification/analysis/warnings.hpp"
 
-#include "analysis/departures.hpp"
+#include "analysis/outcomes/departures.hpp"
+#include "analysis/report/text_figures.hpp"
 #include "analysis/statistics/paired_tests.hpp"
-#include "analysis/text_figures.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -125,7 +125,7 @@ void warn_of_validity(const MethodReport& method, Warnings& warnings) {
 }
 
 void warn_of_order(const Outcomes& outcomes, Warnings& warnings) {
-  if (outcomes.design.trials.order != design::TrialOrder::uniform) return;
+  if (outcomes.design.trials.order != study::TrialOrder::uniform) return;
   warnings.emplace_back(
       "Classes were drawn independently, so that they came unequally often; pooled accuracy weighs "
       "them as they came.");
@@ -169,7 +169,7 @@ void warn_of_sign_flips(const StudyReport& report, Warnings& warnings) {
 
 /// Methods in blocks: whatever is not adjusted for the period has its effect in its error.
 void warn_of_periods(const Outcomes& outcomes, const StudyReport& report, Warnings& warnings) {
-  if (report.pairs.empty() || outcomes.design.trials.blocks == design::Blocks::mixed) return;
+  if (report.pairs.empty() || outcomes.design.trials.blocks == study::Blocks::mixed) return;
   const std::string effect = "learning or fatigue widens intervals and raises p.";
   const bool adjusts = report.primary && report.primary->crossover;
   warnings.push_back("Methods came one after the other. " +
@@ -240,20 +240,20 @@ void warn_of_state(const Outcomes& outcomes, Warnings& warnings) {
   }
   warn_of_sessions(
       outcomes, "erased at the participant's wish",
-      [](const store::SessionRow& row) { return row.erased; }, warnings);
+      [](const record::SessionRow& row) { return row.erased; }, warnings);
   warn_of_sessions(
       outcomes, "excluded",
-      [](const store::SessionRow& row) { return row.excluded && !row.erased; }, warnings);
+      [](const record::SessionRow& row) { return row.excluded && !row.erased; }, warnings);
   warn_of_sessions(
       outcomes, "not completed",
-      [](const store::SessionRow& row) {
-        return row.state != store::SessionState::completed && !row.excluded && !row.erased;
+      [](const record::SessionRow& row) {
+        return row.state != record::SessionState::completed && !row.excluded && !row.erased;
       },
       warnings);
   warn_of_sessions(
       outcomes, "a pilot or simulation among others",
-      [&](const store::SessionRow& row) {
-        return row.state == store::SessionState::completed && !row.excluded && !row.erased &&
+      [&](const record::SessionRow& row) {
+        return row.state == record::SessionState::completed && !row.excluded && !row.erased &&
                (row.pilot != outcomes.pilot || row.simulated != outcomes.simulated);
       },
       warnings);

@@ -1,7 +1,7 @@
 /// \file The warnings against misreading a report. Private to protocols/identification.
 #pragma once
 
-#include "analysis/outcomes.hpp"
+#include "analysis/outcomes/outcomes.hpp"
 #include "protocols/identification/analysis/report.hpp"
 
 #include <string>

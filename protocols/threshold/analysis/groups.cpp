@@ -88,11 +88,11 @@ GroupTest group_test(std::span<const double> values) {
 
 std::vector<StandardReport> standard_reports(const ThresholdReport& report) {
   std::vector<StandardReport> all;
-  for (const design::threshold::Standard& of : design::threshold::standards_of(report.design)) {
+  for (const study::threshold::Standard& of : study::threshold::standards_of(report.design)) {
     StandardReport& added = all.emplace_back(standard_report(report, all.size()));
     added.of = of;
-    added.levels = design::threshold::levels_of(report.options(), of);
-    added.words = design::threshold::words_of(report.design, of);
+    added.levels = study::threshold::levels_of(report.options(), of);
+    added.words = study::threshold::words_of(report.design, of);
   }
   return all;
 }

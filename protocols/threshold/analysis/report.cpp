@@ -10,7 +10,7 @@
 namespace touchtrial::analysis::threshold {
 namespace {
 
-using design::threshold::Question;
+using study::threshold::Question;
 
 /// Trials of tracks in sessions that count, which the participant did not answer.
 int tracks_trials_without_answer(const Outcomes& outcomes) {
@@ -26,7 +26,7 @@ ThresholdReport begun_report(const Outcomes& outcomes) {
   static_cast<StudyHead&>(report) = head_of(outcomes);
   report.design = outcomes.design;
   report.choices = outcomes.choices;
-  const design::threshold::ThresholdOptions& options = report.options();
+  const study::threshold::ThresholdOptions& options = report.options();
   const procedures::ParameterGrid& grid = options.track.grid;
   report.guess =
       options.question == Question::same_different ? 0.5 : 1.0 / std::max(options.intervals, 2);
@@ -41,11 +41,11 @@ ThresholdReport begun_report(const Outcomes& outcomes) {
 }  // namespace
 
 bool in_track(const TrialOutcome& trial) noexcept {
-  return trial.kind == design::PresentationKind::scored && trial.chosen && trial.chosen->track > 0;
+  return trial.kind == study::PresentationKind::scored && trial.chosen && trial.chosen->track > 0;
 }
 
 bool in_control(const TrialOutcome& trial) noexcept {
-  return trial.kind == design::PresentationKind::lead_in;
+  return trial.kind == study::PresentationKind::lead_in;
 }
 
 std::vector<Person> people_of(const Outcomes& outcomes) {
@@ -62,7 +62,7 @@ std::vector<Person> people_of(const Outcomes& outcomes) {
     const auto person = place.find(trial.participant);
     if (person == place.end() || !counted.contains(trial.row.session)) continue;
     const bool ended = trial.chosen && trial.response && trial.right &&
-                       trial.row.state == store::TrialState::answered;
+                       trial.row.state == record::TrialState::answered;
     if (ended) people[person->second].trials.push_back(&trial);
   }
   for (Person& person : people) {

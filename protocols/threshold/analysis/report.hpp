@@ -3,12 +3,12 @@
 /// report says".
 #pragma once
 
-#include "analysis/outcomes.hpp"
+#include "analysis/outcomes/outcomes.hpp"
+#include "analysis/outcomes/study_head.hpp"
 #include "analysis/statistics/descriptive.hpp"
 #include "analysis/statistics/same_different_d_prime.hpp"
-#include "analysis/study_head.hpp"
 #include "protocols/procedures/estimates.hpp"
-#include "protocols/threshold/design/threshold.hpp"
+#include "protocols/threshold/study/threshold.hpp"
 
 #include <cstddef>
 #include <optional>
@@ -57,8 +57,8 @@ struct GroupTest {
 /// One class and standard: what participants' thresholds have in common. A participant's threshold
 /// is the mean of the own tracks that are not censored.
 struct StandardReport {
-  design::threshold::Standard of;
-  std::string words;           ///< design::threshold::words_of
+  study::threshold::Standard of;
+  std::string words;           ///< study::threshold::words_of
   std::vector<double> levels;  ///< of its tracks
   int tracks = 0;              ///< with a trial
   int censored_below = 0;      ///< tracks
@@ -134,7 +134,7 @@ struct SameDifferentGroup {
 };
 
 struct ThresholdReport : StudyHead {
-  design::Study design;
+  study::Study design;
   std::vector<std::string> choices;
   /// The proportion right at the threshold, of an observer without lapses; nothing without
   /// thresholds.
@@ -154,8 +154,8 @@ struct ThresholdReport : StudyHead {
   std::vector<SameDifferentLevel> same_different;  ///< by participant, then pooled
   std::vector<SameDifferentGroup> same_different_groups;
 
-  [[nodiscard]] const design::threshold::ThresholdOptions& options() const {
-    return design::threshold::options_of(design);
+  [[nodiscard]] const study::threshold::ThresholdOptions& options() const {
+    return study::threshold::options_of(design);
   }
   [[nodiscard]] bool has_thresholds() const { return criterion.has_value(); }
   /// The estimate of a track that is quoted.
@@ -171,12 +171,12 @@ struct ThresholdReport : StudyHead {
 /// What a level of discrimination is: the Weber fraction of gain and pitch (0.1 for 10 %), the
 /// change of an order, the share of the second texture of a blend.
 /// \return nothing for detection
-[[nodiscard]] std::optional<double> quantity_at(const design::threshold::ThresholdOptions& options,
-                                                const design::threshold::Standard& standard,
+[[nodiscard]] std::optional<double> quantity_at(const study::threshold::ThresholdOptions& options,
+                                                const study::threshold::Standard& standard,
                                                 const std::optional<double>& level);
 /// The same for a threshold and its interval.
-[[nodiscard]] Quantity quantity_of(const design::threshold::ThresholdOptions& options,
-                                   const design::threshold::Standard& standard,
+[[nodiscard]] Quantity quantity_of(const study::threshold::ThresholdOptions& options,
+                                   const study::threshold::Standard& standard,
                                    const procedures::Threshold& threshold);
 
 /// A mean over participants and its t interval, as a threshold.

@@ -1,4 +1,4 @@
-#include "analysis/json_figures.hpp"
+#include "analysis/report/json_figures.hpp"
 #include "protocols/threshold/analysis/report.hpp"
 
 namespace touchtrial::analysis::threshold {
@@ -185,13 +185,13 @@ Json same_different_json(const ThresholdReport& report) {
 }
 
 Json settings_json(const ThresholdReport& report) {
-  const design::threshold::ThresholdOptions& options = report.options();
+  const study::threshold::ThresholdOptions& options = report.options();
   const Json quoted = report.by_posterior ? "posterior" : "likelihood";
-  return {{"task", design::threshold::name_of(options.task)},
-          {"question", design::threshold::name_of(options.question)},
-          {"along", design::threshold::name_of(options.along)},
+  return {{"task", study::threshold::name_of(options.task)},
+          {"question", study::threshold::name_of(options.question)},
+          {"along", study::threshold::name_of(options.along)},
           {"procedure", options.track.procedure},
-          {"unit", design::threshold::unit_of_level(options)},
+          {"unit", study::threshold::unit_of_level(options)},
           {"guess", report.guess},
           {"criterion", figure_json(report.criterion)},
           {"quoted", report.has_thresholds() ? quoted : Json(nullptr)},

@@ -25,7 +25,7 @@ struct Person {
 [[nodiscard]] std::vector<Person> people_of(const Outcomes& outcomes);
 
 /// The tracks with a trial and their estimates, by participant, then by track.
-[[nodiscard]] std::vector<TrackReport> track_reports(const design::Study& study,
+[[nodiscard]] std::vector<TrackReport> track_reports(const study::Study& study,
                                                      std::span<const Person> people,
                                                      bool by_posterior, int jobs);
 
@@ -47,7 +47,7 @@ struct Person {
 [[nodiscard]] Repetition repetition_of(std::span<const Person> people, bool after);
 
 /// Counts and d', by participant, then pooled.
-[[nodiscard]] std::vector<SameDifferentLevel> same_different_levels(const design::Study& study,
+[[nodiscard]] std::vector<SameDifferentLevel> same_different_levels(const study::Study& study,
                                                                     std::span<const Person> people);
 [[nodiscard]] std::vector<SameDifferentGroup> same_different_groups(
     std::span<const SameDifferentLevel> levels);

@@ -27,7 +27,7 @@ void add_answer(LevelAnswers& answers, const TrialOutcome& trial) {
 using StandardAnswers = std::vector<LevelAnswers>;
 
 StandardAnswers answers_by_standard(const Person& person, std::size_t standards,
-                                    const design::threshold::ThresholdOptions& options) {
+                                    const study::threshold::ThresholdOptions& options) {
   const std::size_t levels = options.track.levels.size();
   const auto each = static_cast<std::size_t>(std::max(options.tracks_each, 1));
   StandardAnswers all(standards,
@@ -97,12 +97,12 @@ void add_to(StandardAnswers& sum, const StandardAnswers& own) {
 
 }  // namespace
 
-std::vector<SameDifferentLevel> same_different_levels(const design::Study& study,
+std::vector<SameDifferentLevel> same_different_levels(const study::Study& study,
                                                       std::span<const Person> people) {
-  const design::threshold::ThresholdOptions& options = design::threshold::options_of(study);
+  const study::threshold::ThresholdOptions& options = study::threshold::options_of(study);
   std::vector<SameDifferentLevel> all;
-  if (options.question != design::threshold::Question::same_different) return all;
-  const std::size_t standards = design::threshold::standards_of(study).size();
+  if (options.question != study::threshold::Question::same_different) return all;
+  const std::size_t standards = study::threshold::standards_of(study).size();
   StandardAnswers pooled = answers_by_standard({}, standards, options);
   for (const Person& person : people) {
     const StandardAnswers own = answers_by_standard(person, standards, options);

@@ -59,7 +59,7 @@ Row threshold_row(const ThresholdReport& report, const TrackReport& track) {
 
 std::string kind_word(const TrialOutcome& trial) {
   if (in_control(trial)) return "control";
-  return trial.kind == design::PresentationKind::catch_trial ? "catch" : "track";
+  return trial.kind == study::PresentationKind::catch_trial ? "catch" : "track";
 }
 
 /// A trial's choice; empty if it is none of the study's.
@@ -71,11 +71,11 @@ DataCell choice_cell(const Outcomes& outcomes, const std::optional<int>& choice)
 }
 
 /// What a track is about; nothing for trials of none.
-std::optional<design::threshold::Standard> standard_of(const Outcomes& outcomes,
-                                                       const TrialOutcome& trial) {
+std::optional<study::threshold::Standard> standard_of(const Outcomes& outcomes,
+                                                      const TrialOutcome& trial) {
   if (!in_track(trial)) return std::nullopt;
-  const auto all = design::threshold::standards_of(outcomes.design);
-  const int each = std::max(design::threshold::options_of(outcomes.design).tracks_each, 1);
+  const auto all = study::threshold::standards_of(outcomes.design);
+  const int each = std::max(study::threshold::options_of(outcomes.design).tracks_each, 1);
   const auto place = static_cast<std::size_t>((trial.chosen->track - 1) / each);
   return place < all.size() ? std::optional(all[place]) : std::nullopt;
 }
@@ -86,12 +86,12 @@ DataCell track_cell(const TrialOutcome& trial) {
 
 DataCell standard_cell(const Outcomes& outcomes, const TrialOutcome& trial) {
   const auto standard = standard_of(outcomes, trial);
-  return standard ? DataCell(design::threshold::words_of(outcomes.design, *standard)) : DataCell{};
+  return standard ? DataCell(study::threshold::words_of(outcomes.design, *standard)) : DataCell{};
 }
 
 /// The level of a trial, if it has one of the study's.
 std::optional<double> level_of(const Outcomes& outcomes, const TrialOutcome& trial) {
-  const auto& levels = design::threshold::options_of(outcomes.design).track.levels;
+  const auto& levels = study::threshold::options_of(outcomes.design).track.levels;
   if (!trial.chosen || trial.chosen->level < 0) return std::nullopt;
   const auto level = static_cast<std::size_t>(trial.chosen->level);
   return level < levels.size() ? std::optional(levels[level]) : std::nullopt;
@@ -102,8 +102,8 @@ DataCell comparison_cell(const Outcomes& outcomes, const TrialOutcome& trial) {
   const auto standard = standard_of(outcomes, trial);
   const auto level = level_of(outcomes, trial);
   if (!standard || !level) return std::monostate{};
-  const auto& options = design::threshold::options_of(outcomes.design);
-  return design::threshold::comparison_at(options, *standard, *level);
+  const auto& options = study::threshold::options_of(outcomes.design);
+  return study::threshold::comparison_at(options, *standard, *level);
 }
 
 Row trial_row(const Outcomes& outcomes, const Person& person, const TrialOutcome& trial) {

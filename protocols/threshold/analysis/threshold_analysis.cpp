@@ -55,7 +55,7 @@ class ThresholdAnalysis final : public ProtocolAnalysis {
   }
   std::vector<TrialColumn> trial_columns() const override { return threshold_trial_columns(); }
   std::vector<std::filesystem::path> export_model(
-      const store::StudyStore& store, const Outcomes& outcomes,
+      const record::StudyStore& store, const Outcomes& outcomes,
       const std::filesystem::path& folder) const override {
     return export_threshold_model(store, outcomes, folder);
   }

@@ -1,7 +1,7 @@
 /// \file The analysis of thresholds. Source: docs/thresholds.md.
 #pragma once
 
-#include "analysis/results.hpp"
+#include "analysis/report/results.hpp"
 
 namespace touchtrial::analysis::threshold {
 

@@ -14,10 +14,10 @@
 namespace touchtrial::analysis::threshold {
 namespace {
 
-using design::threshold::ThresholdOptions;
+using study::threshold::ThresholdOptions;
 
 const ThresholdOptions& options_of(const Outcomes& outcomes) {
-  return design::threshold::options_of(outcomes.design);
+  return study::threshold::options_of(outcomes.design);
 }
 
 /// The rows of tracks.csv that belong to a track.
@@ -53,7 +53,7 @@ std::string notes_on_model(const Outcomes& outcomes) {
       outcomes.simulated ? "SIMULATED: every participant is a program.\n\n" : "",
       options.track.grid.guess, mean_of(options.track.grid.lapses),
       100.0 * (options.track.grid.guess + (1.0 - options.track.grid.guess) * share),
-      design::threshold::unit_of_level(options));
+      study::threshold::unit_of_level(options));
 }
 
 }  // namespace
@@ -75,15 +75,15 @@ std::string threshold_model_script(const Outcomes& outcomes) {
          std::string(threshold_model_functions());
 }
 
-std::vector<std::filesystem::path> export_threshold_model(const store::StudyStore& store,
+std::vector<std::filesystem::path> export_threshold_model(const record::StudyStore& store,
                                                           const Outcomes& outcomes,
                                                           const std::filesystem::path& folder) {
-  if (options_of(outcomes).question == design::threshold::Question::same_different) {
+  if (options_of(outcomes).question == study::threshold::Question::same_different) {
     throw UsageError(
         "\"same or different\" has no guess rate, and so no model of thresholds; the report and "
         "--format csv have its d'");
   }
-  const store::StudyCommitment& commitment = store.commitment();
+  const record::StudyCommitment& commitment = store.commitment();
   return write_export(folder, {commitment.study, commitment.study_id, "r"},
                       {text_file("threshold_model.csv", csv_text(model_table(outcomes))),
                        text_file("threshold_model.R", threshold_model_script(outcomes)),

@@ -22,7 +22,7 @@ namespace touchtrial::analysis::threshold {
 /// \return the files, in the order written
 /// \throws UsageError for same or different, which has no guess rate
 /// \throws FileError as write_export does
-std::vector<std::filesystem::path> export_threshold_model(const store::StudyStore& store,
+std::vector<std::filesystem::path> export_threshold_model(const record::StudyStore& store,
                                                           const Outcomes& outcomes,
                                                           const std::filesystem::path& folder);
 

@@ -8,11 +8,11 @@
 namespace touchtrial::analysis::threshold {
 namespace {
 
-using design::threshold::ThresholdOptions;
 using procedures::Censored;
 using procedures::LevelCounts;
 using procedures::Observer;
 using procedures::TrackTrial;
+using study::threshold::ThresholdOptions;
 
 /// Draws of one track's goodness of fit.
 constexpr int kFitDraws = 399;
@@ -163,13 +163,13 @@ void estimate(TrackReport& track, const ThresholdOptions& options, bool quotes_p
 
 }  // namespace
 
-std::vector<TrackReport> track_reports(const design::Study& study, std::span<const Person> people,
+std::vector<TrackReport> track_reports(const study::Study& study, std::span<const Person> people,
                                        bool by_posterior, int jobs) {
-  const ThresholdOptions& options = design::threshold::options_of(study);
+  const ThresholdOptions& options = study::threshold::options_of(study);
   std::vector<ThresholdOptions> standards;
-  for (const design::threshold::Standard& of : design::threshold::standards_of(study)) {
+  for (const study::threshold::Standard& of : study::threshold::standards_of(study)) {
     standards.push_back(options);
-    standards.back().track.levels = design::threshold::levels_of(options, of);
+    standards.back().track.levels = study::threshold::levels_of(options, of);
   }
   std::vector<TrackReport> all;
   for (const Person& person : people) {
@@ -177,7 +177,7 @@ std::vector<TrackReport> track_reports(const design::Study& study, std::span<con
       all.push_back(std::move(track));
     }
   }
-  if (options.question == design::threshold::Question::same_different) return all;
+  if (options.question == study::threshold::Question::same_different) return all;
   in_parallel(jobs, all.size(), [&](std::size_t i) {
     estimate(all[i], standards[all[i].standard], by_posterior, i);
   });
@@ -185,14 +185,14 @@ std::vector<TrackReport> track_reports(const design::Study& study, std::span<con
 }
 
 std::optional<double> quantity_at(const ThresholdOptions& options,
-                                  const design::threshold::Standard& standard,
+                                  const study::threshold::Standard& standard,
                                   const std::optional<double>& level) {
-  if (!level || options.task == design::threshold::Task::detection) return std::nullopt;
+  if (!level || options.task == study::threshold::Task::detection) return std::nullopt;
   const double fraction = procedures::weber_fraction(*level);
-  return options.along == design::threshold::Along::order ? fraction * standard.value : fraction;
+  return options.along == study::threshold::Along::order ? fraction * standard.value : fraction;
 }
 
-Quantity quantity_of(const ThresholdOptions& options, const design::threshold::Standard& standard,
+Quantity quantity_of(const ThresholdOptions& options, const study::threshold::Standard& standard,
                      const procedures::Threshold& threshold) {
   return {quantity_at(options, standard, threshold.level),
           quantity_at(options, standard, threshold.low),

@@ -1,4 +1,4 @@
-#include "analysis/page/wording.hpp"
+#include "analysis/report/page/wording.hpp"
 #include "core/text.hpp"
 #include "protocols/threshold/analysis/report_parts.hpp"
 
@@ -9,8 +9,8 @@
 namespace touchtrial::analysis::threshold {
 namespace {
 
-using design::threshold::Along;
-using design::threshold::Question;
+using study::threshold::Along;
+using study::threshold::Question;
 
 constexpr double kUsualLevel = 0.05;
 /// Catch trials are at the highest level, where hardly anybody who attends is wrong.

@@ -13,8 +13,8 @@
 namespace touchtrial::simulation::threshold {
 namespace {
 
-using design::threshold::Question;
-using design::threshold::ThresholdOptions;
+using study::threshold::Question;
+using study::threshold::ThresholdOptions;
 
 constexpr double kQuickestThoughtS = 0.8;
 constexpr double kSlowestThoughtS = 4.0;
@@ -41,7 +41,7 @@ int odd_of(const std::vector<double>& strengths) {
 }
 
 /// As explorations of trials: long enough for any interval.
-SubjectModel with_intervals(SubjectModel subject, const design::Study& study) {
+SubjectModel with_intervals(SubjectModel subject, const study::Study& study) {
   constexpr double kMoreS = 1.0;
   subject.explore_s = study.trials.explore_limit_s + kMoreS;
   return subject;
@@ -63,26 +63,26 @@ class ComparingPopulation final : public Population {
   /// The mean over standards and passes; each pass strokes both planes on the same way.
   [[nodiscard]] static ExpectedChange learnt(const PopulationSetting& setting);
 
-  const design::Study& study_;
+  const study::Study& study_;
   SubjectModel subject_;
   std::uint64_t seed_;
   ExpectedChange expected_;
 };
 
 ExpectedChange ComparingPopulation::learnt(const PopulationSetting& setting) {
-  const design::Study& study = setting.key.study;
-  const ThresholdOptions& options = design::threshold::options_of(study);
+  const study::Study& study = setting.key.study;
+  const ThresholdOptions& options = study::threshold::options_of(study);
   SubjectModel learner = setting.subject;
   learner.explore_s = options.interval_s + device::SimulatedHand::kPushBuildUpS;
   const device::ServoOptions servo = session::trial_servo_options(study, device::kServoRateHz, {});
-  const std::size_t standards = design::threshold::standards_of(study).size();
+  const std::size_t standards = study::threshold::standards_of(study).size();
   const int passes = setting.subject.training_passes;
   const double share = 1.0 / (static_cast<double>(standards) * passes);
   ExpectedChange expected;
   for (std::size_t standard = 0; standard < standards; ++standard) {
     for (int pass = 0; pass < passes; ++pass) {
       const auto felt = [&](std::optional<std::size_t> level) {
-        const design::Interval interval = design::threshold::interval_at(study, standard, level);
+        const study::Interval interval = study::threshold::interval_at(study, standard, level);
         return feel_exploration(setting.source.plane_of(interval), setting.source.plane(), learner,
                                 servo,
                                 RandomStream(setting.seed, "subject: interval practice",
@@ -101,12 +101,12 @@ ExpectedChange ComparingPopulation::learnt(const PopulationSetting& setting) {
 
 }  // namespace
 
-ComparingParticipant::ComparingParticipant(const SubjectModel& subject, const design::Study& study,
+ComparingParticipant::ComparingParticipant(const SubjectModel& subject, const study::Study& study,
                                            const ExpectedChange& expected, std::uint64_t seed,
                                            int number)
     : SimulatedParticipant(subject, seed, number),
       subject_(subject),
-      options_(design::threshold::options_of(study)),
+      options_(study::threshold::options_of(study)),
       seed_(seed),
       number_(number),
       individual_(subject, seed, number),
@@ -174,9 +174,9 @@ int ComparingParticipant::given_answer(RandomStream& random) {
         "an observer of a given function is told levels by `simulate` alone; remove "
         "given_function from the subject file, or simulate");
   }
-  design::Presentation shown{.trial = trial_, .stimulus = {}};
+  study::Presentation shown{.trial = trial_, .stimulus = {}};
   order_->choose(shown);
-  const design::ChosenLevel chosen = shown.chosen.value();
+  const study::ChosenLevel chosen = shown.chosen.value();
   const GivenFunction& given = *subject_.given_function;
   const procedures::ParameterGrid& grid = options_.track.grid;
   const double own =

@@ -7,7 +7,7 @@
 #include "protocols/simulation/felt_decision.hpp"
 #include "protocols/simulation/population.hpp"
 #include "protocols/simulation/simulated_participant.hpp"
-#include "protocols/threshold/design/threshold.hpp"
+#include "protocols/threshold/study/threshold.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -31,13 +31,13 @@ class ComparingParticipant final : public SimulatedParticipant {
  public:
   /// \param subject  explores for as long as an interval may last
   /// \param number  from 1
-  ComparingParticipant(const SubjectModel& subject, const design::Study& study,
+  ComparingParticipant(const SubjectModel& subject, const study::Study& study,
                        const ExpectedChange& expected, std::uint64_t seed, int number);
 
   void see_pictures(const std::vector<std::string>& labels) override { labels_ = labels; }
   void interval(const session::IntervalStep& next) override;
   void rest() override { condition_.rest(trials_); }
-  void follow(std::unique_ptr<design::AdaptiveOrder> order) override { order_ = std::move(order); }
+  void follow(std::unique_ptr<study::AdaptiveOrder> order) override { order_ = std::move(order); }
 
  protected:
   [[nodiscard]] ParticipantAnswer choose(const engine::FeltFeatures& felt,
@@ -53,7 +53,7 @@ class ComparingParticipant final : public SimulatedParticipant {
   [[nodiscard]] int given_answer(RandomStream& random);
 
   const SubjectModel& subject_;
-  const design::threshold::ThresholdOptions& options_;
+  const study::threshold::ThresholdOptions& options_;
   std::uint64_t seed_;
   int number_;
   Individual individual_;
@@ -64,7 +64,7 @@ class ComparingParticipant final : public SimulatedParticipant {
   std::vector<std::string> labels_;
   std::vector<engine::FeltFeatures> felt_;  ///< of the trial's earlier intervals
   bool hears_only_ = false;
-  std::unique_ptr<design::AdaptiveOrder> order_;
+  std::unique_ptr<study::AdaptiveOrder> order_;
   int trial_ = 0;  ///< number in the schedule
   int trials_ = 0;
 };

@@ -1,7 +1,7 @@
 #include "analysis/exports/collection_reading.hpp"
 
-#include "analysis/collection_records.hpp"
 #include "analysis/exports/csv_reading.hpp"
+#include "analysis/outcomes/collection_records.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,9 +10,9 @@
 namespace touchtrial {
 namespace {
 
-store::SessionState session_state_of(const std::string& name) {
-  if (name == "completed") return store::SessionState::completed;
-  return name == "stopped" ? store::SessionState::stopped : store::SessionState::open;
+record::SessionState session_state_of(const std::string& name) {
+  if (name == "completed") return record::SessionState::completed;
+  return name == "stopped" ? record::SessionState::stopped : record::SessionState::open;
 }
 
 std::optional<analysis::PracticeRecord> practice_of(const CsvRow& row) {
@@ -29,18 +29,18 @@ std::array<double, 3> axes_of(const std::string& text) {
   return axes;
 }
 
-std::optional<store::StationRecord> station_of(const CsvRow& row) {
+std::optional<record::StationRecord> station_of(const CsvRow& row) {
   if (row.at("visual").empty()) return std::nullopt;
-  return store::StationRecord{row.at("device_model"),
-                              row.at("device_firmware"),
-                              number_of<double>(row.at("device_max_force_n")),
-                              is_set(row.at("visual")),
-                              number_of<double>(row.at("servo_hz")),
-                              row.at("scheduling"),
-                              row.at("certificate"),
-                              std::nullopt,
-                              axes_of(row.at("device_force_scale")),
-                              axes_of(row.at("device_length_scale"))};
+  return record::StationRecord{row.at("device_model"),
+                               row.at("device_firmware"),
+                               number_of<double>(row.at("device_max_force_n")),
+                               is_set(row.at("visual")),
+                               number_of<double>(row.at("servo_hz")),
+                               row.at("scheduling"),
+                               row.at("certificate"),
+                               std::nullopt,
+                               axes_of(row.at("device_force_scale")),
+                               axes_of(row.at("device_length_scale"))};
 }
 
 analysis::SessionRecord record_of(const CsvRow& row) {
@@ -115,8 +115,8 @@ analysis::ServoTrial servo_trial_of(const CsvRow& row) {
 }
 
 /// The facts that decide which sessions count, of a study with one visit.
-store::StudyCommitment commitment_of(const std::filesystem::path& study) {
-  store::StudyCommitment commitment;
+record::StudyCommitment commitment_of(const std::filesystem::path& study) {
+  record::StudyCommitment commitment;
   commitment.configuration =
       R"({"trials": {"explore_limit_s": 1, "on_timeout": "fade", "order": "permuted",
           "repeats": 1}, "methods": [{}]})";
@@ -129,8 +129,8 @@ store::StudyCommitment commitment_of(const std::filesystem::path& study) {
 
 }  // namespace
 
-store::SessionRow session_row_of(const CsvRow& row) {
-  store::SessionRow session;
+record::SessionRow session_row_of(const CsvRow& row) {
+  record::SessionRow session;
   session.session = number_of<int>(row.at("session"));
   session.own_session = session.session;  // exports do not say its number at the station
   session.station = row.at("station").empty() ? 0 : number_of<int>(row.at("station"));
@@ -148,10 +148,10 @@ store::SessionRow session_row_of(const CsvRow& row) {
 }
 
 analysis::Collection collection_from_csv(const std::filesystem::path& folder,
-                                         const store::StudyState& state) {
+                                         const record::StudyState& state) {
   analysis::Collection collection;
   collection.prescription = prescription_of(folder / "study.csv");
-  std::vector<store::SessionRow> rows;
+  std::vector<record::SessionRow> rows;
   for (const CsvRow& row : rows_of(folder / "participants.csv")) {
     rows.push_back(session_row_of(row));
     collection.sessions.push_back(record_of(row));

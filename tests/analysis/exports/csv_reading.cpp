@@ -1,7 +1,7 @@
 #include "analysis/exports/csv_reading.hpp"
 
-#include "analysis/demographics.hpp"
 #include "analysis/exports/collection_reading.hpp"
+#include "analysis/outcomes/demographics.hpp"
 #include "core/files.hpp"
 #include "support/catch.hpp"
 
@@ -55,16 +55,16 @@ void read_study(analysis::Outcomes& outcomes, const std::filesystem::path& folde
   if (is_set(single.at("interim"))) outcomes.state.interim.emplace();
   outcomes.choices = outcomes.classes;
   outcomes.design =
-      design::parse_study(text_of_file(folder / "study_file.json"), ".", "study_file.json");
+      study::parse_study(text_of_file(folder / "study_file.json"), ".", "study_file.json");
 }
 
-store::TrialState trial_state_of(const std::string& name) {
-  const std::map<std::string, store::TrialState> states{
-      {"presented", store::TrialState::presented},
-      {"answered", store::TrialState::answered},
-      {"timed-out", store::TrialState::timed_out},
-      {"interrupted", store::TrialState::interrupted},
-      {"voided", store::TrialState::voided}};
+record::TrialState trial_state_of(const std::string& name) {
+  const std::map<std::string, record::TrialState> states{
+      {"presented", record::TrialState::presented},
+      {"answered", record::TrialState::answered},
+      {"timed-out", record::TrialState::timed_out},
+      {"interrupted", record::TrialState::interrupted},
+      {"voided", record::TrialState::voided}};
   return states.at(name);
 }
 
@@ -74,7 +74,7 @@ void read_sessions(analysis::Outcomes& outcomes, const std::filesystem::path& fo
       ++outcomes.sessions_unseen;
       continue;
     }
-    const store::SessionRow session = session_row_of(row);
+    const record::SessionRow session = session_row_of(row);
     if (outcomes.state.interim) outcomes.state.interim->insert(session.session);
     const std::string& block = row.at("order_block");
     outcomes.sessions.push_back(
@@ -108,8 +108,8 @@ void read_looks(analysis::Outcomes& outcomes, const std::filesystem::path& folde
   }
 }
 
-store::TrialRow trial_row_of(const CsvRow& row) {
-  store::TrialRow trial;
+record::TrialRow trial_row_of(const CsvRow& row) {
+  record::TrialRow trial;
   trial.session = number_of<int>(row.at("session"));
   trial.trial = number_of<int>(row.at("trial"));
   trial.block = number_of<int>(row.at("block"));
@@ -138,16 +138,16 @@ store::TrialRow trial_row_of(const CsvRow& row) {
   return trial;
 }
 
-std::optional<store::TrialMeasures> measures_of(const CsvRow& row) {
+std::optional<record::TrialMeasures> measures_of(const CsvRow& row) {
   if (row.at("within_limits").empty()) return std::nullopt;
-  return store::TrialMeasures{
+  return record::TrialMeasures{
       number_of<double>(row.at("contact_s")),   number_of<double>(row.at("path_mm")),
       number_of<double>(row.at("force_rms_n")), number_of<double>(row.at("saturated_share")),
       is_set(row.at("within_limits")),          maybe<std::int64_t>(row.at("limited_ticks"))};
 }
 
-design::StimulusIndex stimulus_of(const analysis::Outcomes& outcomes, const CsvRow& row) {
-  design::StimulusIndex stimulus;
+study::StimulusIndex stimulus_of(const analysis::Outcomes& outcomes, const CsvRow& row) {
+  study::StimulusIndex stimulus;
   stimulus.class_index = index_of(outcomes.classes, row.at("class"));
   stimulus.exemplar = index_of(outcomes.exemplars[stimulus.class_index], row.at("exemplar"));
   stimulus.method = index_of(outcomes.methods, row.at("method"));
@@ -160,8 +160,8 @@ void read_trials(analysis::Outcomes& outcomes, const std::filesystem::path& file
     trial.participant = row.at("participant");
     trial.row = trial_row_of(row);
     const std::string& kind = row.at("kind");
-    if (kind == "lead-in") trial.kind = design::PresentationKind::lead_in;
-    if (kind == "catch") trial.kind = design::PresentationKind::catch_trial;
+    if (kind == "lead-in") trial.kind = study::PresentationKind::lead_in;
+    if (kind == "catch") trial.kind = study::PresentationKind::catch_trial;
     trial.scored = kind == "scored";
     trial.counted = is_set(row.at("counted"));
     if (kind != "catch") {
@@ -250,7 +250,7 @@ analysis::Outcomes outcomes_from_csv(const std::filesystem::path& folder) {
             [](const analysis::TrialOutcome& a, const analysis::TrialOutcome& b) {
               return std::pair(a.row.session, a.row.trial) < std::pair(b.row.session, b.row.trial);
             });
-  std::map<int, std::vector<store::TrialRow>> of_session;
+  std::map<int, std::vector<record::TrialRow>> of_session;
   for (const analysis::TrialOutcome& trial : outcomes.trials) {
     of_session[trial.row.session].push_back(trial.row);
   }

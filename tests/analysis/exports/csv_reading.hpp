@@ -2,7 +2,7 @@
 #pragma once
 
 #include "analysis/exports/csv_cells.hpp"
-#include "analysis/outcomes.hpp"
+#include "analysis/outcomes/outcomes.hpp"
 
 #include <filesystem>
 #include <string>

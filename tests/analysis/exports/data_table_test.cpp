@@ -1,6 +1,6 @@
 #include "analysis/exports/data_table.hpp"
 
-#include "analysis/escaping.hpp"
+#include "analysis/report/escaping.hpp"
 #include "support/catch.hpp"
 
 #include <limits>

@@ -31,7 +31,7 @@ const std::vector<std::string> kNoFaults;
 void fill(FakeStudy& study) {
   study.add({.participant = "P-01", .enrolment = 1, .answers = FakeStudy::confusing(0, 1)});
   study.add(
-      {.participant = "Z_2+", .enrolment = 2, .answers = [](const design::Presentation& shown) {
+      {.participant = "Z_2+", .enrolment = 2, .answers = [](const study::Presentation& shown) {
          return shown.trial == 7 ? std::nullopt : std::optional(shown.stimulus.class_index);
        }});
   study.add({.participant = "P03",
@@ -74,7 +74,7 @@ TEST_CASE("participant_label gives different ids different labels of letters and
 }
 
 TEST_CASE("A study as BIDS keeps to the specification, with traces, database and without") {
-  FakeStudy study(design::identification::comparison(), {.label = "bark \"old\""});
+  FakeStudy study(study::identification::comparison(), {.label = "bark \"old\""});
   fill(study);
   study.close_and_unblind();
   const OpenStudy open(study);
@@ -88,7 +88,7 @@ TEST_CASE("A study as BIDS keeps to the specification, with traces, database and
   analysis::export_bids(open.source, options, out);
   CHECK(bids_faults(out) == kNoFaults);
   const fs::path copy = out / "sourcedata" / "study.db";
-  CHECK(store::StudyStore::open(copy, store::StudyStore::Access::read_only).trials() ==
+  CHECK(record::StudyStore::open(copy, record::StudyStore::Access::read_only).trials() ==
         study.store().trials());
   CHECK_FALSE(is_there(copy.string() + ".key"));
   const std::string report = text_of_file(out / "derivatives/touchtrial/results.json");
@@ -97,7 +97,7 @@ TEST_CASE("A study as BIDS keeps to the specification, with traces, database and
 }
 
 TEST_CASE("A BIDS run holds the trace of its trial, and tells when and what was felt") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   fill(study);
   study.close_and_unblind();
   const OpenStudy open(study);
@@ -132,11 +132,11 @@ TEST_CASE("A BIDS run holds the trace of its trial, and tells when and what was 
 }
 
 TEST_CASE("A BIDS recording keeps a trace's steps distinct, and writes no zero with a sign") {
-  store::Trace trace;
+  record::Trace trace;
   for (int i = -9000; i <= 9000; i += 7) {
     trace.samples.push_back({{i / 1000.0, -0.0004, 0.0}, {i / 4096.0, 1 / 4096.0, -0.00004}});
   }
-  store::TrialRow row;
+  record::TrialRow row;
   row.rate_hz = trace.rate_hz;
   row.samples = static_cast<std::int64_t>(trace.samples.size());
   const std::string text = analysis::motion_text(trace, analysis::recording_of(row, {}));
@@ -152,14 +152,14 @@ TEST_CASE("A BIDS recording keeps a trace's steps distinct, and writes no zero w
 }
 
 TEST_CASE("Latencies of a recording skip the time between explorations, where it is known") {
-  store::Trace trace;
+  record::Trace trace;
   trace.rate_hz = 3000.0;
   trace.samples.resize(5);
-  store::TrialRow row;
+  record::TrialRow row;
   row.rate_hz = trace.rate_hz;
   row.samples = 5;
   row.presented_at = milliseconds(7000);
-  store::TraceBody body;
+  record::TraceBody body;
   body.explorations = {2, 3};
   const auto latencies = [&] {
     const analysis::Recording recording = analysis::recording_of(row, body);
@@ -178,7 +178,7 @@ TEST_CASE("Latencies of a recording skip the time between explorations, where it
 }
 
 TEST_CASE("A BIDS dataset loses its traces and withdrawn participants when it is exported again") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   fill(study);
   study.close_and_unblind();
   const fs::path out = study.folder() / "bids";
@@ -197,7 +197,7 @@ TEST_CASE("A BIDS dataset loses its traces and withdrawn participants when it is
 }
 
 TEST_CASE("Participants with several sessions have folders for them") {
-  FakeStudy study(design::identification::classification(),
+  FakeStudy study(study::identification::classification(),
                   {.simulated = false, .session = R"({"closing_questions": [
                     {"id": "hard", "kind": "number", "text": {"en": "How hard was it?"}}]})"});
   FakeSession first = talkative("P01", 1, R"({"hard":7})");
@@ -236,7 +236,7 @@ TEST_CASE("Participants with several sessions have folders for them") {
 }
 
 TEST_CASE("Datasets have what people said, and what they typed only if that is wanted") {
-  FakeStudy study(design::identification::classification(),
+  FakeStudy study(study::identification::classification(),
                   {.simulated = false, .session = R"({"closing_questions": [
                     {"id": "How-hard", "kind": "number", "text": {"en": "How hard was it?"}},
                     {"id": "which", "kind": "choice", "text": {"en": "Which was best?"},
@@ -289,7 +289,7 @@ TEST_CASE("Datasets have what people said, and what they typed only if that is w
 }
 
 TEST_CASE("Before unblinding datasets have no word of what was presented or answered") {
-  FakeStudy study(design::identification::comparison(), {.label = "petrified wood"});
+  FakeStudy study(study::identification::comparison(), {.label = "petrified wood"});
   fill(study);
   const analysis::DatasetSource source{study.store()};
   const fs::path bids = study.folder() / "bids";
@@ -312,7 +312,7 @@ TEST_CASE("Before unblinding datasets have no word of what was presented or answ
 }
 
 TEST_CASE("A study as Psych-DS keeps to the schema") {
-  FakeStudy study(design::identification::comparison(),
+  FakeStudy study(study::identification::comparison(),
                   {.label = "bark, \"old\"", .trials = R"({"lead_in": 1, "catch": 1})"});
   fill(study);
   study.store().withdraw(3, milliseconds(900), "asked to");
@@ -327,7 +327,7 @@ TEST_CASE("A study as Psych-DS keeps to the schema") {
 }
 
 TEST_CASE("A dataset names the program that exported it, and the one that recorded it") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   fill(study);
   study.close_and_unblind();
   const OpenStudy open(study);
@@ -349,7 +349,7 @@ TEST_CASE("A dataset names the program that exported it, and the one that record
 }
 
 TEST_CASE("The checkers of datasets find what is wrong") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   fill(study);
   study.close_and_unblind();
   const OpenStudy open(study);

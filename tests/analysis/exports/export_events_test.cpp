@@ -10,17 +10,17 @@ namespace {
 
 using std::chrono::milliseconds;
 
-const store::InterruptionDetail kDetail{.safety_fault = "device",
-                                        .device_fault = "link_lost",
-                                        .ticks = 2,
-                                        .flight = "tick,time_s\r\n0,0\r\n1,0.001\r\n"};
+const record::InterruptionDetail kDetail{.safety_fault = "device",
+                                         .device_fault = "link_lost",
+                                         .ticks = 2,
+                                         .flight = "tick,time_s\r\n0,0\r\n1,0.001\r\n"};
 
 FakeSession of_somebody(const std::string& participant, int enrolment) {
   return {.participant = participant,
           .enrolment = enrolment,
           .answers = FakeStudy::always_right(),
-          .before_trials = [](store::SessionRecorder& recorder) {
-            recorder.remarked(milliseconds(50), store::EventKind::noted, "came late");
+          .before_trials = [](record::SessionRecorder& recorder) {
+            recorder.remarked(milliseconds(50), record::EventKind::noted, "came late");
             recorder.presented(milliseconds(100), 1, 0);
             recorder.interrupted(milliseconds(1500), 1, "device lost", kDetail);
           }};
@@ -35,7 +35,7 @@ std::vector<std::filesystem::path> exported(FakeStudy& study) {
 }  // namespace
 
 TEST_CASE("Exported events have remarks, faults by name, and flight records as they were") {
-  FakeStudy study(design::identification::classification(), {.simulated = false});
+  FakeStudy study(study::identification::classification(), {.simulated = false});
   study.add(of_somebody("P01", 1));
   study.add({.participant = "P02",
              .enrolment = 2,
@@ -73,7 +73,7 @@ TEST_CASE("Exported events have remarks, faults by name, and flight records as t
 }
 
 TEST_CASE("Exported events leave out erased participants, and those that an interim look hides") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   study.add(of_somebody("P01", 1));
   study.add(of_somebody("P02", 2));
   study.store().note(2, milliseconds(4), "", "asked how long it takes");

@@ -12,7 +12,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-const store::InterruptionDetail kOverspeed{
+const record::InterruptionDetail kOverspeed{
     .safety_fault = "overspeed", .device_fault = "none", .ticks = 1, .flight = "tick\r\n0\r\n"};
 
 /// Somebody whose session had a fault, a deviation and a stop.
@@ -22,9 +22,9 @@ FakeSession with_a_cramp(const std::string& participant, int enrolment) {
           .answers = FakeStudy::always_right(),
           .complete = false,
           .stop_after = 0,
-          .before_trials = [](store::SessionRecorder& recorder) {
+          .before_trials = [](record::SessionRecorder& recorder) {
             recorder.deviated(milliseconds(10), {.code = "no-curtain", .text = "in the wash"});
-            recorder.remarked(milliseconds(50), store::EventKind::noted, "tall");
+            recorder.remarked(milliseconds(50), record::EventKind::noted, "tall");
             recorder.presented(milliseconds(100), 1, 0);
             recorder.interrupted(milliseconds(1500), 1, "device fault", kOverspeed);
             recorder.stopped(milliseconds(2500), {.code = "", .text = "a cramp"});
@@ -55,7 +55,7 @@ void add_three(FakeStudy& study) {
 }  // namespace
 
 TEST_CASE("The safety record has everybody's stops, faults and deviations, and no outcome") {
-  FakeStudy study(design::identification::classification(), {.simulated = false});
+  FakeStudy study(study::identification::classification(), {.simulated = false});
   add_three(study);
   const auto files = analysis::export_safety(study.store(), nullptr, study.folder() / "codes");
   REQUIRE(files.size() == 2);
@@ -87,7 +87,7 @@ TEST_CASE("The safety record has everybody's stops, faults and deviations, and n
 }
 
 TEST_CASE("With the key the safety record has what was typed, also of erased people") {
-  FakeStudy study(design::identification::classification(), {.simulated = false});
+  FakeStudy study(study::identification::classification(), {.simulated = false});
   add_three(study);
   const auto files = analysis::export_safety(study.store(), &study.key(), study.folder() / "texts");
   const std::string text = all_text(files);
@@ -106,7 +106,7 @@ TEST_CASE("With the key the safety record has what was typed, also of erased peo
   CHECK(events[1].at("at_s").empty());
 
   constexpr auto kLater = std::chrono::hours(24 * 366 * 11);
-  study.store().withdraw(2, kLater, "", store::Kept::nothing);
+  study.store().withdraw(2, kLater, "", record::Kept::nothing);
   const std::string after =
       all_text(analysis::export_safety(study.store(), &study.key(), study.folder() / "less"));
   CHECK_FALSE(says(after, "30 degrees"));
@@ -116,9 +116,9 @@ TEST_CASE("With the key the safety record has what was typed, also of erased peo
 }
 
 TEST_CASE("The safety record says where the largest force of an open session comes from") {
-  FakeStudy study(design::identification::classification(), {.simulated = false});
-  const auto felt = [](const design::Presentation& shown) {
-    store::Trace trace;
+  FakeStudy study(study::identification::classification(), {.simulated = false});
+  const auto felt = [](const study::Presentation& shown) {
+    record::Trace trace;
     trace.samples.assign(20, {{0.0, 0.0, -0.5}, {0.0, 0.0, 1.04 + 0.5 * (shown.trial % 2)}});
     return trace;
   };
@@ -135,7 +135,7 @@ TEST_CASE("The safety record says where the largest force of an open session com
   add("P03", 3, 0);
   study.add(with_a_cramp("P04", 4));
   study.store().withdraw(2, milliseconds(30), "asked to");
-  const auto forces = [&](const design::StudyKey* key) {
+  const auto forces = [&](const study::StudyKey* key) {
     std::vector<std::string> found;
     const auto files = analysis::export_safety(study.store(), key, study.folder() / "safety");
     for (const CsvRow& row : rows_of(files[0])) {
@@ -150,19 +150,19 @@ TEST_CASE("The safety record says where the largest force of an open session com
 }
 
 TEST_CASE("Exports of what people said of themselves are their reader's alone") {
-  FakeStudy study(design::identification::classification(), {.simulated = false});
+  FakeStudy study(study::identification::classification(), {.simulated = false});
   add_three(study);
   const auto is_private = [](const std::filesystem::path& file) {
     const auto others = std::filesystem::perms::group_all | std::filesystem::perms::others_all;
     return (std::filesystem::status(file).permissions() & others) == std::filesystem::perms::none;
   };
-  store::PersonalRecord person;
+  record::PersonalRecord person;
   person.participant = "P01";
   person.contact = "somebody@example.org";
   const auto folder = study.folder() / "one";
   const auto files = analysis::export_participant({study.store()}, "P01", {person}, folder);
   for (const auto& file : files) CHECK(is_private(file) == (file.filename() == "P01_personal.csv"));
-  const auto export_with = [&](const design::StudyKey* key) {
+  const auto export_with = [&](const study::StudyKey* key) {
     return analysis::export_safety(study.store(), key, study.folder() / "safety");
   };
   CHECK_FALSE(is_private(export_with(nullptr)[1]));
@@ -170,16 +170,16 @@ TEST_CASE("Exports of what people said of themselves are their reader's alone") 
 }
 
 TEST_CASE("A participant's export has that participant alone, and outcomes only where given") {
-  FakeStudy study(design::identification::classification(), {.simulated = false});
+  FakeStudy study(study::identification::classification(), {.simulated = false});
   study.add(talkative("P-1", 1, R"({"strategy":"by the grain"})"));
   study.add({.participant = "P2", .enrolment = 2, .answers = FakeStudy::confusing(0, 1)});
   study.store().note(1, milliseconds(20), "", "wrote a letter");
-  store::PersonalRecord person;
+  record::PersonalRecord person;
   person.participant = "P-1";
   person.consent_version = "3";
   person.contact = "somebody@example.org";
   const auto folder = study.folder() / "one";
-  store::PersonalRecord again = person;
+  record::PersonalRecord again = person;
   again.consent_version = "4";
   again.contact = "";
   const auto clear = analysis::export_participant({study.store()}, "P-1", {person, again}, folder);

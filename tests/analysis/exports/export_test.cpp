@@ -17,10 +17,9 @@ namespace {
 
 void fill(FakeStudy& study) {
   study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::confusing(0, 1)});
-  study.add(
-      {.participant = "P02", .enrolment = 2, .answers = [](const design::Presentation& shown) {
-         return shown.trial == 7 ? std::nullopt : std::optional(shown.stimulus.class_index);
-       }});
+  study.add({.participant = "P02", .enrolment = 2, .answers = [](const study::Presentation& shown) {
+               return shown.trial == 7 ? std::nullopt : std::optional(shown.stimulus.class_index);
+             }});
 }
 
 constexpr const char* kHeader =
@@ -39,7 +38,7 @@ constexpr const char* kQuestions = R"({"closing_questions": [
 }  // namespace
 
 TEST_CASE("Exported trials count up to the report") {
-  FakeStudy study(design::identification::comparison(), {.label = "bark, \"old\""});
+  FakeStudy study(study::identification::comparison(), {.label = "bark, \"old\""});
   fill(study);
   study.close_and_unblind();
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
@@ -75,7 +74,7 @@ TEST_CASE("Exported trials count up to the report") {
 }
 
 TEST_CASE("trials.csv has the published columns, exact times and numbers") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   fill(study);
   study.close_and_unblind();
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
@@ -104,7 +103,7 @@ TEST_CASE("trials.csv has the published columns, exact times and numbers") {
 }
 
 TEST_CASE("An exported trial is valid by the rule's part in clear, then by its sealed part too") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   study.add({.participant = "P01",
              .enrolment = 1,
              .answers = FakeStudy::always_right(),
@@ -126,7 +125,7 @@ TEST_CASE("An exported trial is valid by the rule's part in clear, then by its s
 }
 
 TEST_CASE("Before unblinding an export has no word of what was presented or answered") {
-  FakeStudy study(design::identification::comparison(), {.label = "petrified wood"});
+  FakeStudy study(study::identification::comparison(), {.label = "petrified wood"});
   fill(study);
   const std::filesystem::path out = study.folder() / "out";
   const auto files = analysis::export_csv(study.store(), std::nullopt, out);
@@ -161,7 +160,7 @@ TEST_CASE("Before unblinding an export has no word of what was presented or answ
 }
 
 TEST_CASE("participants.csv tells whose sessions count and that they are simulated") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   fill(study);
   study.add({.participant = "P03",
              .enrolment = 3,
@@ -184,7 +183,7 @@ TEST_CASE("participants.csv tells whose sessions count and that they are simulat
 }
 
 TEST_CASE("The JSON export holds the report and the same trials") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   fill(study);
   study.close_and_unblind();
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
@@ -207,13 +206,13 @@ TEST_CASE("The JSON export holds the report and the same trials") {
 }
 
 TEST_CASE("What participants said and what happened to them comes out with outcomes alone") {
-  FakeStudy study(design::identification::classification(),
+  FakeStudy study(study::identification::classification(),
                   {.simulated = false, .session = kQuestions});
   study.add(talkative("P01", 1, R"({"hard":7.0,"remarks":"=none","which":1})"));
   study.add(talkative("P02", 2, R"({"remarks":"it is Anna's"})"));
   study.store().note(1, std::chrono::milliseconds(20), "too-hot", "30 degrees");
   study.store().withdraw(2, std::chrono::milliseconds(30), "asked to");
-  const std::vector<store::PersonalRecord> consents{
+  const std::vector<record::PersonalRecord> consents{
       {.participant = "P01", .consent_version = "1", .contact = "somebody@example.org"},
       {.participant = "P01", .consent_version = "2"},
       {.participant = "P02", .consent_version = "2"},
@@ -289,7 +288,7 @@ TEST_CASE("What participants said and what happened to them comes out with outco
 }
 
 TEST_CASE("Exporting twice gives the same bytes and leaves other files alone") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   fill(study);
   study.close_and_unblind();
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
@@ -309,7 +308,7 @@ TEST_CASE("Exporting twice gives the same bytes and leaves other files alone") {
 }
 
 TEST_CASE("An export into a file instead of a folder is refused") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   const std::string complaint = complaint_of<FileError>(
       [&] { analysis::export_csv(study.store(), std::nullopt, study.database()); });
   CHECK(contains(complaint, study.database().string()));

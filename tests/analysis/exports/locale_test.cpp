@@ -54,7 +54,7 @@ void export_everything(FakeStudy& study, const fs::path& out) {
 }  // namespace
 
 TEST_CASE("Exports are the same bytes under a locale with a decimal comma") {
-  FakeStudy study(design::identification::comparison());
+  FakeStudy study(study::identification::comparison());
   for (int i = 1; i <= 3; ++i) {
     study.add({.participant = "P0" + std::to_string(i),
                .enrolment = i,

@@ -27,7 +27,7 @@ void fill(FakeStudy& study) {
 }  // namespace
 
 TEST_CASE("The table for a mixed model has the trials of the report and what came before them") {
-  FakeStudy study(design::identification::comparison(), {.trials = R"({"lead_in": 1})"});
+  FakeStudy study(study::identification::comparison(), {.trials = R"({"lead_in": 1})"});
   fill(study);
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   const analysis::identification::StudyReport report =
@@ -51,7 +51,7 @@ TEST_CASE("The table for a mixed model has the trials of the report and what cam
 }
 
 TEST_CASE("In the mixed model people differ in what is compared, and few images are fixed") {
-  FakeStudy pair(design::identification::comparison());
+  FakeStudy pair(study::identification::comparison());
   fill(pair);
   analysis::Outcomes two = analysis::load_outcomes(pair.store(), pair.key());
   CHECK(analysis::identification::mixed_model_formula(two) ==
@@ -61,7 +61,7 @@ TEST_CASE("In the mixed model people differ in what is compared, and few images 
   two.exemplars = {{"1", "2", "3", "4", "5"}, {"6", "7", "8", "9", "10"}};
   CHECK(analysis::identification::mixed_model_formula(two) ==
         "correct ~ method + period + (1 + method | participant) + (1 + method | image)");
-  FakeStudy single(design::identification::classification());
+  FakeStudy single(study::identification::classification());
   fill(single);
   const analysis::Outcomes one = analysis::load_outcomes(single.store(), single.key());
   CHECK(analysis::identification::mixed_model_formula(one) ==
@@ -70,7 +70,7 @@ TEST_CASE("In the mixed model people differ in what is compared, and few images 
 }
 
 TEST_CASE("The script of the mixed model holds all of its functions, and says what it leaves out") {
-  FakeStudy study(design::identification::comparison());
+  FakeStudy study(study::identification::comparison());
   fill(study);
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   const std::string script = analysis::identification::mixed_model_script(outcomes);

@@ -52,7 +52,7 @@ void check_round_trip(FakeStudy& study) {
 
 /// Answers that are sometimes wrong, in a way that depends on the participant.
 FakeAnswers imperfect(int participant) {
-  return [=](const design::Presentation& shown) -> std::optional<int> {
+  return [=](const study::Presentation& shown) -> std::optional<int> {
     if ((shown.trial + participant) % 7 == 0) return std::nullopt;
     if ((shown.trial * participant) % 3 == 0) return (shown.stimulus.class_index + 1) % 3;
     return shown.stimulus.class_index;
@@ -79,8 +79,7 @@ void fill(FakeStudy& study) {
 }  // namespace
 
 TEST_CASE("A classification study reports the same from its CSV files, to the last digit") {
-  FakeStudy study(design::identification::classification(),
-                  {.label = "bark, \"old\" (two, three)"});
+  FakeStudy study(study::identification::classification(), {.label = "bark, \"old\" (two, three)"});
   fill(study);
   study.store().exclude(1, milliseconds(900), "fell asleep, \"twice\"");
   study.close_and_unblind();
@@ -88,7 +87,7 @@ TEST_CASE("A classification study reports the same from its CSV files, to the la
 }
 
 TEST_CASE("A comparison of methods reports the same from its CSV files, to the last digit") {
-  FakeStudy study(design::identification::comparison());
+  FakeStudy study(study::identification::comparison());
   fill(study);
   study.store().withdraw(2, milliseconds(900), "asked to");
   study.close_and_unblind();
@@ -96,7 +95,7 @@ TEST_CASE("A comparison of methods reports the same from its CSV files, to the l
 }
 
 TEST_CASE("A study with lead-ins and catch trials reports the same from its CSV files") {
-  FakeStudy study(design::identification::classification(),
+  FakeStudy study(study::identification::classification(),
                   {.trials = R"({"lead_in": 1, "catch": 2})"});
   fill(study);
   study.close_and_unblind();
@@ -105,14 +104,14 @@ TEST_CASE("A study with lead-ins and catch trials reports the same from its CSV 
 }
 
 TEST_CASE("How a study was collected is the same from its CSV files, in words and numbers") {
-  FakeStudy study(design::identification::classification(), {.simulated = false});
+  FakeStudy study(study::identification::classification(), {.simulated = false});
   fill(study);
   FakeSession felt{.participant = "P07", .enrolment = 7, .answers = imperfect(7)};
-  felt.station = store::StationRecord{"Falcon",         "1.2, beta",     8.9,      false,
-                                      1000.0,           "SCHED_FIFO 80", "c0ffee", std::nullopt,
-                                      {1.0, 1.25, 0.8}, {1.0, 1.0, 1.5}};
-  felt.servo = store::ServoHealth{999.75, 1.5, 40.25, 80.125, 1e3 / 3.0, 2, 17};
-  felt.before_trials = [](store::SessionRecorder& recorder) {
+  felt.station = record::StationRecord{"Falcon",         "1.2, beta",     8.9,      false,
+                                       1000.0,           "SCHED_FIFO 80", "c0ffee", std::nullopt,
+                                       {1.0, 1.25, 0.8}, {1.0, 1.0, 1.5}};
+  felt.servo = record::ServoHealth{999.75, 1.5, 40.25, 80.125, 1e3 / 3.0, 2, 17};
+  felt.before_trials = [](record::SessionRecorder& recorder) {
     recorder.practised(milliseconds(10),
                        {.round = 1, .presentation = 1, .position = 0, .correct = false});
     recorder.practised(milliseconds(20),
@@ -140,7 +139,7 @@ TEST_CASE("How a study was collected is the same from its CSV files, in words an
 }
 
 TEST_CASE("What participants said reports the same from its CSV files") {
-  FakeStudy study(design::identification::classification(), {.session = R"({"closing_questions": [
+  FakeStudy study(study::identification::classification(), {.session = R"({"closing_questions": [
     {"id": "hard", "kind": "number", "text": {"en": "How hard was it?"}},
     {"id": "which", "kind": "choice", "text": {"en": "Which was best?"},
      "options": [{"en": "rough"}, {"en": "smooth"}]}]})"});
@@ -160,7 +159,7 @@ TEST_CASE("What participants said reports the same from its CSV files") {
 }
 
 TEST_CASE("An interim look reports the same from its CSV files") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   fill(study);
   study.store().unblind(milliseconds(1000), "safety", true);
   study.add({.participant = "P07", .enrolment = 7, .answers = imperfect(7)});
@@ -168,7 +167,7 @@ TEST_CASE("An interim look reports the same from its CSV files") {
 }
 
 TEST_CASE("Participants who are no simulation are not stamped, and report the same") {
-  FakeStudy study(design::identification::classification(), {.simulated = false});
+  FakeStudy study(study::identification::classification(), {.simulated = false});
   fill(study);
   study.close_and_unblind();
   check_round_trip(study);

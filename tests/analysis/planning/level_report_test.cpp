@@ -1,6 +1,6 @@
 #include "analysis/planning/level_report.hpp"
 
-#include "protocols/design/study.hpp"
+#include "study/study.hpp"
 #include "support/catch.hpp"
 
 #include <string>
@@ -26,7 +26,7 @@ double right_by_level(const std::vector<double>& levels_db, double rove_db) {
     levels.levels.push_back(plane(levels_db[i]));
   }
   levels.blank = plane(0.0);
-  const design::Study study = design::parse_study(
+  const study::Study study = study::parse_study(
       R"({"study":"s","protocol":"classification","methods":[{"name":"adaptive"}],"classes":[)" +
           classes + R"(],"trials":{"rove_db":)" + std::to_string(rove_db) + "}}",
       ".", "s.json");

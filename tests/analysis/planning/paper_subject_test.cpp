@@ -1,7 +1,7 @@
 /// Checks what docs/planning.md, "Published accuracies", says about config/subjects/paper.json.
 #include "analysis/planning/answer_model.hpp"
 #include "analysis/planning/fit_evidence.hpp"
-#include "protocols/design/prepare.hpp"
+#include "study/prepare.hpp"
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
@@ -14,9 +14,9 @@ TEST_CASE(
     "the paper's subject nearly has the paper's accuracies, and so has a very different subject") {
   const TempFolder folder;
   SeededEntropy entropy(1);
-  const design::StudyKey key =
-      design::make_study_key(design::load_study(kConfig / "classification.json"), entropy, true);
-  design::prepare_pack(key, folder.path() / "pack");
+  const study::StudyKey key =
+      study::make_study_key(study::load_study(kConfig / "classification.json"), entropy, true);
+  study::prepare_pack(key, folder.path() / "pack");
   const simulation::SubjectModel paper =
       simulation::load_subject_model(kConfig / "subjects/paper.json");
   simulation::SubjectModel other = paper;

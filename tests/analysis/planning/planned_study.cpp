@@ -47,8 +47,8 @@ planning::FitCounts simulated_counts(const PlannedStudy& planned,
   counts.stimuli = planning::stimuli_of(planned.study.key());
   for (int number = 1; number <= participants; ++number) {
     const planning::PictureLayout layout =
-        design::make_schedule(planned.study.key().study,
-                              planned.study.key().draw_of(number, design::Draws::rehearsal))
+        study::make_schedule(planned.study.key().study,
+                             planned.study.key().draw_of(number, study::Draws::rehearsal))
             .layout;
     planning::CountedPerson person = answers_of(planned, subject, number, repeats, layout, seed);
     const auto known = std::ranges::find(counts.layouts, layout);

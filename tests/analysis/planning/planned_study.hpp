@@ -29,7 +29,7 @@ struct PlannedStudy {
         knowledge(simulation::learn_by_feeling(fields, planned_subject(), 3.3, 1, 2)),
         bank(fields, study.key().study, planned_subject(),
              {.explorations = explorations, .seed = 1, .jobs = 2}) {
-    for (const design::StudyClass& one : study.key().study.classes) labels.push_back(one.label);
+    for (const study::StudyClass& one : study.key().study.classes) labels.push_back(one.label);
   }
 
   [[nodiscard]] planning::AnswerModel model(int directions = 4, int jobs = 2) const {

@@ -3,10 +3,10 @@
 #include "analysis/planning/rehearsed_tiny_study.hpp"
 #include "core/errors.hpp"
 #include "protocols/identification/analysis/report.hpp"
-#include "protocols/identification/design/identification.hpp"
+#include "protocols/identification/study/identification.hpp"
 #include "protocols/session/commitment.hpp"
 #include "protocols/simulation/simulation.hpp"
-#include "protocols/store/study_store.hpp"
+#include "record/study_store.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ using namespace std::chrono_literals;
 /// Slow reference: outcomes of the same participants through sessions, events and a database.
 analysis::Outcomes simulated_and_loaded(TinyStudy& tiny, const simulation::SubjectModel& subject,
                                         int participants, std::uint64_t seed) {
-  store::StudyStore store = store::StudyStore::create(
+  record::StudyStore store = record::StudyStore::create(
       tiny.next_database(), session::commitment_of(tiny.key(), tiny.pack(), true, false), 0ns,
       tiny.key().signer());
   simulation::simulate_study(tiny.key(), tiny.pack(), subject, {participants, seed, 2}, store);
@@ -204,8 +204,8 @@ class RememberedFeelings final : public planning::Feelings {
   RememberedFeelings(const RehearsedTinyStudy& study, int participants, std::uint64_t seed)
       : knowledge_(study.servo.knowledge(seed)) {
     for (int number = 1; number <= participants; ++number) {
-      const design::Schedule schedule = design::make_schedule(
-          study.tiny.key().study, study.tiny.key().draw_of(number, design::Draws::rehearsal));
+      const study::Schedule schedule = study::make_schedule(
+          study.tiny.key().study, study.tiny.key().draw_of(number, study::Draws::rehearsal));
       for (std::size_t i = 0; i < schedule.presentations.size(); ++i) {
         const planning::FeltTrial trial{seed, number, i + 1, 0};
         felt_[{number, i + 1}] = study.servo.felt(schedule.presentations[i].stimulus, trial);
@@ -216,7 +216,7 @@ class RememberedFeelings final : public planning::Feelings {
       std::uint64_t) const override {
     return knowledge_;
   }
-  [[nodiscard]] engine::FeltFeatures felt(const design::StimulusIndex&,
+  [[nodiscard]] engine::FeltFeatures felt(const study::StimulusIndex&,
                                           const planning::FeltTrial& trial) const override {
     return felt_.at({trial.participant, trial.nth});
   }
@@ -387,8 +387,8 @@ TEST_CASE("a study whose participants could never answer is refused") {
 }
 
 TEST_CASE("the two methods of a primary test must be named if there are three") {
-  design::Study study;
-  study.protocol = &design::identification::comparison();
+  study::Study study;
+  study.protocol = &study::identification::comparison();
   for (const char* label : {"adaptive", "edge", "luminance"}) {
     study.methods.emplace_back();
     study.methods.back().label = label;
@@ -402,7 +402,7 @@ TEST_CASE("the two methods of a primary test must be named if there are three") 
       planning::primary_test_of(study, planning::MethodLabels{"luminance", "adaptive"});
   CHECK(test.first == 2);
   CHECK(test.second == 0);
-  study.protocol = &design::identification::classification();
+  study.protocol = &study::identification::classification();
   CHECK_THROWS_AS(planning::primary_test_of(study, planning::MethodLabels{"edge", "adaptive"}),
                   UsageError);
 }

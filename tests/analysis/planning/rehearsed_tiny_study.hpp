@@ -37,7 +37,7 @@ namespace touchtrial {
 /// slow reference of BankedFeelings. Refers to its arguments, which must outlive it.
 class ServoFeelings final : public planning::Feelings {
  public:
-  ServoFeelings(const simulation::LabelledFields& fields, const design::Study& study,
+  ServoFeelings(const simulation::LabelledFields& fields, const study::Study& study,
                 const simulation::SubjectModel& subject)
       : fields_(fields), study_(study), subject_(subject) {}
 
@@ -45,7 +45,7 @@ class ServoFeelings final : public planning::Feelings {
       std::uint64_t study_seed) const override {
     return simulation::learn(fields_, study_, subject_, study_seed, 1);
   }
-  [[nodiscard]] engine::FeltFeatures felt(const design::StimulusIndex& stimulus,
+  [[nodiscard]] engine::FeltFeatures felt(const study::StimulusIndex& stimulus,
                                           const planning::FeltTrial& trial) const override {
     const auto field =
         std::ranges::find(fields_.all(), stimulus, &simulation::LabelledField::stimulus);
@@ -55,7 +55,7 @@ class ServoFeelings final : public planning::Feelings {
 
  private:
   const simulation::LabelledFields& fields_;
-  const design::Study& study_;
+  const study::Study& study_;
   const simulation::SubjectModel& subject_;
 };
 

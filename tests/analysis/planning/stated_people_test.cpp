@@ -21,7 +21,7 @@ planning::PrimaryTest accuracy_test() {
 
 planning::PrimaryTest difference_test() {
   planning::PrimaryTest test;
-  test.estimand = design::Estimand::difference;
+  test.estimand = study::Estimand::difference;
   test.sides = analysis::Sides::two;
   return test;
 }
@@ -103,10 +103,10 @@ TEST_CASE("power of the t test of stated people is that of its own formula") {
   const planning::PowerRow& row = report.rows.front();
 
   // A person's share has the spread of people and that of their own trials.
-  const auto trials = static_cast<double>(
-      design::make_schedule(study.tiny.key().study,
-                            study.tiny.key().draw_of(1, design::Draws::rehearsal))
-          .presentations.size());
+  const auto trials =
+      static_cast<double>(study::make_schedule(study.tiny.key().study,
+                                               study.tiny.key().draw_of(1, study::Draws::rehearsal))
+                              .presentations.size());
   const double mean = chance + 0.08;
   const double variance = 0.01 + (mean * (1.0 - mean) - 0.01) / trials;
   const double shift = 0.08 / std::sqrt(variance / 12.0);

@@ -3,7 +3,7 @@
 
 #include "core/errors.hpp"
 #include "protocols/procedures/posterior.hpp"
-#include "protocols/threshold/design/threshold.hpp"
+#include "protocols/threshold/study/threshold.hpp"
 #include "protocols/threshold/threshold_study.hpp"
 #include "support/catch.hpp"
 
@@ -23,8 +23,8 @@ const std::string kOneStandard =
        "levels": {"from": -30, "to": -6, "step": 2}, "standards": [-12])";
 
 /// One class, so that tracks are few.
-design::Study walked_study(const std::string& section) {
-  design::Study study = TinyStudy(threshold_options(kTinyDetection)).key().study;
+study::Study walked_study(const std::string& section) {
+  study::Study study = TinyStudy(threshold_options(kTinyDetection)).key().study;
   study.classes.resize(1);
   const TinyStudy other(threshold_options(section));
   study.options = other.key().study.options;
@@ -34,7 +34,7 @@ design::Study walked_study(const std::string& section) {
 }  // namespace
 
 TEST_CASE("a walk has one level more than answers until the track ends") {
-  const design::Study study = walked_study(kTinyDetection);
+  const study::Study study = walked_study(kTinyDetection);
   CHECK(walked(study, 1, {}).levels.size() == 1);
   CHECK(walked(study, 1, {true, false, true}).levels.size() == 4);
   const TrackWalk whole = walked(study, 1, std::vector<bool>(8, true));
@@ -45,10 +45,10 @@ TEST_CASE("a walk has one level more than answers until the track ends") {
 }
 
 TEST_CASE("a walk believes what a posterior of its levels and answers believes") {
-  const design::Study study = walked_study(kTinyDetection);
+  const study::Study study = walked_study(kTinyDetection);
   const std::vector<bool> answers = {true, true, false, true, false, false, true};
   const TrackWalk walk = walked(study, 1, answers);
-  const auto& settings = design::threshold::options_of(study).track;
+  const auto& settings = study::threshold::options_of(study).track;
   procedures::Posterior posterior(settings.levels, settings.grid);
   for (std::size_t i = 0; i <= answers.size(); ++i) {
     INFO(i);
@@ -62,9 +62,9 @@ TEST_CASE("a walk believes what a posterior of its levels and answers believes")
 }
 
 TEST_CASE("a walk names its track, and there is no other") {
-  design::Study study = walked_study(kOneStandard);
+  study::Study study = walked_study(kOneStandard);
   auto options =
-      std::make_shared<design::threshold::ThresholdOptions>(design::threshold::options_of(study));
+      std::make_shared<study::threshold::ThresholdOptions>(study::threshold::options_of(study));
   options->standards = {-12.0, -9.0};
   options->tracks_each = 2;
   study.options = options;
@@ -76,7 +76,7 @@ TEST_CASE("a walk names its track, and there is no other") {
 }
 
 TEST_CASE("constant stimuli are walked in the same order whenever they are asked for") {
-  const design::Study study = walked_study(
+  const study::Study study = walked_study(
       R"("task": "detection", "procedure": "constant-stimuli", "trials": 20,
          "levels": {"from": -20, "to": -2, "step": 2})");
   const std::vector<bool> right(20, true);
@@ -85,7 +85,7 @@ TEST_CASE("constant stimuli are walked in the same order whenever they are asked
 }
 
 TEST_CASE("same or different has levels and no beliefs") {
-  const design::Study study = walked_study(
+  const study::Study study = walked_study(
       R"("task": "discrimination", "question": "same-different", "trials": 4,
          "procedure": "constant-stimuli", "levels": [-12, -6], "standards": [-6])");
   const TrackWalk walk = walked(study, 1, {true, false});
@@ -115,7 +115,7 @@ TEST_CASE("the document of a walk has grid, levels and beliefs") {
 }
 
 TEST_CASE("a study of another protocol has no procedure to walk") {
-  const design::Study study = TinyStudy().key().study;
+  const study::Study study = TinyStudy().key().study;
   CHECK_THROWS_WITH(walked(study, 1, {}),
                     holds_text("has the protocol classification") &&
                         holds_text("needs a study of the protocol threshold"));

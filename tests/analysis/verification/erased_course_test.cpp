@@ -2,9 +2,9 @@
 #include "analysis/verification/session_course.hpp"
 #include "core/errors.hpp"
 #include "core/random.hpp"
-#include "protocols/design/study_key.hpp"
 #include "protocols/session/session.hpp"
 #include "protocols/session/tiny_study.hpp"
+#include "study/study_key.hpp"
 #include "support/as_recorded.hpp"
 #include "support/catch.hpp"
 
@@ -48,12 +48,12 @@ const std::vector<std::pair<std::string, TinyStudyOptions>> kStudies = {
 /// A session that goes through whatever is drawn, as its program records it.
 class Ordeal {
  public:
-  Ordeal(const design::StudyKey& key, std::uint64_t seed)
+  Ordeal(const study::StudyKey& key, std::uint64_t seed)
       : key_(key),
-        draw_(key.draw_of(1, design::Draws::rehearsal)),
+        draw_(key.draw_of(1, study::Draws::rehearsal)),
         random_(seed, "ordeal"),
         session_(fresh()) {
-    store::SessionOpening opening;
+    record::SessionOpening opening;
     opening.participant = "P001";
     opening.enrolment = 1;
     session_->open(now(), opening, "{}");
@@ -66,24 +66,24 @@ class Ordeal {
   /// \throws VerificationError at the first event that cannot follow
   void check(bool opened) const {
     analysis::SessionCourse course(key_.study, draw_, opened);
-    const std::vector<store::Event> whole = as_recorded(events_.events, SecretKey{});
+    const std::vector<record::Event> whole = as_recorded(events_.events, SecretKey{});
     for (std::size_t i = 0; i < whole.size(); ++i) {
       course.follow(opened ? whole[i] : events_.events[i]);
     }
   }
-  [[nodiscard]] const std::vector<store::Event>& events() const { return events_.events; }
+  [[nodiscard]] const std::vector<record::Event>& events() const { return events_.events; }
 
  private:
   session::Session fresh() {
     return session::Session(
-        design::make_schedule(key_.study, draw_), key_.study.trials,
-        store::SessionRecorder(1, SecretKey{}, events_),
+        study::make_schedule(key_.study, draw_), key_.study.trials,
+        record::SessionRecorder(1, SecretKey{}, events_),
         {.draw =
              [this](int block, int before, int first) {
-               return design::restarted_block(key_.study, draw_, block, before, first);
+               return study::restarted_block(key_.study, draw_, block, before, first);
              },
-         .secret = [](const std::vector<design::Presentation>&) { return std::string("[]"); }},
-        design::adaptive_order(key_.study, draw_));
+         .secret = [](const std::vector<study::Presentation>&) { return std::string("[]"); }},
+        study::adaptive_order(key_.study, draw_));
   }
   seconds now() { return seconds(++clock_); }
 
@@ -93,7 +93,7 @@ class Ordeal {
     if (happens(10)) return be_killed();
     if (happens(10)) return session_->interrupt(now(), "comfort stop");
     if (happens(10)) return pause_while_exploring();
-    const bool may_time_out = !design::adaptive_order(key_.study, draw_);
+    const bool may_time_out = !study::adaptive_order(key_.study, draw_);
     if (may_time_out && happens(8)) {
       session_->time_out(now());
       if (!session_->in_presentation()) return;
@@ -114,7 +114,7 @@ class Ordeal {
     session_->resume(now());
   }
   void pause_while_exploring() {
-    session_->interrupt(now(), store::kPauseReason);
+    session_->interrupt(now(), record::kPauseReason);
     rest();
   }
   void be_killed() {
@@ -123,10 +123,10 @@ class Ordeal {
     session_->take_up(now(), {.after = "end", .away_s = 9.0});
   }
 
-  const design::StudyKey& key_;
-  design::ScheduleDraw draw_;
+  const study::StudyKey& key_;
+  study::ScheduleDraw draw_;
   RandomStream random_;
-  store::BufferedEvents events_;
+  record::BufferedEvents events_;
   int clock_ = 0;
   std::optional<session::Session> session_;
 };
@@ -140,7 +140,7 @@ TEST_CASE("a session's record holds whatever befell it, opened or erased") {
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
       INFO("seed " << seed);
       const Ordeal ordeal(study.key(), seed);
-      CHECK(ordeal.events().back().kind == store::EventKind::closed);
+      CHECK(ordeal.events().back().kind == record::EventKind::closed);
       CHECK_NOTHROW(ordeal.check(/*opened=*/true));
       CHECK_NOTHROW(ordeal.check(/*opened=*/false));
     }

@@ -1,5 +1,5 @@
 #include "analysis/fake_study.hpp"
-#include "analysis/outcomes.hpp"
+#include "analysis/outcomes/outcomes.hpp"
 #include "analysis/text_matching.hpp"
 #include "analysis/verification/verification.hpp"
 #include "support/catch.hpp"
@@ -25,29 +25,29 @@ class RestartedSession {
   explicit RestartedSession(FakeStudy& study)
       : key_(study.key()),
         recorder_(1, own_, events_),
-        begun_(design::make_schedule(key_.study, key_.draw_of(1, design::Draws::rehearsal))) {}
+        begun_(study::make_schedule(key_.study, key_.draw_of(1, study::Draws::rehearsal))) {}
 
   /// \param restarts_before  0 for the order that the design gives
   void record(FakeStudy& study, int restarts_before, bool old_number_again = false) {
-    store::SessionOpening opening;
+    record::SessionOpening opening;
     opening.participant = "P01";
     opening.enrolment = 1;
     opening.study_id = key_.study_id;
-    opening.seal = design::study_seal(key_);
+    opening.seal = study::study_seal(key_);
     opening.device = "simulated";
     opening.simulated = true;
-    recorder_.opened(milliseconds(0), opening, design::schedule_to_json(begun_, key_));
+    recorder_.opened(milliseconds(0), opening, study::schedule_to_json(begun_, key_));
     answer(1);
     recorder_.presented(at_ += seconds(1), 2, 0);
     recorder_.interrupted(at_, 2, "comfort stop");
     const int first = static_cast<int>(begun_.presentations.size()) + 1;
-    const auto again = design::restarted_block(
-        key_.study, key_.draw_of(1, design::Draws::rehearsal), 0, restarts_before, first);
-    recorder_.block_restarted(at_, 0, first, design::block_to_json(again, key_));
-    for (const design::Presentation& one : again) answer(one.trial);
+    const auto again = study::restarted_block(key_.study, key_.draw_of(1, study::Draws::rehearsal),
+                                              0, restarts_before, first);
+    recorder_.block_restarted(at_, 0, first, study::block_to_json(again, key_));
+    for (const study::Presentation& one : again) answer(one.trial);
     if (old_number_again) answer(3);
     recorder_.closed(at_, true);
-    study.store().add_session(events_, store::wrap_participant_key(key_.investigator_box, 1, own_),
+    study.store().add_session(events_, record::wrap_participant_key(key_.investigator_box, 1, own_),
                               milliseconds(1));
   }
 
@@ -58,18 +58,18 @@ class RestartedSession {
     recorder_.answered(at_, {trial, 0, std::nullopt, std::nullopt});
   }
 
-  const design::StudyKey& key_;
+  const study::StudyKey& key_;
   SecretKey own_ = sha256(bytes_of("participant"));
-  store::BufferedEvents events_;
-  store::SessionRecorder recorder_;
-  design::Schedule begun_;
+  record::BufferedEvents events_;
+  record::SessionRecorder recorder_;
+  study::Schedule begun_;
   milliseconds at_{0};
 };
 
 }  // namespace
 
 TEST_CASE("verify_study compares a restarted block with the order that the design gives it") {
-  FakeStudy study(design::identification::classification(), kRestarting);
+  FakeStudy study(study::identification::classification(), kRestarting);
   RestartedSession(study).record(study, 0);
   const analysis::Verification verification =
       analysis::verify_study(study.store(), &study.key(), nullptr);
@@ -79,7 +79,7 @@ TEST_CASE("verify_study compares a restarted block with the order that the desig
 }
 
 TEST_CASE("verify_study finds another order of a restarted block") {
-  FakeStudy study(design::identification::classification(), kRestarting);
+  FakeStudy study(study::identification::classification(), kRestarting);
   RestartedSession(study).record(study, 1);
   const analysis::Verification verification =
       analysis::verify_study(study.store(), &study.key(), nullptr);
@@ -87,7 +87,7 @@ TEST_CASE("verify_study finds another order of a restarted block") {
 }
 
 TEST_CASE("verify_study finds an old number that came after its block was restarted") {
-  FakeStudy study(design::identification::classification(), kRestarting);
+  FakeStudy study(study::identification::classification(), kRestarting);
   RestartedSession(study).record(study, 0, true);
   const analysis::Verification verification =
       analysis::verify_study(study.store(), &study.key(), nullptr);
@@ -96,7 +96,7 @@ TEST_CASE("verify_study finds an old number that came after its block was restar
 }
 
 TEST_CASE("outcomes hold a restarted block's trials and count no voided one") {
-  FakeStudy study(design::identification::classification(), kRestarting);
+  FakeStudy study(study::identification::classification(), kRestarting);
   RestartedSession(study).record(study, 0);
   study.close_and_unblind();
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
@@ -104,12 +104,12 @@ TEST_CASE("outcomes hold a restarted block's trials and count no voided one") {
       std::count_if(outcomes.trials.begin(), outcomes.trials.end(),
                     [](const analysis::TrialOutcome& trial) { return trial.counted; });
   CHECK(counted == study.store().commitment().scored_trials);
-  CHECK(outcomes.trials.front().row.state == store::TrialState::voided);
+  CHECK(outcomes.trials.front().row.state == record::TrialState::voided);
   CHECK_FALSE(outcomes.trials.front().counted);
 }
 
 TEST_CASE("a participant who was replaced enters no outcomes, but stays in the list") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});
   study.store().exclude(1, milliseconds(2), "did not follow the instructions");
   study.store().replace(1, "P02", milliseconds(3), "place is wanted");

@@ -22,19 +22,19 @@ class ToldSession {
   explicit ToldSession(FakeStudy& study)
       : study_(study),
         recorder_(1, own_, events_),
-        schedule_(design::make_schedule(study.key().study,
-                                        study.key().draw_of(1, design::Draws::rehearsal))) {}
+        schedule_(study::make_schedule(study.key().study,
+                                       study.key().draw_of(1, study::Draws::rehearsal))) {}
 
   /// Opens with a schedule that may have been tampered with.
-  ToldSession& open(const design::Schedule& schedule) {
-    store::SessionOpening opening;
+  ToldSession& open(const study::Schedule& schedule) {
+    record::SessionOpening opening;
     opening.participant = "P01";
     opening.enrolment = 1;
     opening.study_id = study_.key().study_id;
-    opening.seal = design::study_seal(study_.key());
+    opening.seal = study::study_seal(study_.key());
     opening.device = "simulated";
     opening.simulated = true;
-    recorder_.opened(at_, opening, design::schedule_to_json(schedule, study_.key()));
+    recorder_.opened(at_, opening, study::schedule_to_json(schedule, study_.key()));
     return *this;
   }
   ToldSession& open() { return open(schedule_); }
@@ -67,10 +67,10 @@ class ToldSession {
     return *this;
   }
   ToldSession& restart_block() {
-    const design::StudyKey& key = study_.key();
-    const auto again = design::restarted_block(key.study, key.draw_of(1, design::Draws::rehearsal),
-                                               0, 0, count() + 1);
-    recorder_.block_restarted(later(), 0, count() + 1, design::block_to_json(again, key));
+    const study::StudyKey& key = study_.key();
+    const auto again = study::restarted_block(key.study, key.draw_of(1, study::Draws::rehearsal), 0,
+                                              0, count() + 1);
+    recorder_.block_restarted(later(), 0, count() + 1, study::block_to_json(again, key));
     return *this;
   }
 
@@ -79,7 +79,7 @@ class ToldSession {
   analysis::Check verified() {
     recorder_.closed(later(), true);
     study_.store().add_session(
-        events_, store::wrap_participant_key(study_.key().investigator_box, 1, own_), at_);
+        events_, record::wrap_participant_key(study_.key().investigator_box, 1, own_), at_);
     const analysis::Verification verification =
         analysis::verify_study(study_.store(), &study_.key(), nullptr);
     analysis::Check schedule;
@@ -90,13 +90,13 @@ class ToldSession {
     }
     return schedule;
   }
-  [[nodiscard]] design::Schedule schedule() const { return schedule_; }
+  [[nodiscard]] study::Schedule schedule() const { return schedule_; }
   [[nodiscard]] int count() const { return static_cast<int>(schedule_.presentations.size()); }
   [[nodiscard]] int catch_trial() const {
     const auto& all = schedule_.presentations;
     return std::find_if(all.begin(), all.end(),
-                        [](const design::Presentation& one) {
-                          return one.kind == design::PresentationKind::catch_trial;
+                        [](const study::Presentation& one) {
+                          return one.kind == study::PresentationKind::catch_trial;
                         })
         ->trial;
   }
@@ -106,9 +106,9 @@ class ToldSession {
 
   FakeStudy& study_;
   SecretKey own_ = sha256(bytes_of("participant"));
-  store::BufferedEvents events_;
-  store::SessionRecorder recorder_;
-  design::Schedule schedule_;
+  record::BufferedEvents events_;
+  record::SessionRecorder recorder_;
+  study::Schedule schedule_;
   milliseconds at_{0};
 };
 
@@ -124,7 +124,7 @@ struct Told {
 
 void check_told(const std::vector<Told>& all) {
   for (std::size_t i = 0; i < all.size(); ++i) {
-    FakeStudy study(design::identification::classification(), all[i].options);
+    FakeStudy study(study::identification::classification(), all[i].options);
     ToldSession session(study);
     all[i].tell(session);
     const analysis::Check check = session.verified();
@@ -138,16 +138,16 @@ void check_told(const std::vector<Told>& all) {
 }  // namespace
 
 TEST_CASE("verify_study accepts catch trials in their places, and nothing else there") {
-  FakeStudy study(design::identification::classification(), kCatching);
+  FakeStudy study(study::identification::classification(), kCatching);
   ToldSession whole(study);
   const analysis::Check check = whole.open().show_from(1).verified();
   CHECK(check.state == analysis::CheckState::passed);
   CHECK(contains(check.detail, "14 presentations where they were due"));
   const int trial = whole.catch_trial();
-  design::Schedule tampered = whole.schedule();
-  for (design::Presentation& one : tampered.presentations) {
+  study::Schedule tampered = whole.schedule();
+  for (study::Presentation& one : tampered.presentations) {
     if (one.trial != trial) continue;
-    one.kind = design::PresentationKind::scored;
+    one.kind = study::PresentationKind::scored;
     one.stimulus = tampered.presentations.front().stimulus;
   }
   check_told({{kCatching, [&](ToldSession& s) { s.open().show_from(1, trial); },

@@ -1,7 +1,7 @@
 #include "analysis/verification/verification.hpp"
 
 #include "analysis/fake_study.hpp"
-#include "analysis/quality.hpp"
+#include "analysis/outcomes/quality.hpp"
 #include "analysis/text_matching.hpp"
 #include "analysis/verification/study_files.hpp"
 #include "attacks/forger.hpp"
@@ -39,9 +39,9 @@ void flip_last_byte(const std::filesystem::path& path) {
 TEST_CASE("a clock that went back is noted with its place, and is no fault") {
   using namespace std::chrono_literals;
   for (const bool simulated : {false, true}) {
-    FakeStudy study(design::identification::comparison(), {.simulated = simulated});
+    FakeStudy study(study::identification::comparison(), {.simulated = simulated});
     study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});
-    const store::Event last = study.store().events(0).back();
+    const record::Event last = study.store().events(0).back();
     study.store().note(1, last.at + 2h, "", "before the clock is set");
     study.store().note(1, last.at + 1h, "", "after it");
     study.store().note(1, last.at + 1h - 1s, "", "by another program at once");
@@ -61,7 +61,7 @@ TEST_CASE("a clock that went back is noted with its place, and is no fault") {
 }
 
 TEST_CASE("verify_study passes every check of an untouched study") {
-  FakeStudy study(design::identification::comparison(), {.with_pack = true});
+  FakeStudy study(study::identification::comparison(), {.with_pack = true});
   study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});
   study.add({.participant = "P02", .enrolment = 2, .answers = FakeStudy::confusing(0, 1)});
   const engine::Pack pack(study.pack_folder());
@@ -81,7 +81,7 @@ TEST_CASE("verify_study passes every check of an untouched study") {
 }
 
 TEST_CASE("verify_study without key and pack says what it did not check") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
   const analysis::Verification verification =
       analysis::verify_study(study.store(), nullptr, nullptr);
@@ -94,10 +94,10 @@ TEST_CASE("verify_study without key and pack says what it did not check") {
 }
 
 TEST_CASE("verify_study finds a key of another study") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
   SeededEntropy entropy(99);
-  const design::StudyKey foreign = design::make_study_key(study.key().study, entropy, true);
+  const study::StudyKey foreign = study::make_study_key(study.key().study, entropy, true);
   const analysis::Verification verification =
       analysis::verify_study(study.store(), &foreign, nullptr);
   CHECK(check_of(verification, "chain").state == analysis::CheckState::passed);
@@ -110,11 +110,11 @@ TEST_CASE("verify_study finds a key of another study") {
 }
 
 TEST_CASE("verify_study finds a key whose study was changed after the first trial") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
-  design::Study other = study.key().study;
+  study::Study other = study.key().study;
   other.classes.front().label = "bark, renamed";
-  const design::StudyKey changed = design::rekeyed(study.key(), other);
+  const study::StudyKey changed = study::rekeyed(study.key(), other);
   const analysis::Verification verification =
       analysis::verify_study(study.store(), &changed, nullptr);
   CHECK(check_of(verification, "seal").state == analysis::CheckState::failed);
@@ -123,9 +123,9 @@ TEST_CASE("verify_study finds a key whose study was changed after the first tria
 }
 
 TEST_CASE("verify_study finds a session whose schedule its enrolment number does not get") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
-  design::StudyKey other = study.key();
+  study::StudyKey other = study.key();
   other.stations.front().secret[0] ^= 1U;
   const analysis::Verification verification =
       analysis::verify_study(study.store(), &other, nullptr);
@@ -135,7 +135,7 @@ TEST_CASE("verify_study finds a session whose schedule its enrolment number does
 }
 
 TEST_CASE("verify_study names the first broken link") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});
   study.add({.participant = "P02", .enrolment = 2, .answers = FakeStudy::always_right()});
   {
@@ -154,7 +154,7 @@ TEST_CASE("verify_study names the first broken link") {
 }
 
 TEST_CASE("verify_study finds a field that is not what was prepared") {
-  FakeStudy study(design::identification::classification(), {.with_pack = true});
+  FakeStudy study(study::identification::classification(), {.with_pack = true});
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
   const std::string code = study.key().stimuli[1].code;
   flip_last_byte(study.pack_folder() / (code + ".field"));
@@ -165,7 +165,7 @@ TEST_CASE("verify_study finds a field that is not what was prepared") {
 }
 
 TEST_CASE("verify_study finds a pack that was exchanged as a whole") {
-  FakeStudy study(design::identification::classification(), {.with_pack = true});
+  FakeStudy study(study::identification::classification(), {.with_pack = true});
   engine::PackManifest manifest = engine::Pack(study.pack_folder()).manifest();
   manifest.entries.front().gains.normal_n *= 2.0;
   engine::write_manifest(study.pack_folder(), manifest);
@@ -175,7 +175,7 @@ TEST_CASE("verify_study finds a pack that was exchanged as a whole") {
 }
 
 TEST_CASE("A verification says the same in JSON and in text") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   const analysis::Verification verification =
       analysis::verify_study(study.store(), &study.key(), nullptr);
   const auto json = nlohmann::json::parse(analysis::verification_json(verification));
@@ -195,8 +195,8 @@ TEST_CASE("A verification says the same in JSON and in text") {
 }
 
 TEST_CASE("verify_study finds a head that is no longer on the file's chain") {
-  FakeStudy study(design::identification::classification());
-  const store::ChainHead before = study.store().file_head();
+  FakeStudy study(study::identification::classification());
+  const record::ChainHead before = study.store().file_head();
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
   const analysis::Verification kept =
       analysis::verify_study(study.store(), nullptr, nullptr, to_hex(before.hash).substr(0, 16));
@@ -208,11 +208,11 @@ TEST_CASE("verify_study finds a head that is no longer on the file's chain") {
 }
 
 TEST_CASE("verify_study with the key finds a chain that was rebuilt and signed without it") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
   attacks::Forgery forged(study.database());
-  attacks::set(forged.first(1, store::EventKind::answered), "forged", "1");
-  const Signer station = design::station_key(study.key(), design::kOnlyStation).signer();
+  attacks::set(forged.first(1, record::EventKind::answered), "forged", "1");
+  const Signer station = study::station_key(study.key(), study::kOnlyStation).signer();
   forged.relink(&station);
   forged.write();
   CHECK(analysis::verify_study(study.store(), nullptr, nullptr).holds());
@@ -224,15 +224,15 @@ TEST_CASE("verify_study with the key finds a chain that was rebuilt and signed w
 }
 
 TEST_CASE("verify_files makes a damaged key and a missing pack findings") {
-  FakeStudy study(design::identification::classification(), {.with_pack = true});
+  FakeStudy study(study::identification::classification(), {.with_pack = true});
   const auto key_path = study.folder() / "study.db.key";
   analysis::StudyFiles files{
       .database = study.database(), .key = key_path, .key_named = false, .pack = {}};
   CHECK(check_of(analysis::verify_files(files, {}), "key").state ==
         analysis::CheckState::not_checked);
-  design::StudyKey key = study.key();
+  study::StudyKey key = study.key();
   key.pack_folder = study.folder() / "gone.pack";
-  design::save_study_key(key_path, key);
+  study::save_study_key(key_path, key);
   const analysis::Verification absent = analysis::verify_files(files, {});
   CHECK(check_of(absent, "key").state == analysis::CheckState::passed);
   CHECK(check_of(absent, "pack").state == analysis::CheckState::not_checked);
@@ -247,12 +247,12 @@ TEST_CASE("verify_files makes a damaged key and a missing pack findings") {
 }
 
 TEST_CASE("verify_files finds the pack beside the database when the key lies elsewhere") {
-  FakeStudy study(design::identification::classification(), {.with_pack = true});
+  FakeStudy study(study::identification::classification(), {.with_pack = true});
   const TempFolder stick;
-  design::StudyKey key = study.key();
+  study::StudyKey key = study.key();
   key.pack_folder = stick.path() / study.pack_folder().filename();
   const auto key_path = stick.path() / "study.key";
-  design::save_study_key(key_path, key);
+  study::save_study_key(key_path, key);
   const analysis::StudyFiles files{
       .database = study.database(), .key = key_path, .key_named = true, .pack = {}};
   CHECK(check_of(analysis::verify_files(files, {}), "pack").state == analysis::CheckState::passed);
@@ -266,14 +266,14 @@ TEST_CASE("verify_files finds the pack beside the database when the key lies els
 }
 
 TEST_CASE("verify_files compares a rebuilt pack with the study only if the pack is named") {
-  FakeStudy study(design::identification::classification(), {.with_pack = true});
+  FakeStudy study(study::identification::classification(), {.with_pack = true});
   engine::PackManifest manifest = engine::Pack(study.pack_folder()).manifest();
   manifest.study_id = std::string(32, '0');
   engine::write_manifest(study.pack_folder(), manifest);
-  design::StudyKey key = study.key();
+  study::StudyKey key = study.key();
   key.pack_folder = study.pack_folder();
   const auto key_path = study.folder() / "study.db.key";
-  design::save_study_key(key_path, key);
+  study::save_study_key(key_path, key);
   analysis::StudyFiles files{
       .database = study.database(), .key = key_path, .key_named = false, .pack = {}};
   CHECK(check_of(analysis::verify_files(files, {}), "pack").state ==
@@ -285,7 +285,7 @@ TEST_CASE("verify_files compares a rebuilt pack with the study only if the pack 
 TEST_CASE("verify_files makes a dropped table and a missing first event findings") {
   for (const char* sql : {"DROP TABLE traces",
                           "DROP TRIGGER events_no_delete; DELETE FROM events WHERE session = 0"}) {
-    FakeStudy study(design::identification::classification());
+    FakeStudy study(study::identification::classification());
     SQLite::Database(study.database().string(), SQLite::OPEN_READWRITE).exec(sql);
     const analysis::StudyFiles files{
         .database = study.database(), .key = study.folder() / "k", .key_named = false, .pack = {}};

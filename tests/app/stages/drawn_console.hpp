@@ -1,8 +1,8 @@
 /// \file The experimenter's window without a screen: its panel is drawn into memory, and clicked.
 #pragma once
 
-#include "app/experimenter/console_panel.hpp"
-#include "app/experimenter/experimenter_desk.hpp"
+#include "app/windows/experimenter/console_panel.hpp"
+#include "app/windows/experimenter/experimenter_desk.hpp"
 
 #include <memory>
 

@@ -1,14 +1,14 @@
 #include "app/stages/scripted_session.hpp"
 
-#include "app/experimenter/experimenter_desk.hpp"
-#include "app/experimenter/terminal_face.hpp"
 #include "app/run/run_study.hpp"
 #include "app/run/session_bounds.hpp"
 #include "app/stages/drawn_console.hpp"
 #include "app/texts/study_texts.hpp"
+#include "app/windows/experimenter/experimenter_desk.hpp"
+#include "app/windows/experimenter/terminal_face.hpp"
 #include "device/servo/servo_clock.hpp"
-#include "protocols/design/protocol.hpp"
 #include "protocols/session/session_runner.hpp"
+#include "study/protocol.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -124,7 +124,7 @@ class Script final : public session::Participant,
   [[nodiscard]] session::Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
                                              session::Participant& participant,
                                              const device::ServoOptions& options,
-                                             store::Trace& trace) override {
+                                             record::Trace& trace) override {
     struct Sink final : device::SampleSink {
       session::TraceBuilder& builder;
       explicit Sink(session::TraceBuilder& to) : builder(to) {}
@@ -209,7 +209,7 @@ class Script final : public session::Participant,
     }
     if (const auto* const asked = std::get_if<session::QuestionStep>(&step)) {
       for (const auto& question : asked->questionnaire->questions) {
-        reply.answers.push_back(question.kind == design::QuestionKind::choice ? "0" : "");
+        reply.answers.push_back(question.kind == study::QuestionKind::choice ? "0" : "");
       }
       write(
           {{"is", "questions"}, {"name", asked->questionnaire->name}, {"answers", reply.answers}});
@@ -303,8 +303,8 @@ class Script final : public session::Participant,
 };
 
 /// Practice as the study has it, on blank planes where a trial has one.
-std::optional<session::PracticeTextures> practice_of(const design::Study& study,
-                                                     const design::ScheduleDraw& draw,
+std::optional<session::PracticeTextures> practice_of(const study::Study& study,
+                                                     const study::ScheduleDraw& draw,
                                                      const session::StimulusSource& source) {
   session::PracticeTextures textures;
   textures.plane = source.plane();
@@ -334,7 +334,7 @@ void run_scripted(const app::RunOptions& options, const Deed& deed,
   app::RunDatabase database(options, study);
   const session::StimulusSource source(study.pack, study.key);
   const app::EnteredSession entered =
-      app::enter_session(options, study, database, [](store::SessionOpening& opening) {
+      app::enter_session(options, study, database, [](record::SessionOpening& opening) {
         opening.device = "scripted";
         opening.simulated = true;
       });

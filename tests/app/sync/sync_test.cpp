@@ -1,6 +1,6 @@
 // sync, and merge from a server, run against a real server.
 #include "app/study_folder.hpp"
-#include "protocols/store/store_fixture.hpp"
+#include "record/store_fixture.hpp"
 #include "support/catch.hpp"
 #include "support/child_process.hpp"
 #include "support/postgres_server.hpp"

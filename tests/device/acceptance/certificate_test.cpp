@@ -2,7 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "protocols/design/refusal.hpp"
+#include "study/refusal.hpp"
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 

@@ -5,8 +5,8 @@
 #include "device/fakes/fake_hd.hpp"
 #include "device/flat_wall.hpp"
 #include "device/haptic_device.hpp"
-#include "device/placed_device.hpp"
 #include "device/platform/dynamic_library.hpp"
+#include "device/servo/placed_device.hpp"
 #include "device/servo/servo_clock.hpp"
 #include "support/catch.hpp"
 

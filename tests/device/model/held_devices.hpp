@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/random.hpp"
+#include "device/drivers/simulated/hand_on_tip.hpp"
 #include "device/model/device_model.hpp"
-#include "device/simulated/hand_on_tip.hpp"
 #include "support/catch.hpp"
 
 #include <array>

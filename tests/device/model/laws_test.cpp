@@ -1,9 +1,9 @@
 // The laws of a device in a hand, a test case each, against closed forms or an independent
 // computation: on every shipped model and in both hands where the law speaks of them. Those of
 // linear devices are in linear_laws_test.cpp.
+#include "device/drivers/simulated/simulated_hand.hpp"
 #include "device/model/held_devices.hpp"
 #include "device/servo/servo.hpp"
-#include "device/simulated/simulated_hand.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "device/servo/force_sequence.hpp"
 
+#include "device/drivers/registry.hpp"
 #include "device/flat_wall.hpp"
-#include "device/registry.hpp"
 #include "device/servo_fakes.hpp"
 #include "support/catch.hpp"
 

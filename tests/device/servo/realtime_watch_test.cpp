@@ -2,16 +2,16 @@
 // that does.
 #include "support/realtime_watch.hpp"
 
-#include "device/device_link.hpp"
+#include "device/drivers/device_link.hpp"
+#include "device/drivers/simulated/simulated_hand.hpp"
 #include "device/flat_wall.hpp"
-#include "device/placed_device.hpp"
 #include "device/platform/realtime.hpp"
 #include "device/servo/duration_histogram.hpp"
 #include "device/servo/flight_recorder.hpp"
+#include "device/servo/placed_device.hpp"
 #include "device/servo/sample_ring.hpp"
 #include "device/servo/servo_clock.hpp"
 #include "device/servo_fakes.hpp"
-#include "device/simulated/simulated_hand.hpp"
 #include "support/catch.hpp"
 
 #include <cstdlib>

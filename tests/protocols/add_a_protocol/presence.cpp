@@ -2,13 +2,13 @@
 // says which. docs/add-a-protocol.md goes through this file part by part.
 #include "add_a_protocol/presence.hpp"
 
-#include "analysis/results.hpp"
+#include "analysis/outcomes/study_head.hpp"
+#include "analysis/report/results.hpp"
 #include "analysis/statistics/proportion.hpp"
-#include "analysis/study_head.hpp"
 #include "core/random.hpp"
-#include "protocols/design/protocol.hpp"
-#include "protocols/design/study.hpp"
 #include "protocols/simulation/population.hpp"
+#include "study/protocol.hpp"
+#include "study/study.hpp"
 
 #include <cmath>
 #include <span>
@@ -16,17 +16,17 @@
 namespace touchtrial::example {
 namespace {
 
-using design::Presentation;
-using design::PresentationKind;
-using design::ScheduleDraw;
-using design::Study;
+using study::Presentation;
+using study::PresentationKind;
+using study::ScheduleDraw;
+using study::Study;
 
 constexpr int kTexture = 0;  // indices into the choices
 constexpr int kSmooth = 1;
 
 // 1. What the study file says, what is presented, and what counts as an answer.
 
-struct PresenceOptions final : design::ProtocolOptions {
+struct PresenceOptions final : study::ProtocolOptions {
   int each = 10;  ///< presentations of the texture, and as many of the smooth wall
 };
 
@@ -34,7 +34,7 @@ const PresenceOptions& options_of(const Study& study) {
   return static_cast<const PresenceOptions&>(*study.options);
 }
 
-class Presence final : public design::Protocol {
+class Presence final : public study::Protocol {
  public:
   std::string_view name() const noexcept override { return "presence"; }
   std::string_view section() const noexcept override { return "presence"; }
@@ -43,7 +43,7 @@ class Presence final : public design::Protocol {
   }
   bool presents_all_methods() const noexcept override { return false; }
 
-  std::shared_ptr<const design::ProtocolOptions> read(
+  std::shared_ptr<const study::ProtocolOptions> read(
       const std::optional<JsonValue>& section) const override {
     auto options = std::make_shared<PresenceOptions>();
     if (section) {
@@ -64,8 +64,8 @@ class Presence final : public design::Protocol {
   }
   int scored_trials(const Study& study) const override { return options_of(study).each; }
 
-  design::Schedule schedule(const Study& study, const ScheduleDraw& draw) const override {
-    design::Schedule schedule{{}, {kTexture, kSmooth}};
+  study::Schedule schedule(const Study& study, const ScheduleDraw& draw) const override {
+    study::Schedule schedule{{}, {kTexture, kSmooth}};
     const int each = options_of(study).each;
     for (int i = 0; i < 2 * each; ++i) {
       schedule.presentations.push_back(
@@ -82,7 +82,7 @@ class Presence final : public design::Protocol {
   std::string rule(const Study& study) const override {
     return "presence 1; each=" + std::to_string(options_of(study).each);
   }
-  std::vector<design::Choice> choices(const Study&) const override {
+  std::vector<study::Choice> choices(const Study&) const override {
     return {{"texture"}, {"smooth"}};
   }
   std::optional<int> right_choice(const Study&, const Presentation&) const override {
@@ -177,7 +177,7 @@ class PresenceAnalysis final : public analysis::ProtocolAnalysis {
 void register_presence() {
   static const Presence protocol;
   static const PresenceAnalysis analysis;
-  design::add_protocol(protocol);
+  study::add_protocol(protocol);
   simulation::add_population(protocol.name(), make_presence);
   analysis::add_analysis(protocol.name(), analysis);
 }

@@ -2,14 +2,14 @@
 #include "add_a_protocol/presence.hpp"
 
 #include "analysis/exports/export_tables.hpp"
-#include "analysis/results.hpp"
+#include "analysis/report/results.hpp"
 #include "analysis/verification/verification.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "protocols/design/protocol.hpp"
 #include "protocols/session/commitment.hpp"
 #include "protocols/session/tiny_study.hpp"
 #include "protocols/simulation/simulation.hpp"
+#include "study/protocol.hpp"
 #include "support/catch.hpp"
 
 #include <nlohmann/json.hpp>
@@ -27,7 +27,7 @@ class SimulatedPresence {
  public:
   explicit SimulatedPresence(bool smooth)
       : tiny_({.smooth = smooth, .protocol = "presence", .section = R"({"each": 6})"}),
-        store_(store::StudyStore::create(
+        store_(record::StudyStore::create(
             tiny_.next_database(), session::commitment_of(tiny_.key(), tiny_.pack(), true, false),
             std::chrono::nanoseconds(0), tiny_.key().signer())) {
     simulation::SubjectModel subject;
@@ -38,16 +38,16 @@ class SimulatedPresence {
     store_.unblind(store_.events(0).back().at, "the end", false);
   }
 
-  [[nodiscard]] const design::StudyKey& key() const { return tiny_.key(); }
+  [[nodiscard]] const study::StudyKey& key() const { return tiny_.key(); }
   [[nodiscard]] const engine::Pack& pack() const { return tiny_.pack(); }
-  [[nodiscard]] store::StudyStore& store() { return store_; }
+  [[nodiscard]] record::StudyStore& store() { return store_; }
   [[nodiscard]] analysis::Outcomes outcomes() const {
     return analysis::load_outcomes(store_, tiny_.key());
   }
 
  private:
   TinyStudy tiny_;
-  store::StudyStore store_;
+  record::StudyStore store_;
 };
 
 nlohmann::json report_of(const analysis::Outcomes& outcomes) {
@@ -95,7 +95,7 @@ TEST_CASE("the frame of reports, exports and verification serves the example") {
 
 TEST_CASE("a study file's section of another protocol is refused with its place") {
   const auto parse = [](const std::string& protocol, const std::string& section) {
-    return design::parse_study(
+    return study::parse_study(
         R"({"study":"s","protocol":")" + protocol +
             R"(","classes":[{"label":"a","images":["a.png"]},{"label":"b","images":["b.png"]}],)"
             R"("methods":[{"name":"adaptive"}],)" +
@@ -112,21 +112,21 @@ TEST_CASE("a study file's section of another protocol is refused with its place"
 
 TEST_CASE("the example refuses what needs a choice between classes") {
   const TinyStudy example({.protocol = "presence"});
-  CHECK_THROWS_WITH(design::require_choice_of_classes(example.key().study, "power"),
+  CHECK_THROWS_WITH(study::require_choice_of_classes(example.key().study, "power"),
                     holds_text("power needs participants who choose") && holds_text("presence"));
-  CHECK_NOTHROW(design::require_choice_of_classes(TinyStudy().key().study, "power"));
+  CHECK_NOTHROW(study::require_choice_of_classes(TinyStudy().key().study, "power"));
 }
 
 TEST_CASE("a restarted block of the example presents the same again in another order") {
   const TinyStudy tiny({.protocol = "presence", .section = R"({"each": 20})"});
-  const design::Study& study = tiny.key().study;
-  const design::ScheduleDraw draw = tiny.key().draw_of(1, design::Draws::rehearsal);
-  const auto first = design::make_schedule(study, draw).presentations;
-  const auto again = design::restarted_block(study, draw, 0, 0, 41);
+  const study::Study& study = tiny.key().study;
+  const study::ScheduleDraw draw = tiny.key().draw_of(1, study::Draws::rehearsal);
+  const auto first = study::make_schedule(study, draw).presentations;
+  const auto again = study::restarted_block(study, draw, 0, 0, 41);
   REQUIRE(again.size() == first.size());
   CHECK(again.front().trial == 41);
-  const auto scored = [](const std::vector<design::Presentation>& shown) {
-    return std::ranges::count(shown, design::PresentationKind::scored, &design::Presentation::kind);
+  const auto scored = [](const std::vector<study::Presentation>& shown) {
+    return std::ranges::count(shown, study::PresentationKind::scored, &study::Presentation::kind);
   };
   CHECK(scored(again) == scored(first));
 }

@@ -1,10 +1,10 @@
 // A simulated study with roved gains, from its schedule to its table.
 #include "analysis/exports/trial_tables.hpp"
-#include "analysis/outcomes.hpp"
-#include "protocols/design/order_test_support.hpp"
+#include "analysis/outcomes/outcomes.hpp"
 #include "protocols/session/commitment.hpp"
 #include "protocols/session/tiny_study.hpp"
 #include "protocols/simulation/simulation.hpp"
+#include "study/order_test_support.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ TEST_CASE("the gains of a whole study stand in its table once it is unblinded, a
   TinyStudy study({.trials = R"({"repeats": 8, "rove_db": 6})"});
   simulation::SubjectModel subject;
   subject.explore_s = 0.5;
-  store::StudyStore store = store::StudyStore::create(
+  record::StudyStore store = record::StudyStore::create(
       study.next_database(), session::commitment_of(study.key(), study.pack(), true, false), {},
       study.key().signer());
   static_cast<void>(simulation::simulate_study(study.key(), study.pack(), subject,
@@ -36,10 +36,10 @@ TEST_CASE("the gains of a whole study stand in its table once it is unblinded, a
   REQUIRE(table.rows.size() == 200);
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     const double gain_db = std::get<double>(table.rows[row].at(static_cast<std::size_t>(place)));
-    const design::Schedule schedule = design::make_schedule(
+    const study::Schedule schedule = study::make_schedule(
         study.key().study,
-        study.key().draw_of(static_cast<int>(row) / 40 + 1, design::Draws::rehearsal));
-    const design::Presentation& shown = schedule.presentations.at(row % 40);
+        study.key().draw_of(static_cast<int>(row) / 40 + 1, study::Draws::rehearsal));
+    const study::Presentation& shown = schedule.presentations.at(row % 40);
     CHECK(gain_db == shown.gain_db);
     CHECK(gain_db >= -6.0);
     CHECK(gain_db <= 0.0);

@@ -1,9 +1,9 @@
 /// Limits of runs, Williams blocks, catch trials and restarted blocks in whole schedules.
 #include "core/errors.hpp"
-#include "protocols/design/order_test_support.hpp"
-#include "protocols/design/refusal.hpp"
-#include "protocols/design/study_examples.hpp"
-#include "protocols/design/study_key.hpp"
+#include "study/order_test_support.hpp"
+#include "study/refusal.hpp"
+#include "study/study_examples.hpp"
+#include "study/study_key.hpp"
 
 #include <algorithm>
 #include <set>
@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-design::Study study_with(json document, const json& trials) {
+study::Study study_with(json document, const json& trials) {
   document["trials"] = trials;
   document["seed"] = 5;
   return parsed(document);
@@ -24,12 +24,12 @@ bool refused(const json& document, const json& trials, const std::string& part) 
 }
 
 /// The longest run of a class within a block, catch trials left out.
-int longest_run(const std::vector<design::Presentation>& presentations) {
+int longest_run(const std::vector<study::Presentation>& presentations) {
   int longest = 0;
   int run = 0;
-  const design::Presentation* before = nullptr;
-  for (const design::Presentation& shown : presentations) {
-    if (shown.kind == design::PresentationKind::catch_trial) continue;
+  const study::Presentation* before = nullptr;
+  for (const study::Presentation& shown : presentations) {
+    if (shown.kind == study::PresentationKind::catch_trial) continue;
     const bool same = before != nullptr && before->block == shown.block &&
                       before->stimulus.class_index == shown.stimulus.class_index;
     run = same ? run + 1 : 1;
@@ -39,18 +39,18 @@ int longest_run(const std::vector<design::Presentation>& presentations) {
   return longest;
 }
 
-std::map<design::StimulusIndex, int> scored_counts(
-    const std::vector<design::Presentation>& presentations) {
-  std::map<design::StimulusIndex, int> counts;
-  for (const design::Presentation& shown : presentations) {
-    if (shown.kind == design::PresentationKind::scored) ++counts[shown.stimulus];
+std::map<study::StimulusIndex, int> scored_counts(
+    const std::vector<study::Presentation>& presentations) {
+  std::map<study::StimulusIndex, int> counts;
+  for (const study::Presentation& shown : presentations) {
+    if (shown.kind == study::PresentationKind::scored) ++counts[shown.stimulus];
   }
   return counts;
 }
 
-std::vector<design::Presentation> without_catch(std::vector<design::Presentation> presentations) {
-  std::erase_if(presentations, [](const design::Presentation& shown) {
-    return shown.kind == design::PresentationKind::catch_trial;
+std::vector<study::Presentation> without_catch(std::vector<study::Presentation> presentations) {
+  std::erase_if(presentations, [](const study::Presentation& shown) {
+    return shown.kind == study::PresentationKind::catch_trial;
   });
   for (std::size_t i = 0; i < presentations.size(); ++i) {
     presentations[i].trial = static_cast<int>(i) + 1;
@@ -63,13 +63,13 @@ std::vector<design::Presentation> without_catch(std::vector<design::Presentation
 TEST_CASE("every schedule keeps the limit of runs and its balance") {
   for (const char* blocks : {"by-method", "mixed"}) {
     for (const int max_run : {1, 2, 3}) {
-      const design::Study study = study_with(
+      const study::Study study = study_with(
           comparison_of(3),
           {{"repeats", 4}, {"max_run", max_run}, {"blocks", blocks}, {"lead_in", 2}, {"catch", 3}});
       for (int enrolment = 1; enrolment <= 50; ++enrolment) {
-        const design::Schedule schedule = schedule_of(study, enrolment);
+        const study::Schedule schedule = schedule_of(study, enrolment);
         CHECK(schedule.presentations.size() ==
-              24 + 2 * (study.trials.blocks == design::Blocks::mixed ? 1 : 2) + 3);
+              24 + 2 * (study.trials.blocks == study::Blocks::mixed ? 1 : 2) + 3);
         CHECK(longest_run(schedule.presentations) <= max_run);
         const auto counts = scored_counts(schedule.presentations);
         CHECK(counts.size() == 6);
@@ -80,7 +80,7 @@ TEST_CASE("every schedule keeps the limit of runs and its balance") {
 }
 
 TEST_CASE("independent draws keep the limit of runs too") {
-  const design::Study study =
+  const study::Study study =
       study_with(study_of(2), {{"order", "uniform"}, {"repeats", 20}, {"max_run", 2}});
   for (int enrolment = 1; enrolment <= 50; ++enrolment) {
     CHECK(longest_run(schedule_of(study, enrolment).presentations) <= 2);
@@ -88,7 +88,7 @@ TEST_CASE("independent draws keep the limit of runs too") {
 }
 
 TEST_CASE("schedules with limited runs are uniform over all allowed orders") {
-  const design::Study study = study_with(study_of(3), {{"repeats", 2}, {"max_run", 1}});
+  const study::Study study = study_with(study_of(3), {{"repeats", 2}, {"max_run", 1}});
   std::map<std::vector<int>, int> counts;
   for (int enrolment = 1; enrolment <= 6000; ++enrolment) {
     std::vector<int> order;
@@ -103,15 +103,15 @@ TEST_CASE("schedules with limited runs are uniform over all allowed orders") {
 
 TEST_CASE("a limit that no run can reach leaves the order as it was") {
   const json trials = {{"repeats", 4}};
-  const design::Study free = study_with(study_of(4), trials);
-  const design::Study limited = study_with(study_of(4), {{"repeats", 4}, {"max_run", 4}});
+  const study::Study free = study_with(study_of(4), trials);
+  const study::Study limited = study_with(study_of(4), {{"repeats", 4}, {"max_run", 4}});
   CHECK(schedule_of(limited, 3) == schedule_of(free, 3));
 }
 
 TEST_CASE("options that cannot be combined with a limit of runs are refused with the reason") {
   CHECK(refused(study_of(3), {{"order", "de-bruijn"}, {"repeats", 3}, {"max_run", 1}},
                 "/trials/max_run: is 1, but in the order de-bruijn every class follows itself"));
-  const design::Study kept =
+  const study::Study kept =
       study_with(study_of(3), {{"order", "de-bruijn"}, {"repeats", 3}, {"max_run", 2}});
   CHECK(longest_run(schedule_of(kept, 1).presentations) == 2);
   CHECK(refused(study_of(2), {{"order", "williams"}, {"max_run", 1}},
@@ -123,7 +123,7 @@ TEST_CASE("options that cannot be combined with a limit of runs are refused with
 }
 
 TEST_CASE("a Williams block is permutations, balanced over places with as many as classes") {
-  const design::Study study =
+  const study::Study study =
       study_with(comparison_of(4), {{"order", "williams"}, {"repeats", 4}, {"max_run", 1}});
   for (int enrolment = 1; enrolment <= 20; ++enrolment) {
     const auto presentations = schedule_of(study, enrolment).presentations;
@@ -140,20 +140,20 @@ TEST_CASE("a Williams block is permutations, balanced over places with as many a
 }
 
 TEST_CASE("catch trials come at any place but the first, and change nothing else") {
-  const design::Study plain = study_with(study_of(2, 3), {{"repeats", 2}});
-  const design::Study caught = study_with(study_of(2, 3), {{"repeats", 2}, {"catch", 2}});
+  const study::Study plain = study_with(study_of(2, 3), {{"repeats", 2}});
+  const study::Study caught = study_with(study_of(2, 3), {{"repeats", 2}, {"catch", 2}});
   std::map<std::pair<int, int>, int> places;
   for (int enrolment = 1; enrolment <= 3000; ++enrolment) {
-    const design::Schedule schedule = schedule_of(caught, enrolment);
+    const study::Schedule schedule = schedule_of(caught, enrolment);
     REQUIRE(schedule.presentations.size() == 6);
     std::vector<int> at;
-    for (const design::Presentation& shown : schedule.presentations) {
-      if (shown.kind == design::PresentationKind::catch_trial) at.push_back(shown.trial);
+    for (const study::Presentation& shown : schedule.presentations) {
+      if (shown.kind == study::PresentationKind::catch_trial) at.push_back(shown.trial);
     }
     REQUIRE(at.size() == 2);
     CHECK(at[0] > 1);
     ++places[{at[0], at[1]}];
-    const design::Schedule without = schedule_of(plain, enrolment);
+    const study::Schedule without = schedule_of(plain, enrolment);
     CHECK(without_catch(schedule.presentations) == without.presentations);
     CHECK(schedule.layout == without.layout);
   }
@@ -162,12 +162,12 @@ TEST_CASE("catch trials come at any place but the first, and change nothing else
 }
 
 TEST_CASE("a catch trial belongs to the block of the presentation before it") {
-  const design::Study study = study_with(comparison_of(2), {{"repeats", 2}, {"catch", 5}});
+  const study::Study study = study_with(comparison_of(2), {{"repeats", 2}, {"catch", 5}});
   for (int enrolment = 1; enrolment <= 30; ++enrolment) {
     const auto presentations = schedule_of(study, enrolment).presentations;
     for (std::size_t i = 1; i < presentations.size(); ++i) {
       CHECK(presentations[i].trial == static_cast<int>(i) + 1);
-      if (presentations[i].kind == design::PresentationKind::catch_trial) {
+      if (presentations[i].kind == study::PresentationKind::catch_trial) {
         CHECK(presentations[i].block == presentations[i - 1].block);
       }
     }
@@ -176,26 +176,26 @@ TEST_CASE("a catch trial belongs to the block of the presentation before it") {
 
 TEST_CASE("a schedule with catch trials is read as it was written, with a code like the others") {
   SeededEntropy entropy(1);
-  const design::StudyKey key = design::make_study_key(
+  const study::StudyKey key = study::make_study_key(
       study_with(study_of(3), {{"catch", 2}, {"rove_db", 6}}), entropy, false);
-  const design::Schedule schedule = schedule_of(key.study, 1);
-  const std::string text = design::schedule_to_json(schedule, key);
-  CHECK(design::schedule_from_json(text, key) == schedule);
+  const study::Schedule schedule = schedule_of(key.study, 1);
+  const std::string text = study::schedule_to_json(schedule, key);
+  CHECK(study::schedule_from_json(text, key) == schedule);
   CHECK(key.catch_code.size() == key.stimuli.front().code.size());
   CHECK_FALSE(key.stimulus_of(key.catch_code));
   json changed = json::parse(text);
   for (json& shown : changed["presentations"]) {
     if (shown["kind"] == "catch") shown["code"] = key.stimuli.front().code;
   }
-  CHECK_THROWS_AS(design::schedule_from_json(changed.dump(), key), StoreError);
+  CHECK_THROWS_AS(study::schedule_from_json(changed.dump(), key), StoreError);
   changed["presentations"][0]["kind"] = "other";
-  CHECK_THROWS_AS(design::schedule_from_json(changed.dump(), key), StoreError);
+  CHECK_THROWS_AS(study::schedule_from_json(changed.dump(), key), StoreError);
 }
 
 TEST_CASE("the schedule rule names limits and catch trials only where there are some") {
-  const std::string plain = design::schedule_rule(study_with(study_of(3), {{"repeats", 5}}));
+  const std::string plain = study::schedule_rule(study_with(study_of(3), {{"repeats", 5}}));
   CHECK(plain.ends_with("; lead_in=0"));
-  CHECK(design::schedule_rule(
+  CHECK(study::schedule_rule(
             study_with(study_of(3), {{"max_run", 2}, {"rove_db", 1.5}, {"catch", 4}})) ==
         plain + "; max_run=2; rove_db=1.5; catch=4");
 }
@@ -204,20 +204,20 @@ TEST_CASE("roved gains are uniform below the pack's, and tell nothing of class a
   const json trials = {{"repeats", 4}, {"catch", 2}, {"lead_in", 1}};
   json roved = trials;
   roved["rove_db"] = 6;
-  const design::Study study = study_with(comparison_of(3), roved);
+  const study::Study study = study_with(comparison_of(3), roved);
   std::map<int, int> by_gain;
   std::map<std::tuple<int, int, bool>, int> by_stimulus_and_half;
   for (int enrolment = 1; enrolment <= 200; ++enrolment) {
     const auto presentations = schedule_of(study, enrolment).presentations;
-    for (const design::Presentation& shown : presentations) {
-      if (shown.kind == design::PresentationKind::catch_trial) {
+    for (const study::Presentation& shown : presentations) {
+      if (shown.kind == study::PresentationKind::catch_trial) {
         CHECK(shown.gain_db == 0.0);
         continue;
       }
       REQUIRE(shown.gain_db <= 0.0);
       REQUIRE(shown.gain_db >= -6.0);
       ++by_gain[static_cast<int>(-2.0 * shown.gain_db)];
-      if (shown.kind != design::PresentationKind::scored) continue;
+      if (shown.kind != study::PresentationKind::scored) continue;
       const auto& [class_index, exemplar, method] = shown.stimulus;
       ++by_stimulus_and_half[{class_index, method, shown.gain_db < -3.0}];
     }
@@ -225,23 +225,23 @@ TEST_CASE("roved gains are uniform below the pack's, and tell nothing of class a
   // 99.9999 % with 11 degrees of freedom each.
   CHECK(chi_square_uniform(by_gain, 12) < 50.0);
   CHECK(chi_square_uniform(by_stimulus_and_half, 12) < 50.0);
-  design::Schedule schedule = schedule_of(study, 1);
-  for (design::Presentation& shown : schedule.presentations) shown.gain_db = 0.0;
+  study::Schedule schedule = schedule_of(study, 1);
+  for (study::Presentation& shown : schedule.presentations) shown.gain_db = 0.0;
   CHECK(schedule == schedule_of(study_with(comparison_of(3), trials), 1));
 }
 
 TEST_CASE("a restarted block has new gains") {
-  const design::Study study = study_with(comparison_of(3), {{"rove_db", 6}});
+  const study::Study study = study_with(comparison_of(3), {{"rove_db", 6}});
   std::set<double> gains;
   std::size_t presentations = 0;
-  const auto add = [&](const std::vector<design::Presentation>& block) {
+  const auto add = [&](const std::vector<study::Presentation>& block) {
     presentations += block.size();
-    for (const design::Presentation& shown : block) gains.insert(shown.gain_db);
+    for (const study::Presentation& shown : block) gains.insert(shown.gain_db);
   };
   add(schedule_of(study, 2).presentations);
   for (int restart = 0; restart < 2; ++restart) {
     for (int block = 0; block < 2; ++block) {
-      add(design::restarted_block(study, drawn(study, 2), block, restart, 101));
+      add(study::restarted_block(study, drawn(study, 2), block, restart, 101));
     }
   }
   CHECK(gains.size() == presentations);
@@ -250,39 +250,39 @@ TEST_CASE("a restarted block has new gains") {
 }
 
 TEST_CASE("a restarted block is a fresh order of the same block under new numbers") {
-  const design::Study study =
+  const study::Study study =
       study_with(comparison_of(3, 2), {{"repeats", 4}, {"max_run", 2}, {"catch", 4}});
-  const design::Schedule schedule = schedule_of(study, 2);
+  const study::Schedule schedule = schedule_of(study, 2);
   for (int block = 0; block < 2; ++block) {
-    std::vector<design::Presentation> before;
+    std::vector<study::Presentation> before;
     std::ranges::copy_if(schedule.presentations, std::back_inserter(before),
                          [block](const auto& shown) { return shown.block == block; });
-    const auto again = design::restarted_block(study, drawn(study, 2), block, 0, 101);
-    CHECK(again == design::restarted_block(study, drawn(study, 2), block, 0, 101));
+    const auto again = study::restarted_block(study, drawn(study, 2), block, 0, 101);
+    CHECK(again == study::restarted_block(study, drawn(study, 2), block, 0, 101));
     REQUIRE(again.size() == before.size());
     CHECK(again.front().trial == 101);
     CHECK(again.back().trial == 100 + static_cast<int>(again.size()));
-    CHECK(again.front().kind != design::PresentationKind::catch_trial);
+    CHECK(again.front().kind != study::PresentationKind::catch_trial);
     CHECK(scored_counts(again) == scored_counts(before));
     CHECK(longest_run(again) <= 2);
-    const auto third = design::restarted_block(study, drawn(study, 2), block, 1, 101);
+    const auto third = study::restarted_block(study, drawn(study, 2), block, 1, 101);
     CHECK_FALSE(third == again);
     CHECK(scored_counts(third) == scored_counts(before));
-    CHECK(design::restarted_block(study, drawn(study, 2), block, 0, 201).front().stimulus ==
+    CHECK(study::restarted_block(study, drawn(study, 2), block, 0, 201).front().stimulus ==
           again.front().stimulus);
   }
-  CHECK_THROWS_AS(design::restarted_block(study, drawn(study, 2), 2, 0, 1), std::invalid_argument);
-  CHECK_THROWS_AS(design::restarted_block(study, drawn(study, 2), 0, -1, 1), std::invalid_argument);
+  CHECK_THROWS_AS(study::restarted_block(study, drawn(study, 2), 2, 0, 1), std::invalid_argument);
+  CHECK_THROWS_AS(study::restarted_block(study, drawn(study, 2), 0, -1, 1), std::invalid_argument);
 }
 
 TEST_CASE("a restarted block is read as it was written") {
   SeededEntropy entropy(1);
-  const design::StudyKey key = design::make_study_key(
+  const study::StudyKey key = study::make_study_key(
       study_with(study_of(3), {{"catch", 2}, {"order", "williams"}}), entropy, false);
-  const auto block = design::restarted_block(key.study, drawn(key.study, 1), 0, 0, 18);
-  CHECK(design::block_from_json(design::block_to_json(block, key), key) == block);
-  CHECK_THROWS_AS(design::block_from_json("{", key), StoreError);
-  CHECK_THROWS_AS(design::block_from_json("[{}]", key), StoreError);
+  const auto block = study::restarted_block(key.study, drawn(key.study, 1), 0, 0, 18);
+  CHECK(study::block_from_json(study::block_to_json(block, key), key) == block);
+  CHECK_THROWS_AS(study::block_from_json("{", key), StoreError);
+  CHECK_THROWS_AS(study::block_from_json("[{}]", key), StoreError);
 }
 
 }  // namespace touchtrial

@@ -1,8 +1,8 @@
 
 #include "core/errors.hpp"
-#include "protocols/design/order_test_support.hpp"
-#include "protocols/design/random_orders.hpp"
-#include "protocols/design/study_examples.hpp"
+#include "study/order_test_support.hpp"
+#include "study/random_orders.hpp"
+#include "study/study_examples.hpp"
 #include "support/catch.hpp"
 
 #include <set>
@@ -13,24 +13,24 @@ namespace {
 
 using nlohmann::json;
 
-design::Study seeded(json document, std::uint64_t seed) {
+study::Study seeded(json document, std::uint64_t seed) {
   document["seed"] = seed;
   return parsed(document);
 }
 
-std::vector<int> classes_of(const design::Schedule& schedule) {
+std::vector<int> classes_of(const study::Schedule& schedule) {
   std::vector<int> classes;
-  for (const design::Presentation& shown : schedule.presentations) {
+  for (const study::Presentation& shown : schedule.presentations) {
     classes.push_back(shown.stimulus.class_index);
   }
   return classes;
 }
 
 /// How often each class and method is scored.
-std::map<std::pair<int, int>, int> scored_counts(const design::Schedule& schedule) {
+std::map<std::pair<int, int>, int> scored_counts(const study::Schedule& schedule) {
   std::map<std::pair<int, int>, int> counts;
-  for (const design::Presentation& shown : schedule.presentations) {
-    if (shown.kind == design::PresentationKind::lead_in) continue;
+  for (const study::Presentation& shown : schedule.presentations) {
+    if (shown.kind == study::PresentationKind::lead_in) continue;
     ++counts[{shown.stimulus.class_index, shown.stimulus.method}];
   }
   return counts;
@@ -39,12 +39,12 @@ std::map<std::pair<int, int>, int> scored_counts(const design::Schedule& schedul
 }  // namespace
 
 TEST_CASE("schedules of seed 31875542 are the same on every platform") {
-  const design::Study study = seeded(study_of(5), 31875542);
-  const design::Schedule first = schedule_of(study, 1);
+  const study::Study study = seeded(study_of(5), 31875542);
+  const study::Schedule first = schedule_of(study, 1);
   CHECK(classes_of(first) == std::vector<int>{4, 4, 4, 3, 2, 2, 0, 1, 1, 2, 0, 4, 4,
                                               3, 0, 3, 2, 2, 0, 3, 1, 0, 1, 1, 3});
   CHECK(first.layout == std::vector<int>{4, 2, 1, 0, 3});
-  const design::Schedule twentieth = schedule_of(study, 20);
+  const study::Schedule twentieth = schedule_of(study, 20);
   CHECK(classes_of(twentieth) == std::vector<int>{1, 4, 3, 0, 4, 2, 1, 3, 2, 4, 2, 4, 0,
                                                   3, 1, 3, 1, 2, 4, 3, 0, 2, 1, 0, 0});
   CHECK(twentieth.layout == std::vector<int>{1, 4, 0, 2, 3});
@@ -53,10 +53,10 @@ TEST_CASE("schedules of seed 31875542 are the same on every platform") {
 TEST_CASE("orders de-bruijn and uniform, lead-ins and exemplars are the same on every platform") {
   json document = study_of(3, 3);
   document["trials"] = {{"order", "de-bruijn"}, {"repeats", 3}};
-  const design::Schedule cycle = schedule_of(seeded(document, 7), 2);
+  const study::Schedule cycle = schedule_of(seeded(document, 7), 2);
   CHECK(classes_of(cycle) == std::vector<int>{0, 2, 1, 1, 0, 1, 2, 2, 0, 0});
   std::vector<int> exemplars;
-  for (const design::Presentation& shown : cycle.presentations) {
+  for (const study::Presentation& shown : cycle.presentations) {
     exemplars.push_back(shown.stimulus.exemplar);
   }
   CHECK(exemplars == std::vector<int>{1, 0, 1, 2, 0, 0, 2, 1, 2, 0});
@@ -66,13 +66,13 @@ TEST_CASE("orders de-bruijn and uniform, lead-ins and exemplars are the same on 
 }
 
 TEST_CASE("a shuffled schedule presents every class equally often to every participant") {
-  const design::Study study = seeded(study_of(5), 3);
+  const study::Study study = seeded(study_of(5), 3);
   for (int enrolment = 1; enrolment <= 50; ++enrolment) {
-    const design::Schedule schedule = schedule_of(study, enrolment);
+    const study::Schedule schedule = schedule_of(study, enrolment);
     REQUIRE(schedule.presentations.size() == 25);
     for (std::size_t i = 0; i < 25; ++i) {
       CHECK(schedule.presentations[i].trial == static_cast<int>(i) + 1);
-      CHECK(schedule.presentations[i].kind == design::PresentationKind::scored);
+      CHECK(schedule.presentations[i].kind == study::PresentationKind::scored);
     }
     const auto counts = scored_counts(schedule);
     CHECK(counts.size() == 5);
@@ -83,7 +83,7 @@ TEST_CASE("a shuffled schedule presents every class equally often to every parti
 TEST_CASE("each order of two classes twice is equally likely over enrolments") {
   json document = study_of(2);
   document["trials"] = {{"repeats", 2}};
-  const design::Study study = seeded(document, 11);
+  const study::Study study = seeded(document, 11);
   std::map<std::vector<int>, int> counts;
   for (int enrolment = 1; enrolment <= 6000; ++enrolment) {
     ++counts[classes_of(schedule_of(study, enrolment))];
@@ -93,7 +93,7 @@ TEST_CASE("each order of two classes twice is equally likely over enrolments") {
 }
 
 TEST_CASE("each layout of four pictures is equally likely over enrolments") {
-  const design::Study study = seeded(study_of(4), 12);
+  const study::Study study = seeded(study_of(4), 12);
   std::map<std::vector<int>, int> counts;
   for (int enrolment = 1; enrolment <= 4800; ++enrolment) {
     ++counts[schedule_of(study, enrolment).layout];
@@ -105,11 +105,11 @@ TEST_CASE("each layout of four pictures is equally likely over enrolments") {
 TEST_CASE("uniform draws have the same number of trials, each class equally likely at each") {
   json document = study_of(4);
   document["trials"] = {{"order", "uniform"}, {"repeats", 2}};
-  const design::Study study = seeded(document, 13);
+  const study::Study study = seeded(document, 13);
   std::map<std::pair<int, int>, int> first_and_last;
   bool unbalanced = false;
   for (int enrolment = 1; enrolment <= 3200; ++enrolment) {
-    const design::Schedule schedule = schedule_of(study, enrolment);
+    const study::Schedule schedule = schedule_of(study, enrolment);
     REQUIRE(schedule.presentations.size() == 8);
     const std::vector<int> classes = classes_of(schedule);
     ++first_and_last[{classes.front(), classes.back()}];
@@ -123,58 +123,57 @@ TEST_CASE("uniform draws have the same number of trials, each class equally like
 TEST_CASE("a de-bruijn schedule has every transition once, after one lead-in") {
   json document = study_of(5);
   document["trials"] = {{"order", "de-bruijn"}, {"repeats", 5}};
-  const design::Study study = seeded(document, 14);
+  const study::Study study = seeded(document, 14);
   std::set<std::vector<int>> orders;
   for (int enrolment = 1; enrolment <= 30; ++enrolment) {
-    const design::Schedule schedule = schedule_of(study, enrolment);
+    const study::Schedule schedule = schedule_of(study, enrolment);
     REQUIRE(schedule.presentations.size() == 26);
     const std::vector<int> classes = classes_of(schedule);
     orders.insert(classes);
     std::set<std::pair<int, int>> transitions;
     for (std::size_t i = 1; i < classes.size(); ++i) {
       transitions.emplace(classes[i - 1], classes[i]);
-      CHECK(schedule.presentations[i].kind == design::PresentationKind::scored);
+      CHECK(schedule.presentations[i].kind == study::PresentationKind::scored);
     }
     CHECK(transitions.size() == 25);
-    CHECK(schedule.presentations[0].kind == design::PresentationKind::lead_in);
+    CHECK(schedule.presentations[0].kind == study::PresentationKind::lead_in);
     for (const auto& [item, count] : scored_counts(schedule)) CHECK(count == 5);
   }
   CHECK(orders.size() == 30);
 }
 
 TEST_CASE("an impossible order is refused when the schedule is made") {
-  design::Study study = seeded(study_of(5), 1);
-  study.trials.order = design::TrialOrder::de_bruijn;
+  study::Study study = seeded(study_of(5), 1);
+  study.trials.order = study::TrialOrder::de_bruijn;
   study.trials.repeats = 4;
   CHECK_THROWS_AS(schedule_of(study, 1), StudyError);
 }
 
 TEST_CASE("lead-ins open each block, are not scored, and leave the scored order as it was") {
   json document = comparison_of(4);
-  const design::Schedule without = schedule_of(seeded(document, 15), 3);
+  const study::Schedule without = schedule_of(seeded(document, 15), 3);
   document["trials"] = {{"lead_in", 2}};
-  const design::Schedule with = schedule_of(seeded(document, 15), 3);
+  const study::Schedule with = schedule_of(seeded(document, 15), 3);
   REQUIRE(with.presentations.size() == without.presentations.size() + 4);
-  std::vector<design::StimulusIndex> scored;
+  std::vector<study::StimulusIndex> scored;
   for (std::size_t i = 0; i < with.presentations.size(); ++i) {
-    const design::Presentation& shown = with.presentations[i];
+    const study::Presentation& shown = with.presentations[i];
     const bool opens_block = i % 22 < 2;
-    CHECK((shown.kind == design::PresentationKind::lead_in) == opens_block);
+    CHECK((shown.kind == study::PresentationKind::lead_in) == opens_block);
     CHECK(shown.block == static_cast<int>(i) / 22);
     if (!opens_block) scored.push_back(shown.stimulus);
   }
-  std::vector<design::StimulusIndex> expected;
-  for (const design::Presentation& shown : without.presentations)
-    expected.push_back(shown.stimulus);
+  std::vector<study::StimulusIndex> expected;
+  for (const study::Presentation& shown : without.presentations) expected.push_back(shown.stimulus);
   CHECK(scored == expected);
 }
 
 TEST_CASE("blocks by method follow the Williams row of the enrolment") {
-  const design::Study study = seeded(comparison_of(4), 16);
+  const study::Study study = seeded(comparison_of(4), 16);
   for (int enrolment = 1; enrolment <= 6; ++enrolment) {
-    const design::Schedule schedule = schedule_of(study, enrolment);
-    const std::vector<int> row = design::williams_row(2, enrolment);
-    for (const design::Presentation& shown : schedule.presentations) {
+    const study::Schedule schedule = schedule_of(study, enrolment);
+    const std::vector<int> row = study::williams_row(2, enrolment);
+    for (const study::Presentation& shown : schedule.presentations) {
       CHECK(shown.stimulus.method == row[static_cast<std::size_t>(shown.block)]);
     }
     for (const auto& [item, count] : scored_counts(schedule)) CHECK(count == 5);
@@ -182,7 +181,7 @@ TEST_CASE("blocks by method follow the Williams row of the enrolment") {
 }
 
 TEST_CASE("methods of one participant have orders of their own") {
-  const design::Schedule schedule = schedule_of(seeded(comparison_of(4), 17), 1);
+  const study::Schedule schedule = schedule_of(seeded(comparison_of(4), 17), 1);
   const std::vector<int> classes = classes_of(schedule);
   CHECK(std::vector<int>(classes.begin(), classes.begin() + 20) !=
         std::vector<int>(classes.begin() + 20, classes.end()));
@@ -191,7 +190,7 @@ TEST_CASE("methods of one participant have orders of their own") {
 TEST_CASE("a mixed block has every class and method equally often, interleaved") {
   json document = comparison_of(4);
   document["trials"] = {{"blocks", "mixed"}};
-  const design::Schedule schedule = schedule_of(seeded(document, 18), 1);
+  const study::Schedule schedule = schedule_of(seeded(document, 18), 1);
   REQUIRE(schedule.presentations.size() == 40);
   const auto counts = scored_counts(schedule);
   CHECK(counts.size() == 8);
@@ -208,11 +207,11 @@ TEST_CASE("a mixed block has every class and method equally often, interleaved")
 TEST_CASE("all images of a class are used before any repeats, for each method anew") {
   json document = comparison_of(3, 4);
   document["trials"] = {{"repeats", 10}};
-  const design::Study study = seeded(document, 19);
+  const study::Study study = seeded(document, 19);
   std::set<std::vector<int>> decks;
   for (int enrolment = 1; enrolment <= 10; ++enrolment) {
     std::map<std::pair<int, int>, std::vector<int>> dealt;
-    for (const design::Presentation& shown : schedule_of(study, enrolment).presentations) {
+    for (const study::Presentation& shown : schedule_of(study, enrolment).presentations) {
       dealt[{shown.stimulus.class_index, shown.stimulus.method}].push_back(shown.stimulus.exemplar);
     }
     CHECK(dealt.size() == 6);
@@ -230,14 +229,14 @@ TEST_CASE("all images of a class are used before any repeats, for each method an
 }
 
 TEST_CASE("the number of images does not change which classes come when") {
-  const design::Schedule one = schedule_of(seeded(study_of(4, 1), 20), 5);
-  const design::Schedule many = schedule_of(seeded(study_of(4, 6), 20), 5);
+  const study::Schedule one = schedule_of(seeded(study_of(4, 1), 20), 5);
+  const study::Schedule many = schedule_of(seeded(study_of(4, 6), 20), 5);
   CHECK(classes_of(one) == classes_of(many));
   CHECK(one.layout == many.layout);
 }
 
 TEST_CASE("a schedule depends on seed and enrolment") {
-  const design::Study study = seeded(study_of(5), 21);
+  const study::Study study = seeded(study_of(5), 21);
   CHECK(schedule_of(study, 4) == schedule_of(study, 4));
   CHECK_FALSE(schedule_of(study, 4) == schedule_of(study, 5));
   CHECK_FALSE(schedule_of(study, 4) == schedule_of(seeded(study_of(5), 22), 4));
@@ -245,7 +244,7 @@ TEST_CASE("a schedule depends on seed and enrolment") {
 
 TEST_CASE("a schedule does not depend on names, rendering or methods that are not presented") {
   json document = study_of(5);
-  const design::Schedule before = schedule_of(seeded(document, 23), 4);
+  const study::Schedule before = schedule_of(seeded(document, 23), 4);
   document["study"] = "renamed";
   document["classes"][0]["label"] = "other";
   document["rendering"] = {{"pitch_mm", 0.1}};
@@ -259,7 +258,7 @@ TEST_CASE("a Williams design has each method in each place, and after each other
     std::map<std::pair<int, int>, int> places;
     std::map<std::pair<int, int>, int> neighbours;
     for (int enrolment = 1; enrolment <= rows; ++enrolment) {
-      const std::vector<int> row = design::williams_row(methods, enrolment);
+      const std::vector<int> row = study::williams_row(methods, enrolment);
       REQUIRE(row.size() == static_cast<std::size_t>(methods));
       for (int i = 0; i < methods; ++i) ++places[{i, row[static_cast<std::size_t>(i)]}];
       for (std::size_t i = 1; i < row.size(); ++i) ++neighbours[{row[i - 1], row[i]}];
@@ -273,30 +272,30 @@ TEST_CASE("a Williams design has each method in each place, and after each other
 }
 
 TEST_CASE("williams_row follows the published square of four") {
-  CHECK(design::williams_row(4, 4) == std::vector<int>{0, 1, 3, 2});
-  CHECK(design::williams_rows(4) == 4);
-  CHECK(design::williams_rows(3) == 6);
-  CHECK_THROWS_AS(design::williams_rows(0), std::invalid_argument);
-  CHECK(design::williams_row(4, 1) == std::vector<int>{1, 2, 0, 3});
-  CHECK(design::williams_row(4, 5) == design::williams_row(4, 1));
-  CHECK(design::williams_row(3, 3) == std::vector<int>{2, 1, 0});
-  CHECK_THROWS_AS(design::williams_row(0, 1), std::invalid_argument);
+  CHECK(study::williams_row(4, 4) == std::vector<int>{0, 1, 3, 2});
+  CHECK(study::williams_rows(4) == 4);
+  CHECK(study::williams_rows(3) == 6);
+  CHECK_THROWS_AS(study::williams_rows(0), std::invalid_argument);
+  CHECK(study::williams_row(4, 1) == std::vector<int>{1, 2, 0, 3});
+  CHECK(study::williams_row(4, 5) == study::williams_row(4, 1));
+  CHECK(study::williams_row(3, 3) == std::vector<int>{2, 1, 0});
+  CHECK_THROWS_AS(study::williams_row(0, 1), std::invalid_argument);
 }
 
 TEST_CASE("the schedule rule names everything that decides a schedule but the seed") {
-  const std::string rule = design::schedule_rule(seeded(study_of(5), 1));
-  CHECK(rule == design::schedule_rule(seeded(study_of(5), 2)));
+  const std::string rule = study::schedule_rule(seeded(study_of(5), 1));
+  CHECK(rule == study::schedule_rule(seeded(study_of(5), 2)));
   CHECK(rule.find("touchtrial schedule 2: ") == 0);
   CHECK(rule.find("classes=5; exemplars=1,1,1,1,1; methods=1; repeats=5; order=shuffled; "
                   "blocks=by-method; lead_in=0") != std::string::npos);
-  std::set<std::string> rules = {rule, design::schedule_rule(parsed(study_of(4))),
-                                 design::schedule_rule(parsed(study_of(5, 2))),
-                                 design::schedule_rule(parsed(comparison_of(5)))};
+  std::set<std::string> rules = {rule, study::schedule_rule(parsed(study_of(4))),
+                                 study::schedule_rule(parsed(study_of(5, 2))),
+                                 study::schedule_rule(parsed(comparison_of(5)))};
   const json changes = {{"repeats", 4}, {"order", "uniform"}, {"blocks", "mixed"}, {"lead_in", 1}};
   for (const auto& [key, value] : changes.items()) {
     json document = study_of(5);
     document["trials"][key] = value;
-    rules.insert(design::schedule_rule(parsed(document)));
+    rules.insert(study::schedule_rule(parsed(document)));
   }
   CHECK(rules.size() == 8);
 }

@@ -125,7 +125,7 @@ TEST_CASE("an attendant who gives up ends the wait") {
 }
 
 TEST_CASE("a station describes its device and what its servo thread obtained") {
-  store::SessionOpening opening;
+  record::SessionOpening opening;
   device::DeviceInfo device{"falcon", "F7", 8.5, false};
   device.model = "Novint Falcon";
   device.visual = true;

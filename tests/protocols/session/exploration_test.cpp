@@ -28,7 +28,7 @@ TEST_CASE("on a flat texture the contact force is steady to 0.02 N from 0.5 s af
   const engine::RenderingModel model(field.view(), rendering, {0.01, 0.01});
   session::ModelForce force(model);
   Stroker explorer = stroker(subject);
-  store::Trace trace;
+  record::Trace trace;
   const session::Exploration done =
       session::VirtualExplorer().explore(force, field.view().geometry, explorer, {}, trace);
   REQUIRE(done.servo.end == device::ServoEnd::hand_stopped);
@@ -46,7 +46,7 @@ TEST_CASE("the trace and the participant get the same samples") {
   simulation::SubjectModel subject;
   subject.explore_s = 0.5;
   Stroker explorer = stroker(subject);
-  store::Trace trace;
+  record::Trace trace;
   session::ModelForce force(source.model(study.key().stimuli.front().code));
   static_cast<void>(session::VirtualExplorer().explore(force, source.plane(), explorer, {}, trace));
   REQUIRE(trace.samples.size() == explorer.felt.size());
@@ -63,9 +63,9 @@ TEST_CASE("the time of landing is the same on every texture") {
   simulation::SubjectModel subject;
   subject.explore_s = 1.0;
   std::vector<std::chrono::nanoseconds> landings;
-  for (const design::KeyedStimulus& keyed : study.key().stimuli) {
+  for (const study::KeyedStimulus& keyed : study.key().stimuli) {
     Stroker explorer = stroker(subject);
-    store::Trace trace;
+    record::Trace trace;
     session::ModelForce force(source.model(keyed.code));
     const session::Exploration done =
         session::VirtualExplorer().explore(force, source.plane(), explorer, {}, trace);
@@ -84,7 +84,7 @@ TEST_CASE("when time is up the plane fades under the hand") {
   const engine::RenderingModel model(field.view(), rendering, {});
   session::ModelForce force(model);
   Stroker explorer = stroker(subject);
-  store::Trace trace;
+  record::Trace trace;
   const device::ServoOptions options{.limit_ticks = 2000, .fade_ticks = 100};
   const session::Exploration done =
       session::VirtualExplorer().explore(force, field.view().geometry, explorer, options, trace);
@@ -162,7 +162,7 @@ device::ServoSample sample_at(std::int64_t tick, double z_mm = -1.0, double push
 }
 
 TEST_CASE("a trace without gaps keeps the samples as they came") {
-  store::Trace trace;
+  record::Trace trace;
   session::TraceBuilder builder(trace, 2000.0, 10);
   for (std::int64_t tick = 0; tick < 10; ++tick) builder.add(sample_at(tick));
   REQUIRE(trace.samples.size() == 10);
@@ -172,7 +172,7 @@ TEST_CASE("a trace without gaps keeps the samples as they came") {
 }
 
 TEST_CASE("a gap is filled with the sample before it, so that a sample's index gives its time") {
-  store::Trace trace;
+  record::Trace trace;
   session::TraceBuilder builder(trace, 1000.0, 10);
   builder.add(sample_at(0, 5.0, 0.0));
   builder.add(sample_at(3));
@@ -187,7 +187,7 @@ TEST_CASE("a gap is filled with the sample before it, so that a sample's index g
 }
 
 TEST_CASE("a late first sample fills the gap before it") {
-  store::Trace trace;
+  record::Trace trace;
   session::TraceBuilder builder(trace, 1000.0, 10);
   builder.add(sample_at(2));
   REQUIRE(trace.samples.size() == 3);
@@ -196,7 +196,7 @@ TEST_CASE("a late first sample fills the gap before it") {
 }
 
 TEST_CASE("a trace never grows beyond its room and takes no tick twice") {
-  store::Trace trace;
+  record::Trace trace;
   session::TraceBuilder builder(trace, 1000.0, 4);
   const auto* const memory = trace.samples.data();
   for (const std::int64_t tick : {0, 1, 1, 0, 2, 9, 3, 4}) builder.add(sample_at(tick));
@@ -207,7 +207,7 @@ TEST_CASE("a trace never grows beyond its room and takes no tick twice") {
 
 TEST_CASE(
     "landing is the time of the first sample that is low enough, whatever ticks are missing") {
-  store::Trace trace;
+  record::Trace trace;
   session::TraceBuilder builder(trace, 4000.0, 100);
   CHECK_FALSE(builder.landed_at());
   builder.add(sample_at(0, 10.0, 0.0));

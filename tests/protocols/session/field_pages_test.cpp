@@ -32,7 +32,7 @@ engine::TextureField wavy_field(const engine::RenderingOptions& options) {
 }
 
 /// Pages of the pixels that interpolation at these positions needs.
-std::set<std::size_t> pages_under(const store::Trace& trace, const PlaneGeometry& plane,
+std::set<std::size_t> pages_under(const record::Trace& trace, const PlaneGeometry& plane,
                                   int reach_before, int reach_behind, std::size_t bytes_a_pixel) {
   std::set<std::size_t> pages;
   const auto inside = [](int i) { return std::clamp(i, 0, kSidePx - 1); };
@@ -52,9 +52,9 @@ std::set<std::size_t> pages_under(const store::Trace& trace, const PlaneGeometry
   return pages;
 }
 
-store::Trace explored(const engine::RenderingModel& model, const PlaneGeometry& plane) {
+record::Trace explored(const engine::RenderingModel& model, const PlaneGeometry& plane) {
   Stroker explorer(RandomStream(1, "field_pages_test"));
-  store::Trace trace;
+  record::Trace trace;
   session::ModelForce force(model);
   REQUIRE(session::VirtualExplorer().explore(force, plane, explorer, {}, trace).servo.end ==
           device::ServoEnd::hand_stopped);
@@ -68,13 +68,13 @@ std::size_t touched_pages(engine::ModelKind model, std::size_t& of) {
   const engine::TextureField field = wavy_field(options);
   engine::FieldView view = field.view();
   const PlaneGeometry plane = view.geometry;
-  const store::Trace trace =
+  const record::Trace trace =
       explored(engine::RenderingModel(view, options, gains_of(model)), plane);
   GuardedBytes guarded(std::as_bytes(view.heights));
   const auto pages = pages_under(trace, plane, 1, 2, sizeof(float));
   guarded.leave_only(pages);
   view.heights = guarded.as<float>();
-  const store::Trace again =
+  const record::Trace again =
       explored(engine::RenderingModel(view, options, gains_of(model)), plane);
   REQUIRE(again.samples.size() == trace.samples.size());
   for (std::size_t i = 0; i < trace.samples.size(); ++i) {

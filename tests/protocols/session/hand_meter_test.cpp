@@ -1,7 +1,7 @@
 #include "protocols/session/hand_meter.hpp"
 
 #include "core/random.hpp"
-#include "device/simulated/simulated_hand.hpp"
+#include "device/drivers/simulated/simulated_hand.hpp"
 #include "engine/rendering/gains.hpp"
 #include "engine/rendering/rendering_model.hpp"
 #include "engine/rendering/texture_field.hpp"
@@ -39,7 +39,7 @@ class EvenHand {
 };
 
 std::optional<HandLevels> levels_after(double force_n, double speed_mm_s,
-                                       const design::ValidityRule& rule = {}) {
+                                       const study::ValidityRule& rule = {}) {
   HandMeter meter(rule, kRateHz);
   EvenHand(force_n, speed_mm_s).stroke(meter, 2.0);
   return meter.levels();
@@ -53,7 +53,7 @@ TEST_CASE("a hand is low, right or high beside what participants are told") {
 }
 
 TEST_CASE("a study's own window of force holds where it is narrower, or another one") {
-  design::ValidityRule rule;
+  study::ValidityRule rule;
   rule.largest_median_n = 0.6;
   CHECK(levels_after(0.7, 100.0, rule)->force == HandLevel::high);
   rule = {.least_median_n = 1.5, .largest_median_n = 3.0};
@@ -101,7 +101,7 @@ class Reader final : public device::SampleSink {
   [[nodiscard]] const std::vector<std::optional<HandLevels>>& read() const { return read_; }
 
  private:
-  HandMeter meter_{design::ValidityRule{}, kRateHz};
+  HandMeter meter_{study::ValidityRule{}, kRateHz};
   std::vector<std::optional<HandLevels>> read_ = [] {
     std::vector<std::optional<HandLevels>> room;
     room.reserve(100);

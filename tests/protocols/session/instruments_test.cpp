@@ -4,14 +4,14 @@
 #include "core/cipher.hpp"
 #include "protocols/session/exploration.hpp"
 #include "protocols/session/tiny_study.hpp"
-#include "protocols/store/payload_json.hpp"
+#include "record/payload_json.hpp"
 #include "support/as_recorded.hpp"
 #include "support/catch.hpp"
 
 namespace touchtrial {
 namespace {
 
-using store::Mark;
+using record::Mark;
 using Clock = std::chrono::steady_clock;
 
 /// Keeps what it is told. Every second mark does not get through.
@@ -36,10 +36,10 @@ struct KeptMarks final : session::Instruments {
 /// A session whose inputs the test gives.
 struct Course {
   Course()
-      : session(design::make_schedule(study.key().study,
-                                      study.key().draw_of(1, design::Draws::rehearsal)),
-                study.key().study.trials, store::SessionRecorder(1, key, events)) {
-    store::SessionOpening opening;
+      : session(study::make_schedule(study.key().study,
+                                     study.key().draw_of(1, study::Draws::rehearsal)),
+                study.key().study.trials, record::SessionRecorder(1, key, events)) {
+    record::SessionOpening opening;
     opening.participant = "P001";
     opening.enrolment = 1;
     session.open(now(), opening, "{}");
@@ -50,7 +50,7 @@ struct Course {
 
   TinyStudy study;
   SecretKey key = sha256(bytes_of("somebody"));
-  store::BufferedEvents events;
+  record::BufferedEvents events;
   session::SteadySessionClock clock;
   session::Session session;
 };
@@ -106,15 +106,16 @@ TEST_CASE("a session records when instruments were told, by its clock and theirs
   marks.begin();
   course.session.present(course.now());
   marks.plane_is_on(Clock::now());
-  const std::optional<store::MarksBody> body = marks.take(course.clock);
+  const std::optional<record::MarksBody> body = marks.take(course.clock);
   REQUIRE(body);
   CHECK_FALSE(marks.take(course.clock));
   course.session.end_exploring(course.now());
   course.session.mark(course.now(), *body);
-  const store::Event stored = course.events.events.back();
-  CHECK(stored.kind == store::EventKind::marked);
+  const record::Event stored = course.events.events.back();
+  CHECK(stored.kind == record::EventKind::marked);
   CHECK(stored.body == "{}");
-  const store::MarksBody read = store::marks_from_json(store::unsealed(stored, course.key).value());
+  const record::MarksBody read =
+      record::marks_from_json(record::unsealed(stored, course.key).value());
   CHECK(read.codes == std::vector<std::int64_t>{1, 10});
   CHECK(read.trials == std::vector<std::int64_t>{0, body->trials[1]});
   CHECK(read.at_ns == body->at_ns);
@@ -140,7 +141,7 @@ TEST_CASE("without instruments a session records nothing of them") {
 
 TEST_CASE("marks whose lists differ in length are refused") {
   CHECK_THROWS_AS(
-      store::marks_from_json(R"({"at_ns":[1],"codes":[1,2],"latency_ns":[0],"trials":[0]})"),
+      record::marks_from_json(R"({"at_ns":[1],"codes":[1,2],"latency_ns":[0],"trials":[0]})"),
       StoreError);
 }
 

@@ -13,8 +13,8 @@
 namespace touchtrial {
 namespace {
 
-design::StationKey station_of(const design::StudyKey& key) {
-  return design::station_key(key, key.stations.front().name);
+study::StationKey station_of(const study::StudyKey& key) {
+  return study::station_key(key, key.stations.front().name);
 }
 
 TinyStudyOptions with_pictures() {
@@ -25,8 +25,8 @@ TinyStudyOptions with_pictures() {
 
 /// What a station's file that was changed in one way is refused with.
 std::string fault_of(const TinyStudy& study,
-                     const std::function<void(design::StationKey&)>& change) {
-  design::StationKey station = station_of(study.key());
+                     const std::function<void(study::StationKey&)>& change) {
+  study::StationKey station = station_of(study.key());
   change(station);
   try {
     session::require_opens(study.key(), station, study.pack());
@@ -49,23 +49,23 @@ TEST_CASE("what a station seals opens with its study's key") {
 
 TEST_CASE("every station of a divided study is proved, and an older file of one is not") {
   const TinyStudy study(with_pictures());
-  design::StudyKey key = study.key();
+  study::StudyKey key = study.key();
   const std::vector<std::string> names = {"attic", "cellar"};
-  std::vector<design::Station> stations = design::stations_named(names);
-  design::hand_out_enrolments(stations, 10);
-  design::divide(key, stations);
-  const design::StationKey older = design::station_key(key, "cellar");
-  const design::StudyKey older_key = key;
+  std::vector<study::Station> stations = study::stations_named(names);
+  study::hand_out_enrolments(stations, 10);
+  study::divide(key, stations);
+  const study::StationKey older = study::station_key(key, "cellar");
+  const study::StudyKey older_key = key;
   for (const std::string& name : names) {
-    CHECK_NOTHROW(session::require_opens(key, design::station_key(key, name), study.pack()));
+    CHECK_NOTHROW(session::require_opens(key, study::station_key(key, name), study.pack()));
   }
-  design::hand_out_enrolments(stations, 14);
-  design::divide(key, stations);
+  study::hand_out_enrolments(stations, 14);
+  study::divide(key, stations);
   CHECK_THROWS_WITH(session::require_opens(key, older, study.pack()),
                     holds_text("other enrolment numbers"));
   CHECK_THROWS_WITH(session::require_opens(key, station_of(study.key()), study.pack()),
                     holds_text("a station that the key does not know; give the station the file"));
-  const design::StationKey newer = design::station_key(key, "cellar");
+  const study::StationKey newer = study::station_key(key, "cellar");
   CHECK_THROWS_WITH(session::require_opens(older_key, newer, study.pack()),
                     holds_text("enrolment numbers that the key does not know: the key is from "
                                "before"));
@@ -75,7 +75,7 @@ TEST_CASE("every station of a divided study is proved, and an older file of one 
 
 TEST_CASE("a station's file that differs from the key in anything is refused") {
   const TinyStudy study(with_pictures());
-  using Key = design::StationKey;
+  using Key = study::StationKey;
   CHECK(fault_of(study, [](Key&) {}) == "nothing");
   const std::vector<std::pair<void (*)(Key&), const char*>> changes = {
       {[](Key& key) { key.study_id = "0123"; }, "another study"},
@@ -99,7 +99,7 @@ TEST_CASE("another study's pack, an altered field and an altered picture are ref
   TinyStudyOptions options = with_pictures();
   options.secret = 2;
   const TinyStudy other(options);
-  const design::StationKey station = station_of(study.key());
+  const study::StationKey station = station_of(study.key());
   CHECK_THROWS_WITH(session::require_opens(study.key(), station, other.pack()),
                     holds_text("another study's pack"));
   const auto field =

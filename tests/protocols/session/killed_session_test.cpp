@@ -6,8 +6,8 @@
 #include "protocols/session/session_runner.hpp"
 #include "protocols/session/tiny_study.hpp"
 #include "protocols/simulation/simulated_participant.hpp"
-#include "protocols/store/noting_sink.hpp"
-#include "protocols/store/study_store.hpp"
+#include "record/noting_sink.hpp"
+#include "record/study_store.hpp"
 #include "support/as_recorded.hpp"
 #include "support/catch.hpp"
 #include "support/fault_vfs.hpp"
@@ -20,7 +20,7 @@ namespace {
 using testing::DiskOperation;
 using testing::Fault;
 using testing::FaultVfs;
-using Access = store::StudyStore::Access;
+using Access = record::StudyStore::Access;
 using Kind = Fault::Kind;
 
 constexpr int kTrials = 25;
@@ -48,7 +48,7 @@ class Restless final : public simulation::PromptParticipant {
 /// The study, and a database of it without sessions; made once.
 struct Laboratory {
   Laboratory() {
-    static_cast<void>(store::StudyStore::create(
+    static_cast<void>(record::StudyStore::create(
         empty, session::commitment_of(study.key(), study.pack(), true, false),
         std::chrono::seconds(1), study.key().signer()));
   }
@@ -76,10 +76,10 @@ struct KilledSession {
   /// \return whether it reached its end
   bool start() try {
     ++starts;
-    store::StudyStore store = store::StudyStore::open(path, Access::read_write);
+    record::StudyStore store = record::StudyStore::open(path, Access::read_write);
     store.sign_with(laboratory().study.key().signer());
-    const std::optional<store::SessionRow> row = store.session_of("P001");
-    if (row && row->state != store::SessionState::open) return true;  // ended, but not reported
+    const std::optional<record::SessionRow> row = store.session_of("P001");
+    if (row && row->state != record::SessionState::open) return true;  // ended, but not reported
     run(store, row.has_value());
     return true;
   } catch (const StoreError&) {
@@ -87,28 +87,28 @@ struct KilledSession {
   }
 
   std::filesystem::path path;
-  std::vector<store::Event> acknowledged;
+  std::vector<record::Event> acknowledged;
   int starts = 0;
 
  private:
-  void run(store::StudyStore& store, bool again) {
+  void run(record::StudyStore& store, bool again) {
     Laboratory& lab = laboratory();
-    const design::StudyKey& key = lab.study.key();
-    const store::NewKeys wrapped =
-        store::wrap_participant_key(key.investigator_box, 1, lab.participant_key);
+    const study::StudyKey& key = lab.study.key();
+    const record::NewKeys wrapped =
+        record::wrap_participant_key(key.investigator_box, 1, lab.participant_key);
     NotingSink sink(again ? store.continue_session(1) : store.begin_session(1, wrapped),
                     acknowledged);
-    const design::Schedule schedule =
-        design::make_schedule(key.study, key.draw_of(1, design::Draws::rehearsal));
+    const study::Schedule schedule =
+        study::make_schedule(key.study, key.draw_of(1, study::Draws::rehearsal));
     session::Session session(schedule, key.study.trials,
-                             store::SessionRecorder(1, lab.participant_key, sink));
+                             record::SessionRecorder(1, lab.participant_key, sink));
     session::VirtualSessionClock clock;
     if (again) {
       session.restore(as_recorded(store.events(1), lab.participant_key));
       clock = session::VirtualSessionClock(session.last() + std::chrono::seconds(30));
       session.take_up(clock.now(), {.after = "program-ended", .away_s = 30.0});
     } else {
-      session.open({}, opening(), design::schedule_to_json(schedule, key));
+      session.open({}, opening(), study::schedule_to_json(schedule, key));
     }
     Restless participant(starts);
     session::VirtualExplorer explorer;
@@ -116,13 +116,13 @@ struct KilledSession {
     session::run_session(session, {key, lab.source, participant, clock, explorer, devices});
   }
 
-  static store::SessionOpening opening() {
-    const design::StudyKey& key = laboratory().study.key();
-    store::SessionOpening opening;
+  static record::SessionOpening opening() {
+    const study::StudyKey& key = laboratory().study.key();
+    record::SessionOpening opening;
     opening.participant = "P001";
     opening.enrolment = 1;
     opening.study_id = key.study_id;
-    opening.seal = design::study_seal(key);
+    opening.seal = study::study_seal(key);
     opening.device = "simulated";
     opening.simulated = true;
     return opening;
@@ -130,9 +130,9 @@ struct KilledSession {
 };
 
 /// Requires that every acknowledged event is stored once, as it was acknowledged.
-void require_kept(const std::vector<store::Event>& stored,
-                  const std::vector<store::Event>& acknowledged) {
-  for (const store::Event& event : acknowledged) {
+void require_kept(const std::vector<record::Event>& stored,
+                  const std::vector<record::Event>& acknowledged) {
+  for (const record::Event& event : acknowledged) {
     REQUIRE(event.sequence < static_cast<std::int64_t>(stored.size()));
     REQUIRE(stored[static_cast<std::size_t>(event.sequence)].hash == event.hash);
   }
@@ -140,13 +140,13 @@ void require_kept(const std::vector<store::Event>& stored,
 
 /// Requires that the stylus felt the plane at its own roved gain. The servo's ramp at the beginning
 /// scales the whole force, which keeps its direction.
-void require_felt(const store::StudyStore& store, const design::Presentation& shown) {
+void require_felt(const record::StudyStore& store, const study::Presentation& shown) {
   const Laboratory& lab = laboratory();
   const auto box = store.sealed_trace(1, shown.trial);
   REQUIRE(box);
-  const store::Trace trace = store::unsealed_trace(*box, lab.participant_key).value();
+  const record::Trace trace = record::unsealed_trace(*box, lab.participant_key).value();
   const auto strongest = std::ranges::max_element(
-      trace.samples, {}, [](const store::TraceSample& sample) { return norm(sample.force_n); });
+      trace.samples, {}, [](const record::TraceSample& sample) { return norm(sample.force_n); });
   const Vec3 felt_n = strongest->force_n;
   engine::Bristle touch;
   const Vec3 wanted_n = lab.source.model(lab.study.key().code_of(shown.stimulus), shown.gain_db)
@@ -157,28 +157,28 @@ void require_felt(const store::StudyStore& store, const design::Presentation& sh
 
 /// Requires 25 answers, five for each class, and an intact chain.
 void require_complete(const KilledSession& session) {
-  const store::StudyStore store = store::StudyStore::open(session.path, Access::read_only);
+  const record::StudyStore store = record::StudyStore::open(session.path, Access::read_only);
   REQUIRE_FALSE(store.first_fault());
   REQUIRE(store.sessions().size() == 1);
-  REQUIRE(store.sessions().at(0).state == store::SessionState::completed);
+  REQUIRE(store.sessions().at(0).state == record::SessionState::completed);
   require_kept(store.events(1), session.acknowledged);
   std::map<int, int> class_of_trial;
-  for (const design::Presentation& one :
-       design::make_schedule(laboratory().study.key().study,
-                             laboratory().study.key().draw_of(1, design::Draws::rehearsal))
+  for (const study::Presentation& one :
+       study::make_schedule(laboratory().study.key().study,
+                            laboratory().study.key().draw_of(1, study::Draws::rehearsal))
            .presentations) {
     class_of_trial[one.trial] = one.stimulus.class_index;
     require_felt(store, one);
   }
   std::map<int, int> answered;
-  for (const store::TrialRow& trial : store.trials()) {
-    REQUIRE(trial.state == store::TrialState::answered);
+  for (const record::TrialRow& trial : store.trials()) {
+    REQUIRE(trial.state == record::TrialState::answered);
     ++answered[class_of_trial.at(trial.trial)];
   }
   REQUIRE(store.trials().size() == kTrials);
   for (int class_index = 0; class_index < 5; ++class_index) REQUIRE(answered[class_index] == 5);
   int answers = 0;
-  store.for_each(store::EventKind::answered, [&](const store::Event&) { ++answers; });
+  store.for_each(record::EventKind::answered, [&](const record::Event&) { ++answers; });
   REQUIRE(answers == kTrials);
 }
 
@@ -192,7 +192,7 @@ bool is_finished_after(FaultVfs& vfs, const Fault& fault) {
   if (!vfs.struck()) return false;
   vfs.start_anew();
   {
-    const store::StudyStore store = store::StudyStore::open(session.path, Access::read_only);
+    const record::StudyStore store = record::StudyStore::open(session.path, Access::read_only);
     REQUIRE_FALSE(store.first_fault());
     require_kept(store.events(1), session.acknowledged);
   }

@@ -1,7 +1,7 @@
 /// \file A participant who knows the textures, and whose hand moves a device by itself.
 #pragma once
 
-#include "device/falcon/emulator/hand_on_falcon.hpp"
+#include "device/drivers/falcon/emulator/hand_on_falcon.hpp"
 #include "protocols/session/device_station.hpp"
 #include "protocols/simulation/simulated_participant.hpp"
 

@@ -9,8 +9,8 @@
 #include "protocols/session/tiny_study.hpp"
 #include "protocols/simulation/felt_knowledge.hpp"
 #include "protocols/simulation/simulated_participant.hpp"
-#include "protocols/store/payload_json.hpp"
-#include "protocols/store/study_store.hpp"
+#include "record/payload_json.hpp"
+#include "record/study_store.hpp"
 #include "support/as_recorded.hpp"
 #include "support/catch.hpp"
 #include "support/realtime_watch.hpp"
@@ -64,14 +64,14 @@ class PersonAtStation : public simulation::PromptParticipant {
 struct Laboratory {
   explicit Laboratory(const session::RealTimeOptions& options = as_fast_as_it_goes())
       : explorer(options),
-        session(design::make_schedule(study.key().study,
-                                      study.key().draw_of(1, design::Draws::rehearsal)),
-                study.key().study.trials, store::SessionRecorder(1, participant_key, events)) {}
+        session(study::make_schedule(study.key().study,
+                                     study.key().draw_of(1, study::Draws::rehearsal)),
+                study.key().study.trials, record::SessionRecorder(1, participant_key, events)) {}
 
   session::SessionTally run(session::Participant& participant,
                             session::Experimenter& experimenter = session::no_experimenter()) {
     REQUIRE(station.make_ready() == session::SupplyState::ready);
-    store::SessionOpening opening;
+    record::SessionOpening opening;
     opening.participant = "P001";
     opening.enrolment = 1;
     session::describe_station(opening, station.info(), explorer.scheduling(), device::kServoRateHz,
@@ -82,9 +82,9 @@ struct Laboratory {
   }
   session::SessionTally run() { return run(person); }
 
-  [[nodiscard]] std::vector<store::Event> all(store::EventKind kind) const {
-    std::vector<store::Event> found;
-    for (const store::Event& event : events.events) {
+  [[nodiscard]] std::vector<record::Event> all(record::EventKind kind) const {
+    std::vector<record::Event> found;
+    for (const record::Event& event : events.events) {
       if (event.kind == kind) found.push_back(event);
     }
     return found;
@@ -93,7 +93,7 @@ struct Laboratory {
   TinyStudy study{{.trials = R"({"repeats": 1, "explore_limit_s": 0.4})"}};
   session::StimulusSource source{study.pack(), study.key().study.rendering};
   SecretKey participant_key = sha256(bytes_of("somebody"));
-  store::BufferedEvents events;
+  record::BufferedEvents events;
   Cable cable;
   FakeDevice* device = nullptr;
   Helper helper{cable};
@@ -111,29 +111,29 @@ TEST_CASE("a real-time session stores every answer, every sample and the servo's
   CHECK(take_realtime_offences() == RealtimeOffences{});
   CHECK(lab.session.phase() == session::SessionPhase::closed);
   CHECK(tally.presentations == 5);
-  const std::vector<store::Event> answers = lab.all(store::EventKind::answered);
+  const std::vector<record::Event> answers = lab.all(record::EventKind::answered);
   REQUIRE(answers.size() == 5);
   for (std::size_t i = 0; i < answers.size(); ++i) {
-    const store::Event answer = as_recorded(answers[i], lab.participant_key);
-    CHECK(store::answer_from_json(answer.body).position == lab.person.named[i]);
+    const record::Event answer = as_recorded(answers[i], lab.participant_key);
+    CHECK(record::answer_from_json(answer.body).position == lab.person.named[i]);
   }
   REQUIRE(lab.events.traces.size() == 5);
-  for (const store::Event& stored : lab.all(store::EventKind::trace_stored)) {
-    const store::TraceBody body =
-        store::trace_body_from_json(as_recorded(stored, lab.participant_key).body);
+  for (const record::Event& stored : lab.all(record::EventKind::trace_stored)) {
+    const record::TraceBody body =
+        record::trace_body_from_json(as_recorded(stored, lab.participant_key).body);
     CHECK(body.samples == 500);
     REQUIRE(body.servo);
     CHECK(body.servo->lost == 0);
     CHECK(body.servo->held == 0);
-    const store::TrialMeasures measures =
-        store::measures_from_json(store::unsealed(stored, lab.participant_key).value());
+    const record::TrialMeasures measures =
+        record::measures_from_json(record::unsealed(stored, lab.participant_key).value());
     CHECK(measures.contact_s > 0.3);
     CHECK(measures.limited_ticks);
   }
   CHECK(lab.person.samples() == 500);
   CHECK(lab.cable.last_was_zero);
   CHECK(lab.cable.strong_writes > 5 * 300);
-  const store::SessionOpening opening = store::opening_from_json(lab.events.events.front().body);
+  const record::SessionOpening opening = record::opening_from_json(lab.events.events.front().body);
   REQUIRE(opening.station);
   CHECK(opening.station->model == "Fake One");
   CHECK(opening.station->scheduling == "other, memory not locked");
@@ -149,13 +149,13 @@ TEST_CASE(
   CHECK(lab.helper.consents == 2);
   CHECK(lab.cable.writes_unarmed == 0);
   CHECK(lab.cable.last_was_zero);
-  CHECK(lab.all(store::EventKind::answered).size() == 5);
-  CHECK(lab.all(store::EventKind::paused).size() == 1);
-  const std::vector<store::Event> interrupted = lab.all(store::EventKind::interrupted);
+  CHECK(lab.all(record::EventKind::answered).size() == 5);
+  CHECK(lab.all(record::EventKind::paused).size() == 1);
+  const std::vector<record::Event> interrupted = lab.all(record::EventKind::interrupted);
   REQUIRE(interrupted.size() == 1);
-  const store::TrialBody body = store::trial_from_json(interrupted.front().body);
+  const record::TrialBody body = record::trial_from_json(interrupted.front().body);
   CHECK(body.reason == "device lost");
-  CHECK(store::trial_from_json(lab.all(store::EventKind::presented).back().body).trial ==
+  CHECK(record::trial_from_json(lab.all(record::EventKind::presented).back().body).trial ==
         body.trial);
 }
 
@@ -163,12 +163,12 @@ TEST_CASE("the flight record of an interruption is sealed and holds the ticks be
   Laboratory lab;
   lab.cable.pull_at_tick = 200;
   lab.run();
-  const store::Event event = lab.all(store::EventKind::interrupted).front();
+  const record::Event event = lab.all(record::EventKind::interrupted).front();
   CHECK(event.body.find("link") != std::string::npos);
   CHECK(event.body.find("flight") == std::string::npos);
-  CHECK_FALSE(store::unsealed(event, SecretKey{}));
-  const store::InterruptionDetail detail =
-      store::interruption_from_json(store::unsealed(event, lab.participant_key).value());
+  CHECK_FALSE(record::unsealed(event, SecretKey{}));
+  const record::InterruptionDetail detail =
+      record::interruption_from_json(record::unsealed(event, lab.participant_key).value());
   CHECK(detail.safety_fault == "device");
   CHECK(detail.device_fault == "link_lost");
   CHECK(detail.ticks == 201);
@@ -182,9 +182,9 @@ TEST_CASE("a session ends when the attendant gives up on the device") {
   lab.helper.gives_up = true;
   lab.run();
   CHECK(lab.session.phase() == session::SessionPhase::closed);
-  CHECK(lab.all(store::EventKind::stopped).size() == 1);
-  CHECK(lab.all(store::EventKind::answered).empty());
-  CHECK_FALSE(store::closed_from_json(lab.events.events.back().body).complete);
+  CHECK(lab.all(record::EventKind::stopped).size() == 1);
+  CHECK(lab.all(record::EventKind::answered).empty());
+  CHECK_FALSE(record::closed_from_json(lab.events.events.back().body).complete);
 }
 
 /// Servo time that stands still from one tick on until it is told to go on.
@@ -241,11 +241,11 @@ TEST_CASE("a participant who is done ends the exploration before its time is up"
   Laboratory lab(gated(gate));
   Acting person(lab, gate, false, [](device::ServoControl& servo) { servo.finish(); });
   lab.run(person);
-  CHECK(lab.all(store::EventKind::answered).size() == 5);
-  CHECK(lab.all(store::EventKind::timed_out).empty());
-  for (const store::Event& stored : lab.all(store::EventKind::trace_stored)) {
-    const store::Event recorded = as_recorded(stored, lab.participant_key);
-    CHECK(store::trace_body_from_json(recorded.body).samples <= 201);
+  CHECK(lab.all(record::EventKind::answered).size() == 5);
+  CHECK(lab.all(record::EventKind::timed_out).empty());
+  for (const record::Event& stored : lab.all(record::EventKind::trace_stored)) {
+    const record::Event recorded = as_recorded(stored, lab.participant_key);
+    CHECK(record::trace_body_from_json(recorded.body).samples <= 201);
   }
 }
 
@@ -254,13 +254,13 @@ TEST_CASE("a comfort stop interrupts the trial, and force comes back only with c
   Laboratory lab(gated(gate));
   Acting person(lab, gate, true, [](device::ServoControl& servo) { servo.comfort_stop(); });
   lab.run(person);
-  const std::vector<store::Event> interrupted = lab.all(store::EventKind::interrupted);
+  const std::vector<record::Event> interrupted = lab.all(record::EventKind::interrupted);
   REQUIRE(interrupted.size() == 1);
-  CHECK(store::trial_from_json(interrupted.front().body).reason == "comfort stop");
+  CHECK(record::trial_from_json(interrupted.front().body).reason == "comfort stop");
   CHECK(lab.cable.opened == 1);
   CHECK(lab.helper.consents == 2);
   CHECK(lab.cable.writes_unarmed == 0);
-  CHECK(lab.all(store::EventKind::answered).size() == 5);
+  CHECK(lab.all(record::EventKind::answered).size() == 5);
 }
 
 /// A participant whose servo stands still in each exploration until the experimenter opens the
@@ -307,14 +307,14 @@ TEST_CASE("a pause while a plane is on presents the trial anew, and counts again
   const session::SessionTally tally = lab.run(person, experimenter);
   CHECK(tally.presentations == 6);
   CHECK(lab.helper.consents == 1);
-  const std::vector<store::Event> interrupted = lab.all(store::EventKind::interrupted);
+  const std::vector<record::Event> interrupted = lab.all(record::EventKind::interrupted);
   REQUIRE(interrupted.size() == 1);
-  const store::TrialBody body = store::trial_from_json(interrupted.front().body);
-  CHECK(body.reason == store::kPauseReason);
-  const std::vector<store::Event> presented = lab.all(store::EventKind::presented);
-  CHECK(store::trial_from_json(presented[0].body).trial == body.trial);
-  CHECK(store::trial_from_json(presented[1].body).trial == body.trial);
-  CHECK(lab.all(store::EventKind::answered).size() == 5);
+  const record::TrialBody body = record::trial_from_json(interrupted.front().body);
+  CHECK(body.reason == record::kPauseReason);
+  const std::vector<record::Event> presented = lab.all(record::EventKind::presented);
+  CHECK(record::trial_from_json(presented[0].body).trial == body.trial);
+  CHECK(record::trial_from_json(presented[1].body).trial == body.trial);
+  CHECK(lab.all(record::EventKind::answered).size() == 5);
   CHECK(lab.events.traces.size() == 5);
 }
 
@@ -322,13 +322,13 @@ TEST_CASE("an emergency stop between two explorations applies to the next") {
   Laboratory lab;
   lab.explorer.control().emergency_stop();
   lab.run();
-  const std::vector<store::Event> interrupted = lab.all(store::EventKind::interrupted);
+  const std::vector<record::Event> interrupted = lab.all(record::EventKind::interrupted);
   REQUIRE(interrupted.size() == 1);
-  const store::TrialBody body = store::trial_from_json(interrupted.front().body);
+  const record::TrialBody body = record::trial_from_json(interrupted.front().body);
   CHECK(body.trial == 1);
   CHECK(body.reason == "emergency stop");
   CHECK(lab.helper.consents == 2);
-  CHECK(lab.all(store::EventKind::answered).size() == 5);
+  CHECK(lab.all(record::EventKind::answered).size() == 5);
 }
 
 TEST_CASE("an error on the session's thread leaves the hand without force") {
@@ -356,11 +356,11 @@ TEST_CASE("a real-time session on the machine's own clock records how late its t
   session::RealTimeExplorer explorer(patient);
   session::SteadySessionClock clock;
   session::AlwaysReady devices;
-  store::BufferedEvents events;
+  record::BufferedEvents events;
   session::Session session(
-      design::make_schedule(study.key().study, study.key().draw_of(1, design::Draws::rehearsal)),
-      study.key().study.trials, store::SessionRecorder(1, SecretKey{}, events));
-  store::SessionOpening opening;
+      study::make_schedule(study.key().study, study.key().draw_of(1, study::Draws::rehearsal)),
+      study.key().study.trials, record::SessionRecorder(1, SecretKey{}, events));
+  record::SessionOpening opening;
   opening.participant = "P001";
   opening.enrolment = 1;
   session.open(clock.now(), opening, "{}");
@@ -370,9 +370,10 @@ TEST_CASE("a real-time session on the machine's own clock records how late its t
   // Ticks that were not left out take 1 ms each: no clock runs faster.
   CHECK(tally.duration >= std::chrono::milliseconds(tally.ticks - 5));
   int traces = 0;
-  for (const store::Event& event : events.events) {
-    if (event.kind != store::EventKind::trace_stored) continue;
-    const store::TraceBody body = store::trace_body_from_json(as_recorded(event, SecretKey{}).body);
+  for (const record::Event& event : events.events) {
+    if (event.kind != record::EventKind::trace_stored) continue;
+    const record::TraceBody body =
+        record::trace_body_from_json(as_recorded(event, SecretKey{}).body);
     ++traces;
     REQUIRE(body.servo);
     CHECK(body.servo->rate_hz > 0.0);
@@ -395,7 +396,7 @@ class SeenExplorer final : public session::Explorer {
   [[nodiscard]] session::Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
                                              session::Participant& participant,
                                              const device::ServoOptions& options,
-                                             store::Trace& trace) override {
+                                             record::Trace& trace) override {
     constexpr double kMmATick = 0.02;
     for (std::int64_t tick = 0; tick < 1000; ++tick) {
       participant.feel({{kMmATick * static_cast<double>(tick), 4.0, -1.5}, {0.0, 0.0, 0.6}, tick});
@@ -434,7 +435,7 @@ TEST_CASE("the experimenter sees force and speed of the hand while a plane is on
   HandWatcher watcher;
   SeenExplorer explorer(lab.explorer, [&] { return watcher.seen.has_value(); });
   REQUIRE(lab.station.make_ready() == session::SupplyState::ready);
-  store::SessionOpening opening;
+  record::SessionOpening opening;
   opening.participant = "P001";
   opening.enrolment = 1;
   lab.session.open({}, opening, "{}");

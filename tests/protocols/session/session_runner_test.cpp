@@ -44,10 +44,10 @@ class Unlucky final : public simulation::PromptParticipant {
 
 struct Ran {
   session::SessionTally tally;
-  store::BufferedEvents events;
+  record::BufferedEvents events;
 
-  [[nodiscard]] int count(store::EventKind kind) const {
-    return static_cast<int>(std::ranges::count(events.events, kind, &store::Event::kind));
+  [[nodiscard]] int count(record::EventKind kind) const {
+    return static_cast<int>(std::ranges::count(events.events, kind, &record::Event::kind));
   }
 };
 
@@ -60,9 +60,9 @@ Ran ran_session(const Run& run, const std::string& trials = R"({"repeats": 1})",
   const session::StimulusSource source(study.pack(), study.key().study.rendering);
   Ran ran;
   session::Session session(
-      design::make_schedule(study.key().study, study.key().draw_of(1, design::Draws::rehearsal)),
-      study.key().study.trials, store::SessionRecorder(1, SecretKey{}, ran.events));
-  store::SessionOpening opening;
+      study::make_schedule(study.key().study, study.key().draw_of(1, study::Draws::rehearsal)),
+      study.key().study.trials, record::SessionRecorder(1, SecretKey{}, ran.events));
+  record::SessionOpening opening;
   opening.participant = "P001";
   opening.enrolment = 1;
   session.open({}, opening, "{}");
@@ -71,7 +71,7 @@ Ran ran_session(const Run& run, const std::string& trials = R"({"repeats": 1})",
 }
 
 Ran run(session::Participant& participant) {
-  return ran_session([&](session::Session& session, const design::StudyKey& key,
+  return ran_session([&](session::Session& session, const study::StudyKey& key,
                          const session::StimulusSource& source) {
     const auto tally = session::run_session_in_virtual_time(session, key, source, participant);
     CHECK(session.phase() == session::SessionPhase::closed);
@@ -99,7 +99,7 @@ class PageCountingExplorer final : public session::Explorer {
   [[nodiscard]] session::Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
                                              session::Participant& participant,
                                              const device::ServoOptions& options,
-                                             store::Trace& trace) override {
+                                             record::Trace& trace) override {
     const long before = fetched_so_far();
     for (double y_mm = 0.1; y_mm < plane.height_mm(); y_mm += plane.pitch_mm) {
       for (double x_mm = 0.1; x_mm < plane.width_mm(); x_mm += plane.pitch_mm) {
@@ -131,7 +131,7 @@ class AttendedExplorer final : public session::Explorer {
   [[nodiscard]] session::Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
                                              session::Participant& participant,
                                              const device::ServoOptions& options,
-                                             store::Trace& trace) override {
+                                             record::Trace& trace) override {
     device::ServoControl control;
     participant.exploring(control);
     participant.exploring(control);
@@ -165,7 +165,7 @@ class Insisting final : public session::Experimenter {
 Ran run_with(session::Explorer& explorer, session::SessionClock& clock,
              session::Experimenter& experimenter = session::no_experimenter(), int side_px = 120) {
   return ran_session(
-      [&](session::Session& session, const design::StudyKey& key,
+      [&](session::Session& session, const study::StudyKey& key,
           const session::StimulusSource& source) {
         Unlucky person(1);
         session::AlwaysReady devices;
@@ -224,7 +224,7 @@ class EndingExplorer final : public session::Explorer {
   [[nodiscard]] session::Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
                                              session::Participant& participant,
                                              const device::ServoOptions& options,
-                                             store::Trace& trace) override {
+                                             record::Trace& trace) override {
     session::Exploration done = usual_.explore(force, plane, participant, options, trace);
     ++count_;
     if (which_ == 0 || which_ == count_) done.servo.end = end_;
@@ -256,9 +256,9 @@ Ran run_diary(Diary& diary, session::Explorer& explorer, session::DeviceSupply& 
               const std::string& trials = R"({"repeats": 1})", int practice = 0) {
   session::VirtualSessionClock clock;
   return ran_session(
-      [&](session::Session& session, const design::StudyKey& of_study,
+      [&](session::Session& session, const study::StudyKey& of_study,
           const session::StimulusSource& source) {
-        design::StudyKey key = of_study;
+        study::StudyKey key = of_study;
         key.study.trials.practice = practice;
         key.study.practice.criterion = practice;
         key.study.practice.rounds = 1;
@@ -287,8 +287,8 @@ TEST_CASE("after a comfort stop a page tells the participant, and the experiment
   Reluctant reluctant;
   const Ran ran = run_diary(diary, explorer,
                             needs_consent ? static_cast<session::DeviceSupply&>(reluctant) : ready);
-  CHECK(ran.count(store::EventKind::interrupted) == 1);
-  CHECK(ran.count(store::EventKind::answered) == 5);
+  CHECK(ran.count(record::EventKind::interrupted) == 1);
+  CHECK(ran.count(record::EventKind::answered) == 5);
   const auto notices = diary.all<session::NoticeStep>();
   REQUIRE(!notices.empty());
   for (const auto& [notice, status] : notices) {
@@ -398,15 +398,15 @@ TEST_CASE("times say when an exploration ended, not how long its trace took to p
   const Ran ran = run_with(explorer, clock);
   session::SessionClock::Time plane_on{};
   int ends = 0;
-  const std::vector<store::Event> events = as_recorded(ran.events.events, SecretKey{});
+  const std::vector<record::Event> events = as_recorded(ran.events.events, SecretKey{});
   for (std::size_t i = 0; i < events.size(); ++i) {
-    if (events[i].kind == store::EventKind::presented) plane_on = events[i].at;
-    if (events[i].kind == store::EventKind::interrupted) {
+    if (events[i].kind == record::EventKind::presented) plane_on = events[i].at;
+    if (events[i].kind == record::EventKind::interrupted) {
       CHECK(events[i].at - plane_on == std::chrono::milliseconds(50));
       ++ends;
     }
-    if (events[i].kind == store::EventKind::trace_stored) {
-      REQUIRE(events[i + 1].kind == store::EventKind::answered);
+    if (events[i].kind == record::EventKind::trace_stored) {
+      REQUIRE(events[i + 1].kind == record::EventKind::answered);
       CHECK(events[i + 1].at == events[i].at);
       ++ends;
     }
@@ -426,8 +426,8 @@ TEST_CASE(
   CHECK(ran.tally.ticks == 500);
   CHECK(ran.tally.invalid_trials == 5);
   CHECK(lucky.ticks == 500);
-  CHECK(ran.count(store::EventKind::answered) == 5);
-  CHECK(ran.count(store::EventKind::trace_stored) == 5);
+  CHECK(ran.count(record::EventKind::answered) == 5);
+  CHECK(ran.count(record::EventKind::trace_stored) == 5);
   CHECK(ran.tally.duration == as_recorded(ran.events.events.back(), SecretKey{}).at);
 }
 
@@ -435,10 +435,10 @@ TEST_CASE("a presentation in which the device was lost is repeated and leaves no
   Unlucky unlucky(2);
   const Ran ran = run(unlucky);
   CHECK(ran.tally.presentations == 7);
-  CHECK(ran.count(store::EventKind::interrupted) == 2);
-  CHECK(ran.count(store::EventKind::answered) == 5);
-  CHECK(ran.count(store::EventKind::trace_stored) == 5);
-  CHECK(ran.count(store::EventKind::stopped) == 0);
+  CHECK(ran.count(record::EventKind::interrupted) == 2);
+  CHECK(ran.count(record::EventKind::answered) == 5);
+  CHECK(ran.count(record::EventKind::trace_stored) == 5);
+  CHECK(ran.count(record::EventKind::stopped) == 0);
 }
 
 TEST_CASE("a request to leave while the plane is on is obeyed once, however often it is repeated") {
@@ -448,18 +448,18 @@ TEST_CASE("a request to leave while the plane is on is obeyed once, however ofte
   const Ran ran = run_with(explorer, clock, experimenter);
   CHECK(explorer.was_stopped);
   CHECK(ran.tally.left == "a signal");
-  CHECK(ran.count(store::EventKind::presented) == 1);
-  CHECK(ran.count(store::EventKind::answered) == 0);
-  CHECK(ran.count(store::EventKind::closed) == 0);
+  CHECK(ran.count(record::EventKind::presented) == 1);
+  CHECK(ran.count(record::EventKind::answered) == 0);
+  CHECK(ran.count(record::EventKind::closed) == 0);
 }
 
 TEST_CASE("a session whose device is lost again and again is stopped") {
   Unlucky doomed(1000);
   const Ran ran = run(doomed);
-  CHECK(ran.count(store::EventKind::interrupted) == 6);
-  CHECK(ran.count(store::EventKind::answered) == 0);
-  CHECK(ran.count(store::EventKind::stopped) == 1);
-  CHECK(ran.count(store::EventKind::closed) == 1);
+  CHECK(ran.count(record::EventKind::interrupted) == 6);
+  CHECK(ran.count(record::EventKind::answered) == 0);
+  CHECK(ran.count(record::EventKind::stopped) == 1);
+  CHECK(ran.count(record::EventKind::closed) == 1);
 }
 
 }  // namespace

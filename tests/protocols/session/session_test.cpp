@@ -1,7 +1,7 @@
 #include "protocols/session/session.hpp"
 
 #include "core/errors.hpp"
-#include "protocols/store/payload_json.hpp"
+#include "record/payload_json.hpp"
 #include "support/as_recorded.hpp"
 #include "support/catch.hpp"
 
@@ -19,21 +19,22 @@ using Phase = session::SessionPhase;
 using Input = session::SessionInput;
 
 /// Stores in memory, and refuses events on request, as a full disk does.
-class FickleSink final : public store::EventSink {
+class FickleSink final : public record::EventSink {
  public:
-  void accept(const store::Event& event, const std::optional<store::SealedTrace>& trace) override {
+  void accept(const record::Event& event,
+              const std::optional<record::SealedTrace>& trace) override {
     if (refuses) throw StoreError("the disk is full");
     stored.accept(event, trace);
   }
   bool refuses = false;
-  store::BufferedEvents stored;
+  record::BufferedEvents stored;
 };
 
-design::Schedule schedule_of(int trials) {
-  design::Schedule schedule;
+study::Schedule schedule_of(int trials) {
+  study::Schedule schedule;
   for (int i = 0; i < trials; ++i) {
     schedule.presentations.push_back(
-        {i + 1, i / 2, design::PresentationKind::scored, {.class_index = i % 3}});
+        {i + 1, i / 2, study::PresentationKind::scored, {.class_index = i % 3}});
   }
   schedule.layout = {2, 0, 1};
   return schedule;
@@ -41,8 +42,8 @@ design::Schedule schedule_of(int trials) {
 
 /// A session in which everything before the first trial is done, at 3 s.
 struct Laboratory {
-  explicit Laboratory(int trials = 3, const design::TrialOptions& options = {})
-      : session(schedule_of(trials), options, store::SessionRecorder(1, SecretKey{}, sink)) {
+  explicit Laboratory(int trials = 3, const study::TrialOptions& options = {})
+      : session(schedule_of(trials), options, record::SessionRecorder(1, SecretKey{}, sink)) {
     opening.participant = "P001";
     opening.enrolment = 1;
     session.open(seconds(1), opening, "{}");
@@ -58,9 +59,9 @@ struct Laboratory {
     session.confirm(now += seconds(1));
   }
 
-  [[nodiscard]] std::vector<store::EventKind> kinds() const {
-    std::vector<store::EventKind> kinds;
-    for (const store::Event& event : sink.stored.events) kinds.push_back(event.kind);
+  [[nodiscard]] std::vector<record::EventKind> kinds() const {
+    std::vector<record::EventKind> kinds;
+    for (const record::Event& event : sink.stored.events) kinds.push_back(event.kind);
     return kinds;
   }
   [[nodiscard]] nlohmann::json last_body() const {
@@ -68,7 +69,7 @@ struct Laboratory {
   }
 
   FickleSink sink;
-  store::SessionOpening opening;
+  record::SessionOpening opening;
   session::Session session;
   seconds now{3};
 };
@@ -89,7 +90,7 @@ TEST_CASE("a session goes from opening to closing and records each step") {
   CHECK(lab.session.phase() == Phase::finished);
   CHECK(lab.session.current() == nullptr);
   lab.session.close(lab.now);
-  using Kind = store::EventKind;
+  using Kind = record::EventKind;
   const std::vector<Kind> expected = {
       Kind::opened,   Kind::calibrated, Kind::instructed,    Kind::presented, Kind::first_contact,
       Kind::answered, Kind::presented,  Kind::first_contact, Kind::answered,  Kind::closed};
@@ -189,7 +190,7 @@ TEST_CASE("an answer counts only once the sink has taken it") {
   lab.sink.refuses = false;
   lab.session.confirm(seconds(7));
   CHECK(lab.session.phase() == Phase::finished);
-  CHECK(lab.kinds().back() == store::EventKind::answered);
+  CHECK(lab.kinds().back() == record::EventKind::answered);
 }
 
 TEST_CASE("a plane that could not be recorded is not presented") {
@@ -213,11 +214,11 @@ TEST_CASE("an interrupted trial is repeated after all others, under its number")
 }
 
 TEST_CASE("a presentation that makes room for a pause is the next one, whatever the policy") {
-  for (const auto policy : {design::OnInterruption::repeat, design::OnInterruption::leave_out}) {
+  for (const auto policy : {study::OnInterruption::repeat, study::OnInterruption::leave_out}) {
     Laboratory lab(3, {.on_interruption = policy});
     lab.session.present(lab.now += seconds(1));
     CHECK_FALSE(lab.session.accepts(Input::pause));
-    lab.session.interrupt(lab.now += seconds(1), store::kPauseReason);
+    lab.session.interrupt(lab.now += seconds(1), record::kPauseReason);
     lab.session.pause(lab.now += seconds(1), "telephone");
     CHECK_FALSE(lab.last_body().contains("trial"));
     lab.session.resume(lab.now += seconds(9));
@@ -242,8 +243,8 @@ TEST_CASE("a pause that an answer waits for names the trial, and the answer has 
   lab.session.confirm(lab.now += seconds(1));
 }
 
-store::TrialEvidence evidence_of(const session::Session& session, double height_mm) {
-  store::TraceBody body;
+record::TrialEvidence evidence_of(const session::Session& session, double height_mm) {
+  record::TraceBody body;
   body.trial = 1;
   return session.packed(body, {}, {1000.0, {{{1.0, 2.0, height_mm}, {0.0, 0.0, 0.5}}}});
 }
@@ -251,8 +252,8 @@ store::TrialEvidence evidence_of(const session::Session& session, double height_
 TEST_CASE("an answer is stored with the evidence kept last, and with no other") {
   Laboratory lab;
   lab.session.present(seconds(4));
-  const store::TrialEvidence first = evidence_of(lab.session, 3.0);
-  const store::TrialEvidence last = evidence_of(lab.session, 4.0);
+  const record::TrialEvidence first = evidence_of(lab.session, 3.0);
+  const record::TrialEvidence last = evidence_of(lab.session, 4.0);
   lab.session.keep_evidence(first);
   lab.session.end_exploring(seconds(5));
   lab.session.explore_again(seconds(6));
@@ -263,10 +264,10 @@ TEST_CASE("an answer is stored with the evidence kept last, and with no other") 
   lab.session.confirm(seconds(8));
   REQUIRE(lab.sink.stored.traces.size() == 1);
   CHECK(lab.sink.stored.traces.front().box == last.trace.box);
-  const std::vector<store::EventKind> kinds = lab.kinds();
-  CHECK(kinds[kinds.size() - 3] == store::EventKind::explored_again);
-  CHECK(kinds[kinds.size() - 2] == store::EventKind::trace_stored);
-  CHECK(kinds.back() == store::EventKind::answered);
+  const std::vector<record::EventKind> kinds = lab.kinds();
+  CHECK(kinds[kinds.size() - 3] == record::EventKind::explored_again);
+  CHECK(kinds[kinds.size() - 2] == record::EventKind::trace_stored);
+  CHECK(kinds.back() == record::EventKind::answered);
 }
 
 TEST_CASE("a trial can be interrupted while the participant answers; its evidence is forgotten") {
@@ -292,8 +293,8 @@ TEST_CASE("once time is up, the participant cannot go back to the plane") {
 }
 
 TEST_CASE("an interrupted trial is left out if the study says so") {
-  design::TrialOptions options;
-  options.on_interruption = design::OnInterruption::leave_out;
+  study::TrialOptions options;
+  options.on_interruption = study::OnInterruption::leave_out;
   Laboratory lab(2, options);
   lab.session.present(seconds(4));
   lab.session.interrupt(seconds(5), "device lost");
@@ -314,13 +315,13 @@ TEST_CASE("when time is up an answer is still required") {
 }
 
 TEST_CASE("when time is up and the study says no-response, the trial is over without an answer") {
-  design::TrialOptions options;
-  options.on_timeout = design::OnTimeout::no_response;
+  study::TrialOptions options;
+  options.on_timeout = study::OnTimeout::no_response;
   Laboratory lab(1, options);
   lab.session.present(seconds(4));
   lab.session.time_out(seconds(64));
   CHECK(lab.session.phase() == Phase::finished);
-  CHECK(lab.kinds().back() == store::EventKind::timed_out);
+  CHECK(lab.kinds().back() == record::EventKind::timed_out);
 }
 
 TEST_CASE("only the first contact of a presentation is recorded") {
@@ -328,15 +329,15 @@ TEST_CASE("only the first contact of a presentation is recorded") {
   lab.session.present(seconds(4));
   lab.session.contact(seconds(5));
   lab.session.contact(seconds(6));
-  CHECK(std::ranges::count(lab.kinds(), store::EventKind::first_contact) == 1);
+  CHECK(std::ranges::count(lab.kinds(), record::EventKind::first_contact) == 1);
   lab.session.interrupt(seconds(7), "again");
   lab.session.present(seconds(8));
   lab.session.contact(seconds(9));
-  CHECK(std::ranges::count(lab.kinds(), store::EventKind::first_contact) == 2);
+  CHECK(std::ranges::count(lab.kinds(), record::EventKind::first_contact) == 2);
 }
 
 TEST_CASE("a break is due when the study says so") {
-  design::TrialOptions options;
+  study::TrialOptions options;
   options.break_every = 2;
   Laboratory lab(4, options);
   CHECK_FALSE(lab.session.break_due());
@@ -373,23 +374,23 @@ TEST_CASE("a session that was stopped closes as incomplete") {
 
 session::BlockDrawing two_trials_again() {
   return {[](int block, int, int first_trial) {
-            return std::vector<design::Presentation>{
-                {first_trial, block, design::PresentationKind::scored, {.class_index = 2}},
-                {first_trial + 1, block, design::PresentationKind::scored, {.class_index = 1}}};
+            return std::vector<study::Presentation>{
+                {first_trial, block, study::PresentationKind::scored, {.class_index = 2}},
+                {first_trial + 1, block, study::PresentationKind::scored, {.class_index = 1}}};
           },
-          [](const std::vector<design::Presentation>&) { return std::string("{}"); }};
+          [](const std::vector<study::Presentation>&) { return std::string("{}"); }};
 }
 
-design::TrialOptions restarting_blocks() {
-  design::TrialOptions options;
-  options.on_interruption = design::OnInterruption::restart_block;
+study::TrialOptions restarting_blocks() {
+  study::TrialOptions options;
+  options.on_interruption = study::OnInterruption::restart_block;
   return options;
 }
 
 TEST_CASE("an interrupted trial restarts its block, under new numbers, if the study says so") {
   FickleSink sink;
   session::Session session(schedule_of(4), restarting_blocks(),
-                           store::SessionRecorder(1, SecretKey{}, sink), two_trials_again());
+                           record::SessionRecorder(1, SecretKey{}, sink), two_trials_again());
   session.open({}, {}, "{}");
   session.calibrate({});
   session.instruct({});
@@ -407,13 +408,13 @@ TEST_CASE("an interrupted trial restarts its block, under new numbers, if the st
   }
   CHECK(trials == std::vector<int>{1, 2, 5, 6, 3, 4});
   CHECK_THROWS_AS(session::Session(schedule_of(4), restarting_blocks(),
-                                   store::SessionRecorder(1, SecretKey{}, sink)),
+                                   record::SessionRecorder(1, SecretKey{}, sink)),
                   std::invalid_argument);
 }
 
 /// Runs a session that is killed after `kept` events, resumes it, and runs it to its end. Returns
 /// the trials in the order in which they were answered.
-std::vector<int> killed_after(std::size_t kept, const design::TrialOptions& options) {
+std::vector<int> killed_after(std::size_t kept, const study::TrialOptions& options) {
   FickleSink first;
   const auto run = [](session::Session& session, FickleSink& sink, std::size_t most) {
     const auto over = [&] { return sink.stored.events.size() >= most; };
@@ -441,15 +442,15 @@ std::vector<int> killed_after(std::size_t kept, const design::TrialOptions& opti
       }
     }
   };
-  session::Session session(schedule_of(4), options, store::SessionRecorder(1, SecretKey{}, first),
+  session::Session session(schedule_of(4), options, record::SessionRecorder(1, SecretKey{}, first),
                            two_trials_again());
   session.open({}, {}, "{}");
   run(session, first, kept);
 
   FickleSink second;
-  session::Session again(schedule_of(4), options, store::SessionRecorder(1, SecretKey{}, second),
+  session::Session again(schedule_of(4), options, record::SessionRecorder(1, SecretKey{}, second),
                          two_trials_again());
-  const std::vector<store::Event> so_far = as_recorded(first.stored.events, SecretKey{});
+  const std::vector<record::Event> so_far = as_recorded(first.stored.events, SecretKey{});
   again.restore(so_far);
   CHECK(again.last() == so_far.back().at);
   if (again.phase() != Phase::closed) again.take_up(again.last(), {"program-ended", 1.0, "1"});
@@ -459,12 +460,12 @@ std::vector<int> killed_after(std::size_t kept, const design::TrialOptions& opti
   std::vector<int> answered;
   Digest head{};
   std::int64_t sequence = 0;
-  for (const store::BufferedEvents* part : {&first.stored, &second.stored}) {
-    for (const store::Event& event : part->events) {
+  for (const record::BufferedEvents* part : {&first.stored, &second.stored}) {
+    for (const record::Event& event : part->events) {
       CHECK(event.previous == head);
       CHECK(event.sequence == sequence++);
       head = event.hash;
-      if (event.kind != store::EventKind::answered) continue;
+      if (event.kind != record::EventKind::answered) continue;
       answered.push_back(nlohmann::json::parse(event.body).at("trial"));
     }
   }
@@ -480,8 +481,8 @@ TEST_CASE("a session is resumed where it stopped, after whichever event it was k
     std::ranges::sort(repeated);
     CHECK(repeated == std::vector<int>{1, 2, 3, 4});
 
-    design::TrialOptions options;
-    options.on_interruption = design::OnInterruption::leave_out;
+    study::TrialOptions options;
+    options.on_interruption = study::OnInterruption::leave_out;
     const bool in_trial = kept > 3 && kept < 16 && (kept - 3) % 3 != 0;
     CHECK(killed_after(kept, options).size() == (in_trial ? 3U : 4U));
 
@@ -499,7 +500,7 @@ TEST_CASE("resuming a session ends its pause, and asks nothing twice") {
   lab.session.practise(seconds(3), {1, 1, 2, true});
   lab.session.pause(seconds(4), "telephone");
   FickleSink sink;
-  session::Session again(schedule_of(3), {}, store::SessionRecorder(1, SecretKey{}, sink));
+  session::Session again(schedule_of(3), {}, record::SessionRecorder(1, SecretKey{}, sink));
   again.restore(as_recorded(lab.sink.stored.events, SecretKey{}));
   CHECK(again.phase() == Phase::paused);
   again.take_up(seconds(5), {"program-ended", 1.0, "1"});
@@ -515,9 +516,9 @@ TEST_CASE("events that do not fit the schedule are refused") {
   Laboratory lab(1);
   lab.session.present(seconds(4));
   FickleSink sink;
-  design::Schedule other = schedule_of(1);
+  study::Schedule other = schedule_of(1);
   other.presentations.front().trial = 2;
-  session::Session again(other, {}, store::SessionRecorder(1, SecretKey{}, sink));
+  session::Session again(other, {}, record::SessionRecorder(1, SecretKey{}, sink));
   CHECK_THROWS_WITH(again.restore(as_recorded(lab.sink.stored.events, SecretKey{})),
                     holds_text("verify"));
 }
@@ -528,7 +529,7 @@ std::string end_of(int answers, int at_1, bool may_name_one_key) {
   Laboratory lab(answers);
   for (int trial = 1; trial <= 5; ++trial) lab.run_trial(trial <= at_1 ? 1 : 0);
   FickleSink sink;
-  session::Session again(schedule_of(answers), {}, store::SessionRecorder(1, SecretKey{}, sink));
+  session::Session again(schedule_of(answers), {}, record::SessionRecorder(1, SecretKey{}, sink));
   again.restore(as_recorded(lab.sink.stored.events, SecretKey{}));
   std::chrono::nanoseconds now = again.last();
   again.take_up(now, {"program-ended", 1.0, "1"});

@@ -2,7 +2,7 @@
 
 #include "core/random.hpp"
 #include "engine/image_file.hpp"
-#include "protocols/design/signed_pack.hpp"
+#include "study/signed_pack.hpp"
 
 #include <algorithm>
 #include <array>
@@ -24,7 +24,7 @@ constexpr std::array<Weave, 5> kWeaves = {{{"bark", 12.0, 0.0},
                                            {"straw", 10.0, 135.0},
                                            {"brick", 40.0, 90.0}}};
 
-design::Study study_with(const TinyStudyOptions& options) {
+study::Study study_with(const TinyStudyOptions& options) {
   std::string classes;
   for (const Weave& weave : kWeaves) {
     std::string images;
@@ -42,16 +42,16 @@ design::Study study_with(const TinyStudyOptions& options) {
   const std::string section =
       options.protocol.empty() ? "" : ",\"" + options.protocol + "\":" + options.section;
   const std::string visits = options.visits.empty() ? "" : ",\"visits\":" + options.visits;
-  return design::parse_study(R"({"study":"tiny","protocol":")" + protocol + R"(","classes":[)" +
-                                 classes + R"(],"methods":)" + methods + R"(,"trials":)" +
-                                 options.trials + R"(,"rendering":)" + options.rendering + section +
-                                 visits + R"(,"seed":)" + std::to_string(kTinyStudySeed) + "}",
-                             ".", "tiny.json");
+  return study::parse_study(R"({"study":"tiny","protocol":")" + protocol + R"(","classes":[)" +
+                                classes + R"(],"methods":)" + methods + R"(,"trials":)" +
+                                options.trials + R"(,"rendering":)" + options.rendering + section +
+                                visits + R"(,"seed":)" + std::to_string(kTinyStudySeed) + "}",
+                            ".", "tiny.json");
 }
 
-design::StudyKey key_with(const TinyStudyOptions& options) {
+study::StudyKey key_with(const TinyStudyOptions& options) {
   SeededEntropy entropy(options.secret);
-  design::StudyKey key = design::make_study_key(study_with(options), entropy, true);
+  study::StudyKey key = study::make_study_key(study_with(options), entropy, true);
   if (options.schedules != 0) {
     key.stations.front().secret = SeededEntropy(options.schedules).secret("station");
   }
@@ -64,10 +64,10 @@ engine::Gains times(double factor, const engine::Gains& gains) {
           .height_mm = factor * gains.height_mm};
 }
 
-engine::Pack write_pack(const std::filesystem::path& folder, const design::StudyKey& key,
+engine::Pack write_pack(const std::filesystem::path& folder, const study::StudyKey& key,
                         const TinyStudyOptions& options) {
   std::vector<engine::TextureField> fields;
-  for (const design::KeyedStimulus& keyed : key.stimuli) {
+  for (const study::KeyedStimulus& keyed : key.stimuli) {
     fields.push_back(engine::make_texture_field(tiny_texture(keyed.stimulus, options.side_px),
                                                 key.study.rendering));
   }
@@ -83,8 +83,8 @@ engine::Pack write_pack(const std::filesystem::path& folder, const design::Study
     const double factor = options.smooth ? 0.0 : (is_first ? options.first_gain : 1.0);
     manifest.entries.push_back({code, checksum, {}, times(factor, gains.of_field[i])});
   }
-  design::sign(manifest, key,
-               options.pictures ? design::picture_digests(key.study) : std::vector<Digest>());
+  study::sign(manifest, key,
+              options.pictures ? study::picture_digests(key.study) : std::vector<Digest>());
   engine::write_manifest(folder, manifest);
   return engine::Pack(folder);
 }
@@ -97,8 +97,8 @@ void write_picture(const Plane<double>& texture, const std::filesystem::path& pa
   engine::write_png(path, picture);
 }
 
-design::StudyKey key_in(const std::filesystem::path& folder, const TinyStudyOptions& options) {
-  design::StudyKey key = key_with(options);
+study::StudyKey key_in(const std::filesystem::path& folder, const TinyStudyOptions& options) {
+  study::StudyKey key = key_with(options);
   if (!options.pictures) return key;
   key.study.folder = folder;
   for (int i = 0; i < static_cast<int>(key.study.classes.size()); ++i) {
@@ -110,7 +110,7 @@ design::StudyKey key_in(const std::filesystem::path& folder, const TinyStudyOpti
 
 }  // namespace
 
-Plane<double> tiny_texture(const design::StimulusIndex& stimulus, int side_px) {
+Plane<double> tiny_texture(const study::StimulusIndex& stimulus, int side_px) {
   const Weave& weave = kWeaves[stimulus.class_index];
   const int image = stimulus.exemplar + 100 * stimulus.method;
   RandomStream random(static_cast<std::uint64_t>(image), weave.label);

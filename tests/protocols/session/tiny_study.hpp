@@ -3,7 +3,7 @@
 
 #include "engine/pack/pack.hpp"
 #include "engine/rendering/gains.hpp"
-#include "protocols/design/study_key.hpp"
+#include "study/study_key.hpp"
 #include "support/temp_folder.hpp"
 
 #include <cstdint>
@@ -37,19 +37,19 @@ class TinyStudy {
  public:
   explicit TinyStudy(const TinyStudyOptions& options = {});
 
-  [[nodiscard]] const design::StudyKey& key() const noexcept { return key_; }
+  [[nodiscard]] const study::StudyKey& key() const noexcept { return key_; }
   [[nodiscard]] const engine::Pack& pack() const noexcept { return pack_; }
   /// A new path for a database.
   [[nodiscard]] std::filesystem::path next_database();
 
  private:
   TempFolder folder_;
-  design::StudyKey key_;
+  study::StudyKey key_;
   engine::Pack pack_;
   int databases_ = 0;
 };
 
 /// A texture T of one class, image and method; the same for the same arguments.
-[[nodiscard]] Plane<double> tiny_texture(const design::StimulusIndex& stimulus, int side_px = 120);
+[[nodiscard]] Plane<double> tiny_texture(const study::StimulusIndex& stimulus, int side_px = 120);
 
 }  // namespace touchtrial

@@ -1,4 +1,4 @@
-#include "device/replay/replay_device.hpp"
+#include "device/drivers/replay/replay_device.hpp"
 #include "protocols/session/exploration.hpp"
 #include "protocols/session/stimulus_source.hpp"
 #include "protocols/session/stroker.hpp"
@@ -21,9 +21,10 @@ class KeepingSink final : public device::SampleSink {
 /// The positions of a trace. Under the same model and servo options they give the trace's forces
 /// again, to within its quantisation. This does not hold if the model uses velocities, because a
 /// replay computes them from differences of positions.
-device::RecordedMotion motion_of(const store::Trace& trace) {
+device::RecordedMotion motion_of(const record::Trace& trace) {
   std::vector<Vec3> positions_mm;
-  for (const store::TraceSample& sample : trace.samples) positions_mm.push_back(sample.position_mm);
+  for (const record::TraceSample& sample : trace.samples)
+    positions_mm.push_back(sample.position_mm);
   return {std::move(positions_mm), trace.rate_hz};
 }
 
@@ -32,14 +33,14 @@ TEST_CASE("a stored trial, replayed through its model, gives the same forces") {
   const session::StimulusSource source(study.pack(), study.key().study.rendering);
   simulation::SubjectModel subject;
   subject.explore_s = 2.0;
-  for (const design::KeyedStimulus& keyed : study.key().stimuli) {
+  for (const study::KeyedStimulus& keyed : study.key().stimuli) {
     const engine::RenderingModel& model = source.model(keyed.code);
     Stroker stroker(RandomStream(3, "trace_replay_test"), subject);
-    store::Trace recorded;
+    record::Trace recorded;
     session::ModelForce first(model);
     static_cast<void>(
         session::VirtualExplorer().explore(first, source.plane(), stroker, {}, recorded));
-    const store::Trace stored = store::decode_trace(store::encode_trace(recorded));
+    const record::Trace stored = record::decode_trace(record::encode_trace(recorded));
 
     device::ReplayDevice replay(motion_of(stored));
     session::ModelForce force(model);

@@ -1,9 +1,9 @@
 #include "protocols/session/whole_session.hpp"
 
-#include "analysis/sealed_sessions.hpp"
+#include "analysis/outcomes/sealed_sessions.hpp"
 #include "protocols/session/commitment.hpp"
 #include "protocols/session/instruments.hpp"
-#include "protocols/store/payload_json.hpp"
+#include "record/payload_json.hpp"
 #include "support/as_recorded.hpp"
 #include "support/catch.hpp"
 
@@ -49,7 +49,7 @@ simulation::SubjectModel quick_subject(double explore_s) {
 WholeSession::WholeSession(int repeats, double explore_s)
     : study{{.side_px = 200,
              .trials = R"({"explore_limit_s": 20, "repeats": )" + std::to_string(repeats) + "}"}},
-      store(store::StudyStore::create(
+      store(record::StudyStore::create(
           study.next_database(), session::commitment_of(study.key(), study.pack(), false, false),
           kUtc, study.key().signer())),
       subject(quick_subject(explore_s)),
@@ -64,21 +64,21 @@ session::SessionTally WholeSession::run(session::DeviceStation& station,
                                         session::Experimenter& experimenter) {
   while (station.make_ready() != session::SupplyState::ready) {
   }
-  const std::unique_ptr<store::EventSink> sink = store.begin_session(
-      1, store::wrap_participant_key(study.key().investigator_box, 1, participant_key),
+  const std::unique_ptr<record::EventSink> sink = store.begin_session(
+      1, record::wrap_participant_key(study.key().investigator_box, 1, participant_key),
       [] { return kUtc; });
-  const design::Schedule schedule =
-      design::make_schedule(study.key().study, study.key().draw_of(1, design::Draws::rehearsal));
+  const study::Schedule schedule =
+      study::make_schedule(study.key().study, study.key().draw_of(1, study::Draws::rehearsal));
   session::Session session(schedule, study.key().study.trials,
-                           store::SessionRecorder(1, participant_key, *sink));
-  store::SessionOpening opening;
+                           record::SessionRecorder(1, participant_key, *sink));
+  record::SessionOpening opening;
   opening.participant = "P001";
   opening.enrolment = 1;
   opening.study_id = study.key().study_id;
-  opening.seal = design::study_seal(study.key());
+  opening.seal = study::study_seal(study.key());
   session::describe_station(opening, station.info(), explorer.scheduling(), device::kServoRateHz,
                             "");
-  session.open({}, opening, design::schedule_to_json(schedule, study.key()));
+  session.open({}, opening, study::schedule_to_json(schedule, study.key()));
   session::VirtualSessionClock clock;
   MarkedLine line(instrument.settings);
   return session::run_session(session, {.key = study.key(),
@@ -91,31 +91,31 @@ session::SessionTally WholeSession::run(session::DeviceStation& station,
                                         .instruments = &line});
 }
 
-std::vector<store::Event> WholeSession::all(store::EventKind kind) const {
-  std::vector<store::Event> found;
-  store.for_each(kind, [&](const store::Event& event) { found.push_back(event); });
+std::vector<record::Event> WholeSession::all(record::EventKind kind) const {
+  std::vector<record::Event> found;
+  store.for_each(kind, [&](const record::Event& event) { found.push_back(event); });
   return found;
 }
 
-store::InterruptionDetail WholeSession::check(const std::vector<int>& named, int unlucky) {
+record::InterruptionDetail WholeSession::check(const std::vector<int>& named, int unlucky) {
   std::vector<int> stored;
-  for (const store::Event& event : all(store::EventKind::answered)) {
-    const store::Event answer = as_recorded(event, participant_key);
-    stored.push_back(store::answer_from_json(answer.body).position.value());
+  for (const record::Event& event : all(record::EventKind::answered)) {
+    const record::Event answer = as_recorded(event, participant_key);
+    stored.push_back(record::answer_from_json(answer.body).position.value());
   }
   CHECK(stored == named);
 
-  const std::vector<store::Event> interrupted = all(store::EventKind::interrupted);
+  const std::vector<record::Event> interrupted = all(record::EventKind::interrupted);
   REQUIRE(interrupted.size() == 1);
-  const store::TrialBody body = store::trial_from_json(interrupted[0].body);
+  const record::TrialBody body = record::trial_from_json(interrupted[0].body);
   CHECK(body.trial == unlucky);
   CHECK(body.reason == "device lost");
-  CHECK(store::trial_from_json(all(store::EventKind::presented).back().body).trial == unlucky);
-  CHECK(all(store::EventKind::paused).size() == 1);
+  CHECK(record::trial_from_json(all(record::EventKind::presented).back().body).trial == unlucky);
+  CHECK(all(record::EventKind::paused).size() == 1);
   check_codes(unlucky);
 
-  store::InterruptionDetail detail =
-      store::interruption_from_json(analysis::whole_event(interrupted[0], participant_key).secret);
+  record::InterruptionDetail detail =
+      record::interruption_from_json(analysis::whole_event(interrupted[0], participant_key).secret);
   CHECK(detail.device_fault == "link_lost");
   return detail;
 }
@@ -124,8 +124,8 @@ store::InterruptionDetail WholeSession::check(const std::vector<int>& named, int
 void WholeSession::check_codes(int unlucky) {
   std::string expected = "E1 T0\n";
   bool is_lost = false;
-  for (const store::Event& event : all(store::EventKind::presented)) {
-    const int trial = store::trial_from_json(event.body).trial;
+  for (const record::Event& event : all(record::EventKind::presented)) {
+    const int trial = record::trial_from_json(event.body).trial;
     const std::string of_trial = " T" + std::to_string(trial) + "\n";
     expected += "E10" + of_trial + "E11" + of_trial;
     const bool is_answered = trial != unlucky || std::exchange(is_lost, true);
@@ -139,9 +139,9 @@ void WholeSession::check_codes(int unlucky) {
 
 std::string WholeSession::codes_recorded() const {
   std::string codes;
-  for (const store::Event& event : all(store::EventKind::marked)) {
-    const store::MarksBody marks =
-        store::marks_from_json(store::unsealed(event, participant_key).value());
+  for (const record::Event& event : all(record::EventKind::marked)) {
+    const record::MarksBody marks =
+        record::marks_from_json(record::unsealed(event, participant_key).value());
     for (std::size_t i = 0; i < marks.codes.size(); ++i) {
       codes += "E" + std::to_string(marks.codes[i]) + " T" + std::to_string(marks.trials[i]) + "\n";
       CHECK(marks.latency_ns.at(i) > 0);

@@ -12,7 +12,7 @@
 #include "protocols/session/session_runner.hpp"
 #include "protocols/session/tiny_study.hpp"
 #include "protocols/simulation/felt_knowledge.hpp"
-#include "protocols/store/study_store.hpp"
+#include "record/study_store.hpp"
 
 #include <chrono>
 #include <string>
@@ -30,20 +30,20 @@ struct WholeSession {
                             session::RealTimeExplorer& explorer,
                             session::Experimenter& experimenter = session::no_experimenter());
 
-  [[nodiscard]] std::vector<store::Event> all(store::EventKind kind) const;
+  [[nodiscard]] std::vector<record::Event> all(record::EventKind kind) const;
 
   /// Checks that the answers are stored as they were given, that the device was lost once, in this
   /// trial, which was repeated at the end, and that the instrument was told of all that.
   /// \param named  every choice, in order
   /// \return what is sealed of the loss
-  store::InterruptionDetail check(const std::vector<int>& named, int unlucky);
+  record::InterruptionDetail check(const std::vector<int>& named, int unlucky);
 
   /// Closes the study and opens its results.
   [[nodiscard]] analysis::identification::StudyReport report();
 
   TinyStudy study;
   session::StimulusSource source{study.pack(), study.key().study.rendering};
-  store::StudyStore store;
+  record::StudyStore store;
   SecretKey participant_key = sha256(bytes_of("somebody"));
   simulation::SubjectModel subject;
   simulation::FeltKnowledge knowledge;

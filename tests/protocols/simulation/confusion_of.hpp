@@ -1,8 +1,8 @@
 /// \file The participants' answers, read from a database with the study's key.
 #pragma once
 
-#include "protocols/design/study_key.hpp"
-#include "protocols/store/study_store.hpp"
+#include "record/study_store.hpp"
+#include "study/study_key.hpp"
 #include "support/as_recorded.hpp"
 
 #include <map>
@@ -14,44 +14,43 @@ namespace touchtrial {
 /// Counts of (presented class, answered class).
 using Confusion = std::map<std::pair<int, int>, int>;
 
-[[nodiscard]] inline SecretKey key_of_session(const store::StudyStore& store,
-                                              const design::StudyKey& key, int session) {
-  return store::unwrap_participant_key(key.box(), session, store.wrapped_key(session).value())
+[[nodiscard]] inline SecretKey key_of_session(const record::StudyStore& store,
+                                              const study::StudyKey& key, int session) {
+  return record::unwrap_participant_key(key.box(), session, store.wrapped_key(session).value())
       .value();
 }
 
-[[nodiscard]] inline design::Schedule schedule_of_session(const store::StudyStore& store,
-                                                          const design::StudyKey& key,
-                                                          int session) {
-  return design::schedule_from_json(
-      store::unsealed(store.events(session).front(), key_of_session(store, key, session)).value(),
+[[nodiscard]] inline study::Schedule schedule_of_session(const record::StudyStore& store,
+                                                         const study::StudyKey& key, int session) {
+  return study::schedule_from_json(
+      record::unsealed(store.events(session).front(), key_of_session(store, key, session)).value(),
       key);
 }
 
 /// All trials, with answers and times.
-[[nodiscard]] inline std::vector<store::TrialRow> opened_trials(const store::StudyStore& store,
-                                                                const design::StudyKey& key) {
-  store::DerivedRows rows;
-  for (const store::SessionRow& row : store.sessions()) {
+[[nodiscard]] inline std::vector<record::TrialRow> opened_trials(const record::StudyStore& store,
+                                                                 const study::StudyKey& key) {
+  record::DerivedRows rows;
+  for (const record::SessionRow& row : store.sessions()) {
     const SecretKey own = key_of_session(store, key, row.session);
-    for (const store::Event& event : as_recorded(store.events(row.session), own)) {
+    for (const record::Event& event : as_recorded(store.events(row.session), own)) {
       fold(rows, event);
     }
   }
-  std::vector<store::TrialRow> trials;
+  std::vector<record::TrialRow> trials;
   for (const auto& [id, row] : rows.trials) trials.push_back(row);
   return trials;
 }
 
-[[nodiscard]] inline Confusion confusion_of(const store::StudyStore& store,
-                                            const design::StudyKey& key) {
-  std::map<int, design::Schedule> schedules;
-  for (const store::SessionRow& row : store.sessions()) {
+[[nodiscard]] inline Confusion confusion_of(const record::StudyStore& store,
+                                            const study::StudyKey& key) {
+  std::map<int, study::Schedule> schedules;
+  for (const record::SessionRow& row : store.sessions()) {
     schedules[row.session] = schedule_of_session(store, key, row.session);
   }
   Confusion confusion;
-  for (const store::TrialRow& row : opened_trials(store, key)) {
-    const design::Schedule& schedule = schedules[row.session];
+  for (const record::TrialRow& row : opened_trials(store, key)) {
+    const study::Schedule& schedule = schedules[row.session];
     const int presented = schedule.presentations.at(row.trial - 1).stimulus.class_index;
     if (row.position) ++confusion[{presented, schedule.layout.at(*row.position)}];
   }

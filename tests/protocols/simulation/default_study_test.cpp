@@ -1,8 +1,8 @@
 /// The studies, stimuli and subjects that come with the program, taken together.
-#include "protocols/design/prepare.hpp"
 #include "protocols/session/commitment.hpp"
 #include "protocols/simulation/confusion_of.hpp"
 #include "protocols/simulation/simulation.hpp"
+#include "study/prepare.hpp"
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
@@ -16,14 +16,14 @@ class DefaultStudy {
  public:
   explicit DefaultStudy(const char* study_file = "classification.json")
       : key_(make_key(study_file)) {
-    design::prepare_pack(key_, folder_.path() / "default.sim.pack");
+    study::prepare_pack(key_, folder_.path() / "default.sim.pack");
   }
 
   [[nodiscard]] double accuracy_of(const char* subject_file, int participants) const {
     const engine::Pack pack(folder_.path() / "default.sim.pack");
     const simulation::SubjectModel subject =
         simulation::load_subject_model(kConfig / "subjects" / subject_file);
-    store::StudyStore store = store::StudyStore::create(
+    record::StudyStore store = record::StudyStore::create(
         folder_.path() / (std::string(subject_file) + ".db"),
         session::commitment_of(key_, pack, true, false), {}, key_.signer());
     const simulation::SimulationReport report = simulation::simulate_study(
@@ -34,13 +34,13 @@ class DefaultStudy {
   }
 
  private:
-  [[nodiscard]] static design::StudyKey make_key(const char* study_file) {
+  [[nodiscard]] static study::StudyKey make_key(const char* study_file) {
     SeededEntropy entropy(1);
-    return design::make_study_key(design::load_study(kConfig / study_file), entropy, true);
+    return study::make_study_key(study::load_study(kConfig / study_file), entropy, true);
   }
 
   TempFolder folder_;
-  design::StudyKey key_;
+  study::StudyKey key_;
 };
 
 TEST_CASE("who feels forces is right in the default study as often as published of people") {

@@ -32,7 +32,7 @@ simulation::SubjectModel erring_subject() {
   return subject;
 }
 
-std::vector<std::string> labels_of(const design::Schedule& schedule, const design::Study& study) {
+std::vector<std::string> labels_of(const study::Schedule& schedule, const study::Study& study) {
   std::vector<std::string> labels;
   for (const int picture : schedule.layout) labels.push_back(study.classes[picture].label);
   return labels;
@@ -57,27 +57,27 @@ TEST_CASE("answers to trials that are felt without a session equal those of sess
   TinyStudy study({.images = 2, .trials = trials, .rendering = R"({"max_force_n": 0.9})"});
   const simulation::SubjectModel subject = erring_subject();
   constexpr std::uint64_t kSeed = 17;
-  store::StudyStore store = store::StudyStore::create(
+  record::StudyStore store = record::StudyStore::create(
       study.next_database(), session::commitment_of(study.key(), study.pack(), true, false), {},
       study.key().signer());
   static_cast<void>(simulation::simulate_study(
       study.key(), study.pack(), subject, {.participants = 3, .seed = kSeed, .jobs = 2}, store));
-  const design::Study& design = study.key().study;
+  const study::Study& design = study.key().study;
   const Fields fields(study);
   const simulation::FeltKnowledge knowledge =
       simulation::learn_by_feeling(fields.all, subject, design.rendering.max_force_n, kSeed, 1);
   const simulation::FeltBank places = bank_of(study, {.explorations = 1});
-  const std::vector<store::TrialRow> rows = opened_trials(store, study.key());
+  const std::vector<record::TrialRow> rows = opened_trials(store, study.key());
   std::size_t row = 0;
   for (int number = 1; number <= 3; ++number) {
-    const design::Schedule schedule =
-        design::make_schedule(design, study.key().draw_of(number, design::Draws::rehearsal));
+    const study::Schedule schedule =
+        study::make_schedule(design, study.key().draw_of(number, study::Draws::rehearsal));
     const simulation::Individual individual(subject, kSeed, number);
     const simulation::SeenPictures pictures =
         simulation::see(labels_of(schedule, design), subject, individual, knowledge);
     const simulation::FeltDecision decision(individual, knowledge);
     std::uint64_t nth = 0;
-    for (const design::Presentation& shown : schedule.presentations) {
+    for (const study::Presentation& shown : schedule.presentations) {
       const simulation::LabelledField& field = fields.all.all()[places.place_of(shown.stimulus)];
       const engine::FeltFeatures felt = simulation::feel_trial(
           field, shown.gain_db, fields.all.plane(), design, subject, kSeed, number, ++nth);
@@ -174,7 +174,7 @@ TEST_CASE("a bank counts its explorations, and refuses impossible numbers") {
   const TinyStudy study;
   const Fields fields(study);
   const auto make = [&](const simulation::FeltBankOptions& options,
-                        const design::Progress& progress) {
+                        const study::Progress& progress) {
     return simulation::FeltBank(fields.all, study.key().study, erring_subject(), options, progress);
   };
   int last = 0;

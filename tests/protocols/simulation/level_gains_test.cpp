@@ -22,7 +22,7 @@ class WantedStudy {
                 .rendering = R"({"device": "touch_x", "gains": {"level_db": )" +
                              std::to_string(level_db) + R"(, "curve": "israr_2006"})" +
                              (all_alike ? R"(, "equalise": "level"})" : "}")}) {
-    for (const design::KeyedStimulus& stimulus : study_.key().stimuli) {
+    for (const study::KeyedStimulus& stimulus : study_.key().stimuli) {
       mapped_.push_back(study_.pack().map(stimulus.code));
       views_.push_back(mapped_.back().view());
     }

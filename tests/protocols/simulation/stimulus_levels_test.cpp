@@ -85,7 +85,7 @@ TEST_CASE("a vibration's power at the tip is that of mass, spring and damper") {
 }
 
 TEST_CASE("a study's device is a shipped model or a file beside it, and what is missing is named") {
-  design::Study study;
+  study::Study study;
   study.source = "mine.json";
   CHECK(simulation::level_devices(study).size() == device::shipped_device_models().size());
   study.device = "falcon";

@@ -35,8 +35,8 @@ std::string refusal(const json& subject) {
   return "";
 }
 
-design::Study study_of(const std::vector<std::string>& labels) {
-  design::Study study;
+study::Study study_of(const std::vector<std::string>& labels) {
+  study::Study study;
   for (const std::string& label : labels) study.classes.push_back({label, {}});
   return study;
 }
@@ -108,7 +108,7 @@ TEST_CASE("a subject file is refused with the place and a remedy") {
 }
 
 TEST_CASE("a label that the study does not have is refused with its place") {
-  const design::Study study = study_of({"bark", "straw", "brick"});
+  const study::Study study = study_of({"bark", "straw", "brick"});
   CHECK_NOTHROW(parsed({{"label_swap", pairs({{"bark", "straw"}})}}).check_labels(study));
   CHECK_THROWS_WITH(parsed({{"label_swap", pairs({{"bark", "strew"}})}}).check_labels(study),
                     holds_text("subject.json: /label_swap/0/1") && holds_text("straw"));

@@ -1,8 +1,8 @@
 #include "protocols/simulation/threshold_tracks.hpp"
 
 #include "core/random.hpp"
+#include "device/drivers/simulated/simulated_hand.hpp"
 #include "device/servo/servo.hpp"
-#include "device/simulated/simulated_hand.hpp"
 #include "protocols/simulation/felt_decision.hpp"
 #include "protocols/simulation/felt_exploration.hpp"
 

@@ -1,6 +1,5 @@
 /// Whoever has a blind study's database, and no key and no station's file, finds nothing in it by
 /// which presentations of one stimulus are more alike than others.
-#include "protocols/design/prepare.hpp"
 #include "protocols/session/commitment.hpp"
 #include "protocols/session/session_runner.hpp"
 #include "protocols/session/tiny_study.hpp"
@@ -8,7 +7,8 @@
 #include "protocols/simulation/confusion_of.hpp"
 #include "protocols/simulation/felt_exploration.hpp"
 #include "protocols/simulation/simulated_participant.hpp"
-#include "protocols/store/payload_json.hpp"
+#include "record/payload_json.hpp"
+#include "study/prepare.hpp"
 
 namespace touchtrial {
 namespace {
@@ -19,8 +19,8 @@ namespace {
 constexpr int kPeople = 128;
 constexpr double kExploreLimitS = 10.0;
 
-int stimulus_of(const design::Presentation& presentation) {
-  const bool is_blank = presentation.kind == design::PresentationKind::catch_trial;
+int stimulus_of(const study::Presentation& presentation) {
+  const bool is_blank = presentation.kind == study::PresentationKind::catch_trial;
   return is_blank ? kStimuli - 1 : presentation.stimulus.class_index;
 }
 
@@ -29,7 +29,7 @@ int stimulus_of(const design::Presentation& presentation) {
 /// long enough and far enough, and in part too lightly and too slowly.
 class Person final : public simulation::PromptParticipant {
  public:
-  Person(int number, const design::Schedule& schedule)
+  Person(int number, const study::Schedule& schedule)
       : schedule_(schedule), random_(20, "person", static_cast<std::uint64_t>(number)) {
     is_at_the_edge_ = number % 2 == 0;
     const double own = random_.uniform();
@@ -44,7 +44,7 @@ class Person final : public simulation::PromptParticipant {
   void see_pictures(const std::vector<std::string>&) override {}
   void feel(const device::ServoSample&) noexcept override {}
   [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override {
-    const design::Presentation& presented = schedule_.presentations.at(begun_++);
+    const study::Presentation& presented = schedule_.presentations.at(begun_++);
     stimulus_ = stimulus_of(presented);
     simulation::SubjectModel subject = subject_;
     if (!is_at_the_edge_) {
@@ -63,7 +63,7 @@ class Person final : public simulation::PromptParticipant {
   }
 
  private:
-  const design::Schedule& schedule_;
+  const study::Schedule& schedule_;
   RandomStream random_;
   simulation::SubjectModel subject_;
   bool is_at_the_edge_ = false;
@@ -81,7 +81,7 @@ class LateExplorer final : public session::Explorer {
   [[nodiscard]] session::Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
                                              session::Participant& participant,
                                              const device::ServoOptions& options,
-                                             store::Trace& trace) override {
+                                             record::Trace& trace) override {
     session::Exploration done = virtual_.explore(force, plane, participant, options, trace);
     const auto ticks = static_cast<double>(done.servo.ticks);
     const auto quantile_us = [&](double p) {
@@ -91,7 +91,7 @@ class LateExplorer final : public session::Explorer {
     for (std::int64_t tick = 0; tick < done.servo.ticks; ++tick) {
       done.servo.overruns += random_.below(20'000) == 0 ? 1 : 0;
     }
-    done.health = store::ServoHealth{
+    done.health = record::ServoHealth{
         .rate_hz = 1000.0 + kMeanUs * random_.normal() / ticks,
         .lateness_p50_us = quantile_us(0.5),
         .lateness_p99_us = quantile_us(0.99),
@@ -108,29 +108,29 @@ class LateExplorer final : public session::Explorer {
   RandomStream random_;
 };
 
-void run_session(const design::StudyKey& study, const session::StimulusSource& source, int number,
-                 store::StudyStore& store) {
-  store::BufferedEvents events;
+void run_session(const study::StudyKey& study, const session::StimulusSource& source, int number,
+                 record::StudyStore& store) {
+  record::BufferedEvents events;
   const SecretKey key = SeededEntropy(22).secret("participant " + std::to_string(number));
-  const design::Schedule schedule =
-      design::make_schedule(study.study, study.draw_of(number, design::Draws::rehearsal));
+  const study::Schedule schedule =
+      study::make_schedule(study.study, study.draw_of(number, study::Draws::rehearsal));
   session::Session session(schedule, study.study.trials,
-                           store::SessionRecorder(number, key, events));
-  store::SessionOpening opening;
+                           record::SessionRecorder(number, key, events));
+  record::SessionOpening opening;
   opening.participant = "P" + std::to_string(number);
   opening.enrolment = number;
   opening.study_id = study.study_id;
   opening.seal = study.seal;
   opening.device = "simulated";
   opening.simulated = true;
-  session.open({}, opening, design::schedule_to_json(schedule, study));
+  session.open({}, opening, study::schedule_to_json(schedule, study));
   Person person(number, schedule);
   session::VirtualSessionClock clock;
   LateExplorer explorer(number);
   session::AlwaysReady devices;
   static_cast<void>(
       session::run_session(session, {study, source, person, clock, explorer, devices}));
-  store.add_session(events, store::wrap_participant_key(study.investigator_box, number, key), {});
+  store.add_session(events, record::wrap_participant_key(study.investigator_box, number, key), {});
 }
 
 /// What the key opens, and what would link presentations if it were in clear.
@@ -139,20 +139,20 @@ struct Truth {
   Features leaks;
 };
 
-Truth opened(const store::StudyStore& store, const design::StudyKey& key) {
+Truth opened(const record::StudyStore& store, const study::StudyKey& key) {
   Truth truth;
   constexpr int kMeasuredPeople = 16;
-  for (const store::SessionRow& session : store.sessions()) {
+  for (const record::SessionRow& session : store.sessions()) {
     const SecretKey own = key_of_session(store, key, session.session);
-    for (const design::Presentation& shown :
+    for (const study::Presentation& shown :
          schedule_of_session(store, key, session.session).presentations) {
       truth.stimuli.push_back(stimulus_of(shown));
     }
-    for (const store::Event& stored : store.events(session.session)) {
-      if (stored.kind != store::EventKind::trace_stored) continue;
-      const store::OpenedEvent event = store::opened_event(stored, own).value();
-      const store::TraceBody body = store::trace_body_from_json(event.event.body);
-      const store::TrialMeasures measures = store::measures_from_json(event.secret);
+    for (const record::Event& stored : store.events(session.session)) {
+      if (stored.kind != record::EventKind::trace_stored) continue;
+      const record::OpenedEvent event = record::opened_event(stored, own).value();
+      const record::TraceBody body = record::trace_body_from_json(event.event.body);
+      const record::TrialMeasures measures = record::measures_from_json(event.secret);
       truth.leaks["exact length"].push_back(static_cast<double>(body.samples));
       const double length_s = static_cast<double>(body.samples) / 1e3;
       truth.leaks["whole seconds"].push_back(std::ceil(length_s));
@@ -167,12 +167,12 @@ Truth opened(const store::StudyStore& store, const design::StudyKey& key) {
       if (session.session <= kMeasuredPeople) {
         const auto box = store.sealed_trace(session.session, body.trial).value();
         bytes = static_cast<double>(
-            store::encode_trace(store::unsealed_trace(box, own).value()).size());
+            record::encode_trace(record::unsealed_trace(box, own).value()).size());
       }
       truth.leaks["bytes without padding"].push_back(bytes);
     }
   }
-  for (const store::TrialRow& row : opened_trials(store, key)) {
+  for (const record::TrialRow& row : opened_trials(store, key)) {
     truth.leaks["answer"].push_back(row.position.value());
     const std::chrono::duration<double> took = row.answered_at.value() - row.presented_at;
     truth.leaks["time of the answer"].push_back(took.count());
@@ -186,13 +186,13 @@ struct Findings {
 };
 
 /// Runs a study, and looks at its database without and with the key.
-Findings findings_of(const design::StudyKey& study, const engine::Pack& pack,
+Findings findings_of(const study::StudyKey& study, const engine::Pack& pack,
                      const std::filesystem::path& path) {
   REQUIRE(study.study.trials.explore_limit_s == kExploreLimitS);
   const session::StimulusSource source(pack, study.study.rendering);
   Truth truth;
   {
-    store::StudyStore store = store::StudyStore::create(
+    record::StudyStore store = record::StudyStore::create(
         path, session::commitment_of(study, pack, true, false), {}, study.signer());
     for (int number = 1; number <= kPeople; ++number) run_session(study, source, number, store);
     truth = opened(store, study);
@@ -234,13 +234,13 @@ TEST_CASE("nothing in clear links presentations of a texture at the force limit,
 
 TEST_CASE("nothing in clear links presentations of the default study") {
   const TempFolder folder;
-  design::Study study = design::load_study(std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) / "config" /
-                                           "classification.json");
+  study::Study study = study::load_study(std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) / "config" /
+                                         "classification.json");
   study.trials.explore_limit_s = kExploreLimitS;
   study.trials.practice = 0;
   SeededEntropy entropy(1);
-  const design::StudyKey key = design::make_study_key(study, entropy, true);
-  design::prepare_pack(key, folder.path() / "default.sim.pack");
+  const study::StudyKey key = study::make_study_key(study, entropy, true);
+  study::prepare_pack(key, folder.path() / "default.sim.pack");
   const engine::Pack pack(folder.path() / "default.sim.pack");
   const Findings found = findings_of(key, pack, folder.path() / "default.db");
   CHECK(found.sealed_links == std::set<std::string>{"answer", "bytes without padding",

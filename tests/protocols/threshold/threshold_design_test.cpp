@@ -1,9 +1,9 @@
 // What a study file says of a threshold, and what its participants are presented.
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "protocols/design/protocol.hpp"
-#include "protocols/threshold/design/threshold.hpp"
+#include "protocols/threshold/study/threshold.hpp"
 #include "protocols/threshold/threshold_study.hpp"
+#include "study/protocol.hpp"
 #include "support/catch.hpp"
 
 #include <cmath>
@@ -38,8 +38,8 @@ json order_file() {
   return file;
 }
 
-design::Study study_of(const json& file) {
-  return design::parse_study(file.dump(), ".", "s.json");
+study::Study study_of(const json& file) {
+  return study::parse_study(file.dump(), ".", "s.json");
 }
 
 std::string refusal_of(const json& file) {
@@ -51,17 +51,17 @@ std::string refusal_of(const json& file) {
   return "";
 }
 
-design::ScheduleDraw draw_of(std::uint64_t seed) {
+study::ScheduleDraw draw_of(std::uint64_t seed) {
   return {.secret = SeededEntropy(seed).secret("threshold_design_test")};
 }
 
 /// All presentations of a participant whose answers are right where `is_right` says so.
 template <typename IsRight>
-std::vector<design::Presentation> presented(const design::Study& study,
-                                            const design::ScheduleDraw& draw, IsRight is_right) {
-  const auto order = design::adaptive_order(study, draw);
-  std::vector<design::Presentation> all;
-  for (design::Presentation place : design::make_schedule(study, draw).presentations) {
+std::vector<study::Presentation> presented(const study::Study& study,
+                                           const study::ScheduleDraw& draw, IsRight is_right) {
+  const auto order = study::adaptive_order(study, draw);
+  std::vector<study::Presentation> all;
+  for (study::Presentation place : study::make_schedule(study, draw).presentations) {
     order->choose(place);
     all.push_back(place);
     const int target = place.chosen->target;
@@ -70,7 +70,7 @@ std::vector<design::Presentation> presented(const design::Study& study,
   return all;
 }
 
-const auto kAlwaysRight = [](const design::Presentation&) { return true; };
+const auto kAlwaysRight = [](const study::Presentation&) { return true; };
 
 }  // namespace
 
@@ -126,10 +126,10 @@ TEST_CASE("what cannot be presented or answered is refused with its place and a 
 }
 
 TEST_CASE("of two intervals the target alone has the texture, each equally often") {
-  const design::Study study = study_of(detection_file());
+  const study::Study study = study_of(detection_file());
   std::map<int, int> targets;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    for (const design::Presentation& shown : presented(study, draw_of(seed), kAlwaysRight)) {
+    for (const study::Presentation& shown : presented(study, draw_of(seed), kAlwaysRight)) {
       REQUIRE(shown.intervals.size() == 2);
       const auto target = static_cast<std::size_t>(shown.chosen->target);
       CHECK_FALSE(shown.intervals[target].blank);
@@ -143,11 +143,11 @@ TEST_CASE("of two intervals the target alone has the texture, each equally often
 }
 
 TEST_CASE("the comparison is stronger by the level's share of the standard, up to the ceiling") {
-  const design::Study study = study_of(gain_file());
-  const auto& options = design::threshold::options_of(study);
-  CHECK(design::threshold::comparison_at(options, {0, -6.0}, 0.0) ==
+  const study::Study study = study_of(gain_file());
+  const auto& options = study::threshold::options_of(study);
+  CHECK(study::threshold::comparison_at(options, {0, -6.0}, 0.0) ==
         Approx(-6.0 + 20.0 * std::log10(2.0)));
-  for (const design::Presentation& shown : presented(study, draw_of(3), kAlwaysRight)) {
+  for (const study::Presentation& shown : presented(study, draw_of(3), kAlwaysRight)) {
     const auto target = static_cast<std::size_t>(shown.chosen->target);
     const double standard = shown.chosen->track == 1 ? -18.0 : -6.0;
     const double level = -30.0 + 2.0 * shown.chosen->level;
@@ -161,19 +161,19 @@ TEST_CASE("a track has the levels up to its own standard's ceiling, and no other
   json file = gain_file();
   file["threshold"]["levels"] = {{"from", -30}, {"to", 20}, {"step", 1}};
   file["threshold"]["catch"] = 20;
-  const design::Study study = study_of(file);
-  const auto block = design::threshold::block_settings(study);
+  const study::Study study = study_of(file);
+  const auto block = study::threshold::block_settings(study);
   REQUIRE(block.tracks.size() == 2);
   CHECK(block.tracks[0].levels.back() == 16.0);  // 20 log10(10^(18/20) - 1) = 16.83
   CHECK(block.tracks[1].levels.back() == -1.0);  // 20 log10(10^(6/20) - 1) = -0.04
-  for (const design::Presentation& shown :
-       presented(study, draw_of(4), [](const design::Presentation&) { return false; })) {
-    for (const design::Interval& one : shown.intervals) CHECK(one.gain_db <= 1e-9);
+  for (const study::Presentation& shown :
+       presented(study, draw_of(4), [](const study::Presentation&) { return false; })) {
+    for (const study::Interval& one : shown.intervals) CHECK(one.gain_db <= 1e-9);
   }
 }
 
 TEST_CASE("along the order every level has a method, and either kind is odd equally often") {
-  const design::Study study = study_of(order_file());
+  const study::Study study = study_of(order_file());
   REQUIRE(study.methods.size() == 4);
   const std::vector<double> orders = {0.1, 0.2, 0.1 * (1.0 + std::pow(10.0, 0.3)),
                                       0.1 * (1.0 + std::pow(10.0, 0.6))};
@@ -184,16 +184,16 @@ TEST_CASE("along the order every level has a method, and either kind is odd equa
   int standards_odd = 0;
   int all = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    for (const design::Presentation& shown : presented(study, draw_of(seed), kAlwaysRight)) {
+    for (const study::Presentation& shown : presented(study, draw_of(seed), kAlwaysRight)) {
       std::map<int, int> methods;
-      for (const design::Interval& one : shown.intervals) ++methods[one.stimulus.method];
+      for (const study::Interval& one : shown.intervals) ++methods[one.stimulus.method];
       REQUIRE(methods.size() == 2);
       const auto target = static_cast<std::size_t>(shown.chosen->target);
       CHECK(methods[shown.intervals[target].stimulus.method] == 1);
       standards_odd += shown.intervals[target].stimulus.method == 0 ? 1 : 0;
       ++all;
       std::set<double> gains;
-      for (const design::Interval& one : shown.intervals) {
+      for (const study::Interval& one : shown.intervals) {
         CHECK(one.gain_db <= 0.0);
         CHECK(one.gain_db >= -3.0);
         gains.insert(one.gain_db);
@@ -209,9 +209,9 @@ TEST_CASE("same or different: half of the trials differ, and both kinds of pairs
   file["threshold"]["question"] = "same-different";
   file["threshold"]["procedure"] = "constant-stimuli";
   file["threshold"]["trials"] = 140;
-  const design::Study study = study_of(file);
+  const study::Study study = study_of(file);
   std::map<std::pair<int, bool>, int> seen;
-  for (const design::Presentation& shown : presented(study, draw_of(5), kAlwaysRight)) {
+  for (const study::Presentation& shown : presented(study, draw_of(5), kAlwaysRight)) {
     const double standard = shown.chosen->track == 1 ? -18.0 : -6.0;
     const bool first = shown.intervals[0].gain_db > standard;
     const bool second = shown.intervals[1].gain_db > standard;
@@ -223,16 +223,16 @@ TEST_CASE("same or different: half of the trials differ, and both kinds of pairs
 }
 
 TEST_CASE("levels follow the answers, and a trial that comes again has the same level") {
-  const design::Study study = study_of(detection_file());
+  const study::Study study = study_of(detection_file());
   const auto low = presented(study, draw_of(1), kAlwaysRight);
   const auto high =
-      presented(study, draw_of(1), [](const design::Presentation& p) { return p.trial % 2 == 0; });
+      presented(study, draw_of(1), [](const study::Presentation& p) { return p.trial % 2 == 0; });
   CHECK(low.front().chosen->level == high.front().chosen->level);
   CHECK(low.back().chosen->level < high.back().chosen->level);
 
-  const auto order = design::adaptive_order(study, draw_of(1));
-  design::Presentation fifth{.trial = 5, .stimulus = {}};
-  design::Presentation again{.trial = 6, .stimulus = {}};
+  const auto order = study::adaptive_order(study, draw_of(1));
+  study::Presentation fifth{.trial = 5, .stimulus = {}};
+  study::Presentation again{.trial = 6, .stimulus = {}};
   std::set<int> differing;
   for (int trial = 6; trial < 40; ++trial) {
     order->choose(fifth);
@@ -248,7 +248,7 @@ TEST_CASE("catch trials are at the highest level, and control trials come last w
   json file = detection_file();
   file["threshold"]["catch"] = 6;
   file["threshold"]["control"] = 9;
-  const design::Study study = study_of(file);
+  const study::Study study = study_of(file);
   CHECK(study.scored_trials() == 60);
   const auto all = presented(study, draw_of(2), kAlwaysRight);
   REQUIRE(all.size() == 75);
@@ -256,8 +256,8 @@ TEST_CASE("catch trials are at the highest level, and control trials come last w
   for (std::size_t i = 0; i < all.size(); ++i) {
     CHECK(all[i].hand_off == (i >= 66));
     CHECK(all[i].block == (i >= 66 ? 1 : 0));
-    if (all[i].kind == design::PresentationKind::catch_trial) ++caught;
-    if (all[i].kind != design::PresentationKind::scored) CHECK(all[i].chosen->level == 40);
+    if (all[i].kind == study::PresentationKind::catch_trial) ++caught;
+    if (all[i].kind != study::PresentationKind::scored) CHECK(all[i].chosen->level == 40);
   }
   CHECK(caught == 6);
 }
@@ -310,10 +310,10 @@ TEST_CASE("the section's schema and its reader have the same keys, words and bou
 TEST_CASE("the studies of thresholds that ship can be read, and say what they present") {
   const std::filesystem::path config = std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) / "config";
   for (const char* name : {"detection", "discrimination", "discrimination-order"}) {
-    const design::Study study = design::load_study(config / (std::string(name) + ".json"));
+    const study::Study study = study::load_study(config / (std::string(name) + ".json"));
     CHECK(study.trials.break_after_min == 8.0);
-    CHECK(design::threshold::options_of(study).control_trials > 0);
-    CHECK(design::threshold::options_of(study).practice_trials > 0);
+    CHECK(study::threshold::options_of(study).control_trials > 0);
+    CHECK(study::threshold::options_of(study).practice_trials > 0);
     CHECK(json::parse(study.protocol->options_in_clear(study)).size() == 19);
   }
 }

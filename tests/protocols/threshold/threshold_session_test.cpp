@@ -3,16 +3,16 @@
 #include "analysis/exports/bids/export_bids.hpp"
 #include "analysis/exports/csv_reading.hpp"
 #include "analysis/exports/export_psych_ds.hpp"
-#include "analysis/sealed_sessions.hpp"
+#include "analysis/outcomes/sealed_sessions.hpp"
 #include "analysis/verification/verification.hpp"
 #include "core/errors.hpp"
 #include "protocols/session/commitment.hpp"
 #include "protocols/session/interval_run.hpp"
 #include "protocols/session/stimulus_source.hpp"
 #include "protocols/simulation/simulation.hpp"
-#include "protocols/store/payload_json.hpp"
-#include "protocols/threshold/design/threshold.hpp"
+#include "protocols/threshold/study/threshold.hpp"
 #include "protocols/threshold/threshold_study.hpp"
+#include "record/payload_json.hpp"
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
@@ -27,7 +27,7 @@ class SimulatedThresholds {
   explicit SimulatedThresholds(const TinyStudyOptions& options, int participants = 2,
                                const simulation::SubjectModel& subject = felt_well())
       : tiny_(options),
-        store_(store::StudyStore::create(
+        store_(record::StudyStore::create(
             tiny_.next_database(), session::commitment_of(tiny_.key(), tiny_.pack(), true, false),
             std::chrono::nanoseconds(0), tiny_.key().signer())) {
     report_ = simulation::simulate_study(tiny_.key(), tiny_.pack(), subject,
@@ -46,7 +46,7 @@ class SimulatedThresholds {
   }
 
   [[nodiscard]] const TinyStudy& tiny() const { return tiny_; }
-  [[nodiscard]] store::StudyStore& store() { return store_; }
+  [[nodiscard]] record::StudyStore& store() { return store_; }
   [[nodiscard]] const simulation::SimulationReport& report() const { return report_; }
   [[nodiscard]] analysis::Outcomes outcomes() const {
     return analysis::load_outcomes(store_, tiny_.key());
@@ -54,12 +54,12 @@ class SimulatedThresholds {
 
  private:
   TinyStudy tiny_;
-  store::StudyStore store_;
+  record::StudyStore store_;
   simulation::SimulationReport report_;
 };
 
 double share_right(const analysis::Outcomes& outcomes, double least_db, double most_db) {
-  const auto& options = design::threshold::options_of(outcomes.design);
+  const auto& options = study::threshold::options_of(outcomes.design);
   int right = 0;
   int n = 0;
   for (const analysis::TrialOutcome& trial : outcomes.trials) {
@@ -91,7 +91,7 @@ TEST_CASE("simulated participants feel strong textures, guess at the weakest, an
       ++control;
       heard += trial.correct() ? 1 : 0;
       CHECK_FALSE(trial.scored);
-    } else if (trial.kind == design::PresentationKind::catch_trial) {
+    } else if (trial.kind == study::PresentationKind::catch_trial) {
       ++caught;
       CHECK_FALSE(trial.counted);
     }
@@ -130,11 +130,11 @@ TEST_CASE("datasets of a threshold study keep to BIDS and Psych-DS, and tell int
   analysis::export_psych_ds(source, {}, psych);
   CHECK(bids_faults(bids) == std::vector<std::string>{});
   CHECK(psych_ds_faults(psych) == std::vector<std::string>{});
-  const store::PersonKeys keys =
+  const record::PersonKeys keys =
       analysis::person_keys(study.store(), study.tiny().key(), study.store().sessions().at(0));
   int trials = 0;
-  study.store().for_each(store::EventKind::trace_stored, [&](const store::Event& stored) {
-    const store::TraceBody body = store::trace_body_from_json(
+  study.store().for_each(record::EventKind::trace_stored, [&](const record::Event& stored) {
+    const record::TraceBody body = record::trace_body_from_json(
         analysis::whole_event(stored, keys.participant.value()).event.body);
     REQUIRE(body.explorations.size() == 2);
     REQUIRE(body.began_ns.size() == 2);
@@ -152,7 +152,7 @@ TEST_CASE("datasets of a threshold study keep to BIDS and Psych-DS, and tell int
 
 TEST_CASE("nothing in clear of an adaptive study tells a level, or whether answers were right") {
   SimulatedThresholds study(threshold_options(kTinyDetection), 1);
-  for (const store::Event& event : study.store().events(1)) {
+  for (const record::Event& event : study.store().events(1)) {
     for (const char* word : {"\"level\"", "\"track\"", "\"target\"", "\"position\"", "\"gain"}) {
       CHECK(event.body.find(word) == std::string::npos);
     }
@@ -184,7 +184,7 @@ TEST_CASE("a plane's forces are those of the prepared field times its gain, abou
   options.rendering = R"({"model": ")" + model + R"("})";
   const TinyStudy study(options);
   const session::StimulusSource source(study.pack(), study.key());
-  design::Interval interval;
+  study::Interval interval;
   const engine::RenderingModel whole = source.plane_of(interval);
   interval.gain_db = -20.0;
   const engine::RenderingModel weak = source.plane_of(interval);
@@ -220,7 +220,7 @@ TEST_CASE("an interval's clock runs in contact and inside the windows alone, aft
   const engine::RenderingOptions rendering;
   const engine::TextureField field = engine::make_texture_field(Plane<double>(60, 60), rendering);
   const engine::RenderingModel model(field.view(), rendering, {});
-  const design::IntervalWindows windows;
+  const study::IntervalWindows windows;
   session::IntervalForce force(model, 0.4, windows, 3);
   const auto tick = [&force](double z_mm, double speed_mm_s) {
     return force.force_n({.position_mm = {5.0, 5.0, z_mm}, .velocity_mm_s = {speed_mm_s, 0, 0}});
@@ -247,11 +247,11 @@ TEST_CASE("trials whose intervals are not explored come again, and at last end t
   simulation::SubjectModel subject = SimulatedThresholds::felt_well();
   subject.slowest_mm_s = subject.fastest_mm_s = 10.0;  // below the window
   SimulatedThresholds study(threshold_options(kTinyDetection), 1, subject);
-  const store::SessionRow row = study.store().sessions().front();
-  CHECK(row.state != store::SessionState::completed);
+  const record::SessionRow row = study.store().sessions().front();
+  CHECK(row.state != record::SessionState::completed);
   int again = 0;
-  for (const store::Event& event : study.store().events(1)) {
-    if (event.kind != store::EventKind::interrupted) continue;
+  for (const record::Event& event : study.store().events(1)) {
+    if (event.kind != record::EventKind::interrupted) continue;
     ++again;
     CHECK(event.body.find("not explored as asked for") != std::string::npos);
   }

@@ -1,7 +1,7 @@
 #include "protocols/identification/analysis/cues/cue_report.hpp"
 
-#include "analysis/outcomes.hpp"
-#include "analysis/text_figures.hpp"
+#include "analysis/outcomes/outcomes.hpp"
+#include "analysis/report/text_figures.hpp"
 #include "core/named.hpp"
 #include "protocols/identification/analysis/cues/cue_statistics.hpp"
 #include "protocols/identification/analysis/cues/felt_trials.hpp"
@@ -37,7 +37,7 @@ std::vector<const TrialOutcome*> counted_trials(const Outcomes& outcomes) {
   return trials;
 }
 
-StudyPlane plane_to_feel(const store::StudyStore& store, const design::StudyKey& key,
+StudyPlane plane_to_feel(const record::StudyStore& store, const study::StudyKey& key,
                          std::span<const TrialOutcome* const> trials, const CueOptions& options) {
   if (auto plane = study_plane(key, pack_of(store, key, options.pack))) return *plane;
   return {touched_plane(store, key, trials, key.study.rendering.pitch_mm, options.jobs),
@@ -301,7 +301,7 @@ int traces_to_read(const Outcomes& outcomes) {
   return static_cast<int>(counted_trials(outcomes).size());
 }
 
-CueReport make_cues(const store::StudyStore& store, const design::StudyKey& key,
+CueReport make_cues(const record::StudyStore& store, const study::StudyKey& key,
                     const Outcomes& outcomes, const CueOptions& options) {
   CueReport report;
   report.simulated = outcomes.simulated;

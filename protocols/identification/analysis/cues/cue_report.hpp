@@ -3,7 +3,7 @@
 /// of the JSON: docs/data-dictionary.md, "Cues".
 #pragma once
 
-#include "analysis/outcomes.hpp"
+#include "analysis/outcomes/outcomes.hpp"
 #include "analysis/statistics/descriptive.hpp"
 #include "analysis/statistics/proportion.hpp"
 
@@ -126,7 +126,7 @@ struct CueOptions {
 /// thread uses the store. Memory: features of all trials, 200 bytes each, and 64 traces.
 /// \throws VerificationError if a participant's key or a trace's seal does not open
 /// \throws StoreError if the database cannot be read
-[[nodiscard]] CueReport make_cues(const store::StudyStore& store, const design::StudyKey& key,
+[[nodiscard]] CueReport make_cues(const record::StudyStore& store, const study::StudyKey& key,
                                   const Outcomes& outcomes, const CueOptions& options = {});
 
 }  // namespace touchtrial::analysis::identification

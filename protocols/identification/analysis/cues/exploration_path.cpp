@@ -34,12 +34,12 @@ const TrialOutcome& trial_of(const Outcomes& outcomes, int session, int trial) {
   return *found;
 }
 
-store::Trace trace_of(const store::StudyStore& store, const design::StudyKey& key,
-                      const TrialOutcome& trial) {
+record::Trace trace_of(const record::StudyStore& store, const study::StudyKey& key,
+                       const TrialOutcome& trial) {
   const std::array<const TrialOutcome*, 1> wanted{&trial};
-  store::Trace trace;
+  record::Trace trace;
   const auto missing = visit_traces(
-      store, key, wanted, 1, [&](std::size_t, const store::Trace& opened) { trace = opened; });
+      store, key, wanted, 1, [&](std::size_t, const record::Trace& opened) { trace = opened; });
   if (missing.empty()) return trace;
   throw StoreError(fmt::format("session {}, trial {}: has no trace; choose another trial",
                                trial.row.session, trial.row.trial));
@@ -50,14 +50,14 @@ PathTexture texture_in_pack(const engine::Pack& pack, const std::string& code) {
   return {field.view().geometry, field_picture(field.view()), "the field in the study's pack"};
 }
 
-PathTexture texture_in_image(const design::Study& study, const design::StimulusIndex& stimulus) {
+PathTexture texture_in_image(const study::Study& study, const study::StimulusIndex& stimulus) {
   const auto& image = study.classes[stimulus.class_index].images[stimulus.exemplar];
   GreyImage grey = engine::read_grey_image(study.folder / image);
   const PlaneGeometry geometry{study.rendering.pitch_mm, grey.height(), grey.width()};
   return {geometry, std::move(grey), "the study's image"};
 }
 
-PathTexture texture_of(const design::StudyKey& key, const design::StimulusIndex& stimulus,
+PathTexture texture_of(const study::StudyKey& key, const study::StimulusIndex& stimulus,
                        const std::optional<engine::Pack>& pack) {
   try {
     if (pack) return texture_in_pack(*pack, key.code_of(stimulus));
@@ -85,9 +85,9 @@ PlaneGeometry explored_plane(std::span<const PathPoint> points, double pitch_mm)
   return plane;
 }
 
-double tangential_rms_n(std::span<const store::TraceSample> samples) {
+double tangential_rms_n(std::span<const record::TraceSample> samples) {
   double squares = 0.0;
-  for (const store::TraceSample& sample : samples) {
+  for (const record::TraceSample& sample : samples) {
     squares += sample.force_n.x * sample.force_n.x + sample.force_n.y * sample.force_n.y;
   }
   return std::sqrt(squares / static_cast<double>(samples.size()));
@@ -121,14 +121,14 @@ std::vector<double> surface_of(engine::FieldView field) {
 
 }  // namespace
 
-std::vector<PathPoint> thinned_path(const store::Trace& trace, int count) {
+std::vector<PathPoint> thinned_path(const record::Trace& trace, int count) {
   if (count < 1) throw std::invalid_argument("thinned_path: there must be at least one point");
-  const std::span<const store::TraceSample> samples(trace.samples);
+  const std::span<const record::TraceSample> samples(trace.samples);
   const auto most = static_cast<std::size_t>(count);
   const std::size_t step = std::max<std::size_t>(1, (samples.size() + most - 1) / most);
   std::vector<PathPoint> points;
   for (std::size_t i = 0; i < samples.size(); i += step) {
-    const store::TraceSample& at = samples[i];
+    const record::TraceSample& at = samples[i];
     points.push_back({{at.position_mm.x, at.position_mm.y},
                       {at.force_n.x, at.force_n.y},
                       tangential_rms_n(samples.subspan(i, std::min(step, samples.size() - i))),
@@ -138,11 +138,11 @@ std::vector<PathPoint> thinned_path(const store::Trace& trace, int count) {
   return points;
 }
 
-ExplorationPath exploration_path(const store::StudyStore& store, const design::StudyKey& key,
+ExplorationPath exploration_path(const record::StudyStore& store, const study::StudyKey& key,
                                  const Outcomes& outcomes, int session, int trial,
                                  const std::filesystem::path& pack) {
   const TrialOutcome& felt = trial_of(outcomes, session, trial);
-  const store::Trace trace = trace_of(store, key, felt);
+  const record::Trace trace = trace_of(store, key, felt);
   ExplorationPath path;
   path.simulated = outcomes.simulated;
   const bool is_public = outcomes.collection.is_public;
@@ -172,7 +172,7 @@ TrialName trial_name(const std::string& text) {
       ": is not the name of a trial; write PARTICIPANT:N, like P01:3 for P01's third trial");
 }
 
-ExplorationPath exploration_named(const store::StudyStore& store, const design::StudyKey& key,
+ExplorationPath exploration_named(const record::StudyStore& store, const study::StudyKey& key,
                                   const Outcomes& outcomes, const TrialName& name) {
   const TrialOutcome* trial = trial_named(outcomes, name);
   if (trial == nullptr) {
@@ -183,8 +183,8 @@ ExplorationPath exploration_named(const store::StudyStore& store, const design::
   return exploration_path(store, key, outcomes, trial->row.session, trial->row.trial);
 }
 
-std::vector<ExplorationPath> first_explorations(const store::StudyStore& store,
-                                                const design::StudyKey& key,
+std::vector<ExplorationPath> first_explorations(const record::StudyStore& store,
+                                                const study::StudyKey& key,
                                                 const Outcomes& outcomes) {
   std::vector<ExplorationPath> paths;
   for (int method = 0; method < static_cast<int>(outcomes.methods.size()); ++method) {

@@ -2,13 +2,13 @@
 /// are the data of the figure of an exploration. Also chooses the trials that a report draws.
 #pragma once
 
-#include "analysis/outcomes.hpp"
+#include "analysis/outcomes/outcomes.hpp"
 #include "core/plane.hpp"
 #include "core/plane_geometry.hpp"
 #include "core/vec.hpp"
 #include "engine/rendering/texture_field.hpp"
-#include "protocols/design/study_key.hpp"
-#include "protocols/store/study_store.hpp"
+#include "record/study_store.hpp"
+#include "study/study_key.hpp"
 
 #include <filesystem>
 #include <string>
@@ -55,9 +55,9 @@ struct ExplorationPath {
 /// \param pack  folder; empty: where the key says
 /// \throws StoreError if the outcomes hold no such scored trial, or the trial has no trace
 /// \throws VerificationError if the trace does not open
-[[nodiscard]] ExplorationPath exploration_path(const store::StudyStore& store,
-                                               const design::StudyKey& key,
-                                               const Outcomes& outcomes, int session, int trial,
+[[nodiscard]] ExplorationPath exploration_path(const record::StudyStore& store,
+                                               const study::StudyKey& key, const Outcomes& outcomes,
+                                               int session, int trial,
                                                const std::filesystem::path& pack = {});
 
 /// A trial in the words of the user.
@@ -75,20 +75,20 @@ struct TrialName {
 /// \throws UsageError if there is no such trial
 /// \throws StoreError if the trial has no trace
 /// \throws VerificationError if the trace does not open
-[[nodiscard]] ExplorationPath exploration_named(const store::StudyStore& store,
-                                                const design::StudyKey& key,
+[[nodiscard]] ExplorationPath exploration_named(const record::StudyStore& store,
+                                                const study::StudyKey& key,
                                                 const Outcomes& outcomes, const TrialName& name);
 
 /// For each method, the path of the first counted trial that has a trace, in the order of sessions
 /// and trials. This choice does not depend on what the path shows.
 /// \throws VerificationError if a trace does not open
-[[nodiscard]] std::vector<ExplorationPath> first_explorations(const store::StudyStore& store,
-                                                              const design::StudyKey& key,
+[[nodiscard]] std::vector<ExplorationPath> first_explorations(const record::StudyStore& store,
+                                                              const study::StudyKey& key,
                                                               const Outcomes& outcomes);
 
 /// Every n-th sample of a trace, with the smallest n that gives at most `count` points.
 /// \throws std::invalid_argument if `count` is below 1
-[[nodiscard]] std::vector<PathPoint> thinned_path(const store::Trace& trace,
+[[nodiscard]] std::vector<PathPoint> thinned_path(const record::Trace& trace,
                                                   int count = kMostPathPoints);
 
 /// A field of a pack as a picture of the surface at the centres of its pixels. Mid-grey is the

@@ -1,6 +1,6 @@
 #include "protocols/identification/analysis/cues/felt_trials.hpp"
 
-#include "analysis/sealed_sessions.hpp"
+#include "analysis/outcomes/sealed_sessions.hpp"
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
 #include "core/vec.hpp"
@@ -22,13 +22,13 @@ constexpr std::size_t kBatch = 64;
 
 struct WaitingTrace {
   std::size_t place = 0;
-  const store::TrialRow* row = nullptr;
+  const record::TrialRow* row = nullptr;
   const SecretKey* own = nullptr;
-  store::SealedTrace box;
+  record::SealedTrace box;
   std::string fault;  ///< why it did not open; empty if it opened
 };
 
-std::string refusal(const store::TrialRow& row, const std::string& why) {
+std::string refusal(const record::TrialRow& row, const std::string& why) {
   return fmt::format(
       "session {}, trial {}: the trace {}; run `touchtrial verify` and restore the "
       "database from a backup",
@@ -39,7 +39,7 @@ std::string refusal(const store::TrialRow& row, const std::string& why) {
 /// whichever thread finds one first.
 void open_and_visit(WaitingTrace& sealed, const TraceVisitor& visit) {
   try {
-    const std::optional<store::Trace> trace = store::unsealed_trace(sealed.box, *sealed.own);
+    const std::optional<record::Trace> trace = record::unsealed_trace(sealed.box, *sealed.own);
     if (trace) {
       visit(sealed.place, *trace);
     } else {
@@ -58,16 +58,16 @@ void visit_batch(std::vector<WaitingTrace>& batch, int jobs, const TraceVisitor&
   batch.clear();
 }
 
-engine::FeltFeatures felt_in(const store::Trace& trace, const PlaneGeometry& plane) {
+engine::FeltFeatures felt_in(const record::Trace& trace, const PlaneGeometry& plane) {
   engine::TextureSense sense({.rate_hz = trace.rate_hz, .plane = plane});
-  for (const store::TraceSample& sample : trace.samples)
+  for (const record::TraceSample& sample : trace.samples)
     sense.feel(sample.position_mm, sample.force_n);
   return sense.features();
 }
 
-Vec2 farthest_contact_mm(const store::Trace& trace) {
+Vec2 farthest_contact_mm(const record::Trace& trace) {
   Vec2 farthest_mm;
-  for (const store::TraceSample& sample : trace.samples) {
+  for (const record::TraceSample& sample : trace.samples) {
     if (sample.force_n.z <= 0.0) continue;
     farthest_mm.x = std::max(farthest_mm.x, sample.position_mm.x);
     farthest_mm.y = std::max(farthest_mm.y, sample.position_mm.y);
@@ -77,15 +77,15 @@ Vec2 farthest_contact_mm(const store::Trace& trace) {
 
 }  // namespace
 
-std::vector<std::size_t> visit_traces(const store::StudyStore& store, const design::StudyKey& key,
+std::vector<std::size_t> visit_traces(const record::StudyStore& store, const study::StudyKey& key,
                                       std::span<const TrialOutcome* const> trials, int jobs,
                                       const TraceVisitor& visit, const TraceProgress& progress) {
   const SessionKeys keys = person_keys(store, key);
   std::vector<std::size_t> missing;
   std::vector<WaitingTrace> batch;
   for (std::size_t place = 0; place < trials.size(); ++place) {
-    const store::TrialRow& row = trials[place]->row;
-    std::optional<store::SealedTrace> box = store.sealed_trace(row.session, row.trial);
+    const record::TrialRow& row = trials[place]->row;
+    std::optional<record::SealedTrace> box = store.sealed_trace(row.session, row.trial);
     const auto own = keys.find(row.session);
     if (!box || own == keys.end() || !own->second.participant) {
       missing.push_back(place);
@@ -101,13 +101,13 @@ std::vector<std::size_t> visit_traces(const store::StudyStore& store, const desi
   return missing;
 }
 
-FeltTrials feel_traces(const store::StudyStore& store, const design::StudyKey& key,
+FeltTrials feel_traces(const record::StudyStore& store, const study::StudyKey& key,
                        std::span<const TrialOutcome* const> trials, const PlaneGeometry& plane,
                        int jobs, const TraceProgress& progress) {
   FeltTrials all;
   all.felt.resize(trials.size());
   all.has_trace.resize(trials.size(), true);
-  const auto feel = [&](std::size_t place, const store::Trace& trace) {
+  const auto feel = [&](std::size_t place, const record::Trace& trace) {
     all.felt[place] = felt_in(trace, plane);
   };
   for (const std::size_t place : visit_traces(store, key, trials, jobs, feel, progress)) {
@@ -116,12 +116,12 @@ FeltTrials feel_traces(const store::StudyStore& store, const design::StudyKey& k
   return all;
 }
 
-PlaneGeometry touched_plane(const store::StudyStore& store, const design::StudyKey& key,
+PlaneGeometry touched_plane(const record::StudyStore& store, const study::StudyKey& key,
                             std::span<const TrialOutcome* const> trials, double pitch_mm,
                             int jobs) {
   std::vector<Vec2> farthest_mm(trials.size());
   static_cast<void>(
-      visit_traces(store, key, trials, jobs, [&](std::size_t place, const store::Trace& trace) {
+      visit_traces(store, key, trials, jobs, [&](std::size_t place, const record::Trace& trace) {
         farthest_mm[place] = farthest_contact_mm(trace);
       }));
   PlaneGeometry plane{pitch_mm, 1, 1};

@@ -2,11 +2,11 @@
 /// docs/method.md, "Felt features".
 #pragma once
 
-#include "analysis/outcomes.hpp"
+#include "analysis/outcomes/outcomes.hpp"
 #include "core/plane_geometry.hpp"
 #include "engine/perception/felt_features.hpp"
-#include "protocols/design/study_key.hpp"
-#include "protocols/store/study_store.hpp"
+#include "record/study_store.hpp"
+#include "study/study_key.hpp"
 
 #include <cstddef>
 #include <functional>
@@ -17,7 +17,7 @@ namespace touchtrial::analysis::identification {
 
 /// Called with one opened trace.
 /// \param place  place of its trial in the list of trials
-using TraceVisitor = std::function<void(std::size_t place, const store::Trace& trace)>;
+using TraceVisitor = std::function<void(std::size_t place, const record::Trace& trace)>;
 
 /// Called from time to time on the calling thread with the number of traces that are done; may be
 /// empty.
@@ -29,7 +29,7 @@ using TraceProgress = std::function<void(int done, int of)>;
 /// \param jobs  threads, >= 1; 0: one for each core
 /// \return the places of trials that have no trace
 /// \throws VerificationError, naming the first trial, if a trace does not open
-std::vector<std::size_t> visit_traces(const store::StudyStore& store, const design::StudyKey& key,
+std::vector<std::size_t> visit_traces(const record::StudyStore& store, const study::StudyKey& key,
                                       std::span<const TrialOutcome* const> trials, int jobs,
                                       const TraceVisitor& visit,
                                       const TraceProgress& progress = {});
@@ -46,15 +46,15 @@ struct FeltTrials {
 /// \param plane  the plane whose parts are told apart; traces are in its coordinates
 /// \param jobs  threads; 0: one for each core
 /// \throws VerificationError, naming the first trial, if a trace does not open
-[[nodiscard]] FeltTrials feel_traces(const store::StudyStore& store, const design::StudyKey& key,
+[[nodiscard]] FeltTrials feel_traces(const record::StudyStore& store, const study::StudyKey& key,
                                      std::span<const TrialOutcome* const> trials,
                                      const PlaneGeometry& plane, int jobs = 0,
                                      const TraceProgress& progress = {});
 
 /// A plane from the corner to the farthest contact of any hand, for studies whose plane size is
 /// unknown. Reads all traces; never empty.
-[[nodiscard]] PlaneGeometry touched_plane(const store::StudyStore& store,
-                                          const design::StudyKey& key,
+[[nodiscard]] PlaneGeometry touched_plane(const record::StudyStore& store,
+                                          const study::StudyKey& key,
                                           std::span<const TrialOutcome* const> trials,
                                           double pitch_mm, int jobs = 0);
 

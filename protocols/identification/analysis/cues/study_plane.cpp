@@ -26,9 +26,9 @@ PlaneGeometry plane_of_pack(const engine::Pack& pack) {
   return common;
 }
 
-PlaneGeometry plane_of_images(const design::Study& study) {
+PlaneGeometry plane_of_images(const study::Study& study) {
   PlaneGeometry common;
-  for (const design::StudyClass& one : study.classes) {
+  for (const study::StudyClass& one : study.classes) {
     for (const auto& image : one.images) {
       const GreyImage picture = engine::read_grey_image(study.folder / image);
       keep_common(common, {study.rendering.pitch_mm, picture.height(), picture.width()});
@@ -50,7 +50,7 @@ std::optional<StudyPlane> if_readable(const char* source, Make make) {
 
 }  // namespace
 
-std::optional<engine::Pack> pack_of(const store::StudyStore& store, const design::StudyKey& key,
+std::optional<engine::Pack> pack_of(const record::StudyStore& store, const study::StudyKey& key,
                                     const std::filesystem::path& folder) {
   try {
     engine::Pack pack(folder.empty() ? key.pack_folder : folder);
@@ -61,7 +61,7 @@ std::optional<engine::Pack> pack_of(const store::StudyStore& store, const design
   return std::nullopt;
 }
 
-std::optional<StudyPlane> study_plane(const design::StudyKey& key,
+std::optional<StudyPlane> study_plane(const study::StudyKey& key,
                                       const std::optional<engine::Pack>& pack) {
   if (pack) {
     if (auto plane = if_readable("the study's pack", [&] { return plane_of_pack(*pack); })) {

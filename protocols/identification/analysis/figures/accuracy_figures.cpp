@@ -1,5 +1,5 @@
-#include "analysis/figures/style.hpp"
 #include "analysis/paper/published.hpp"
+#include "analysis/report/figures/style.hpp"
 #include "protocols/identification/analysis/figures/figure_kinds.hpp"
 
 #include <algorithm>

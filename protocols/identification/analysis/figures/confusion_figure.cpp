@@ -1,5 +1,5 @@
-#include "analysis/figures/style.hpp"
-#include "analysis/text_table.hpp"
+#include "analysis/report/figures/style.hpp"
+#include "analysis/report/text_table.hpp"
 #include "protocols/identification/analysis/figures/figure_kinds.hpp"
 
 #include <algorithm>

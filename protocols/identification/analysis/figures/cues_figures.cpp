@@ -1,4 +1,4 @@
-#include "analysis/figures/style.hpp"
+#include "analysis/report/figures/style.hpp"
 #include "protocols/identification/analysis/figures/figure_kinds.hpp"
 
 #include <algorithm>

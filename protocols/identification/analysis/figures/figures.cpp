@@ -1,6 +1,6 @@
 #include "protocols/identification/analysis/figures/figures.hpp"
 
-#include "analysis/figures/study_figures.hpp"
+#include "analysis/report/figures/study_figures.hpp"
 #include "protocols/identification/analysis/figures/figure_kinds.hpp"
 
 #include <utility>

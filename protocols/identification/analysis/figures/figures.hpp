@@ -1,7 +1,7 @@
 /// \file The figures of a study's report.
 #pragma once
 
-#include "analysis/figures/figure.hpp"
+#include "analysis/report/figures/figure.hpp"
 #include "protocols/identification/analysis/cues/cue_report.hpp"
 #include "protocols/identification/analysis/cues/exploration_path.hpp"
 #include "protocols/identification/analysis/report.hpp"

@@ -1,6 +1,6 @@
 // How sure participants were of their answers, and how long they took.
-#include "analysis/page/wording.hpp"
-#include "analysis/text_figures.hpp"
+#include "analysis/report/page/wording.hpp"
+#include "analysis/report/text_figures.hpp"
 #include "protocols/identification/analysis/page/sections.hpp"
 
 #include <cstddef>

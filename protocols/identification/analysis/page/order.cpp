@@ -1,5 +1,5 @@
-#include "analysis/page/wording.hpp"
-#include "analysis/text_figures.hpp"
+#include "analysis/report/page/wording.hpp"
+#include "analysis/report/text_figures.hpp"
 #include "protocols/identification/analysis/page/sections.hpp"
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "analysis/page/wording.hpp"
+#include "analysis/report/page/wording.hpp"
 #include "protocols/identification/analysis/page/sections.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-#include "analysis/page/frame_sections.hpp"
-#include "analysis/page/wording.hpp"
-#include "analysis/text_figures.hpp"
+#include "analysis/report/page/frame_sections.hpp"
+#include "analysis/report/page/wording.hpp"
+#include "analysis/report/text_figures.hpp"
 #include "core/named.hpp"
 #include "protocols/identification/analysis/page/sections.hpp"
 

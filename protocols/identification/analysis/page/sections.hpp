@@ -1,8 +1,8 @@
 /// \file The page of an identification study and its sections, as its results use them.
 #pragma once
 
-#include "analysis/page/document.hpp"
-#include "analysis/page/study_document.hpp"
+#include "analysis/report/page/document.hpp"
+#include "analysis/report/page/study_document.hpp"
 #include "protocols/identification/analysis/report.hpp"
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 /// \file The figures of a threshold study's report.
 #pragma once
 
-#include "analysis/figures/figure.hpp"
+#include "analysis/report/figures/figure.hpp"
 #include "protocols/threshold/analysis/report.hpp"
 
 #include <optional>

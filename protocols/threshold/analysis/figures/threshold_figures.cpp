@@ -1,5 +1,5 @@
-#include "analysis/figures/study_figures.hpp"
-#include "analysis/figures/style.hpp"
+#include "analysis/report/figures/study_figures.hpp"
+#include "analysis/report/figures/style.hpp"
 #include "protocols/threshold/analysis/figures/figures.hpp"
 
 #include <algorithm>
@@ -38,7 +38,7 @@ std::string level_axis(const ThresholdReport& report) {
 }
 
 std::string unit_label(const ThresholdReport& report) {
-  return report.options().task == design::threshold::Task::detection
+  return report.options().task == study::threshold::Task::detection
              ? "level, dB re the pack''s gain"
              : "level, 20 log10 of the difference";
 }

@@ -1,4 +1,4 @@
-#include "analysis/page/wording.hpp"
+#include "analysis/report/page/wording.hpp"
 #include "core/text.hpp"
 #include "protocols/threshold/analysis/page/sections.hpp"
 

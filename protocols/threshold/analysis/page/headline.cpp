@@ -1,4 +1,4 @@
-#include "analysis/page/wording.hpp"
+#include "analysis/report/page/wording.hpp"
 #include "core/text.hpp"
 #include "protocols/threshold/analysis/page/sections.hpp"
 
@@ -7,10 +7,10 @@
 namespace touchtrial::analysis::threshold {
 namespace {
 
-using design::threshold::Along;
-using design::threshold::Question;
-using design::threshold::Task;
-using design::threshold::ThresholdOptions;
+using study::threshold::Along;
+using study::threshold::Question;
+using study::threshold::Task;
+using study::threshold::ThresholdOptions;
 
 std::string question_words(const ThresholdOptions& options) {
   switch (options.question) {
@@ -115,7 +115,7 @@ void add_headline(const ThresholdReport& report, Section& section) {
   const auto say = [&](std::string text) { section.blocks.emplace_back(Cited{std::move(text)}); };
   say(fmt::format("Measured: {}. Participants said {}. Levels are {}, from {} to {}.{}",
                   task_words(options), question_words(options),
-                  design::threshold::unit_of_level(options),
+                  study::threshold::unit_of_level(options),
                   plain_figure(options.track.levels.front(), 1),
                   plain_figure(options.track.levels.back(), 1), criterion_words(report)));
   if (report.tracks.empty()) {

@@ -1,8 +1,8 @@
 /// \file The page of a threshold study and its sections, as its results use them.
 #pragma once
 
-#include "analysis/page/document.hpp"
-#include "analysis/page/study_document.hpp"
+#include "analysis/report/page/document.hpp"
+#include "analysis/report/page/study_document.hpp"
 #include "protocols/threshold/analysis/report.hpp"
 
 #include <string>
@@ -17,9 +17,9 @@ namespace touchtrial::analysis::threshold {
                                          const std::vector<double>& levels);
 /// "11.5% [9.8, 13.4]", or the change of an order: "0.120 [0.101, 0.140]"
 [[nodiscard]] std::string quantity_text(const Quantity& quantity,
-                                        const design::threshold::ThresholdOptions& options);
+                                        const study::threshold::ThresholdOptions& options);
 /// What quantity_text shows: "Weber fraction", "change of order"; empty for detection.
-[[nodiscard]] std::string quantity_name(const design::threshold::ThresholdOptions& options);
+[[nodiscard]] std::string quantity_name(const study::threshold::ThresholdOptions& options);
 
 /// Adds what was asked, each standard's threshold, and what the control block says of it.
 void add_headline(const ThresholdReport& report, Section& section);

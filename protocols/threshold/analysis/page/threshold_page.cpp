@@ -44,7 +44,7 @@ void place_picture(const Picture& picture, std::vector<Section>& sections) {
 }
 
 std::string procedure_words(const ThresholdReport& report) {
-  const design::threshold::ThresholdOptions& options = report.options();
+  const study::threshold::ThresholdOptions& options = report.options();
   std::string text = fmt::format("Procedure: {}, {} a track.", options.track.procedure,
                                  counted(options.track.trials, "trial"));
   if (report.without_answer > 0) {

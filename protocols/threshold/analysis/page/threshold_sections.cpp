@@ -1,4 +1,4 @@
-#include "analysis/page/wording.hpp"
+#include "analysis/report/page/wording.hpp"
 #include "core/text.hpp"
 #include "protocols/threshold/analysis/page/sections.hpp"
 
@@ -9,7 +9,7 @@
 namespace touchtrial::analysis::threshold {
 namespace {
 
-using design::threshold::ThresholdOptions;
+using study::threshold::ThresholdOptions;
 
 /// How the quoted thresholds were estimated.
 std::string quoted_words(const ThresholdReport& report) {
@@ -21,7 +21,7 @@ Table standards_table(const ThresholdReport& report) {
   const std::string quantity = quantity_name(options);
   Table table{"thresholds-by-standard",
               fmt::format("Thresholds in {}, {}; means over participants with t intervals",
-                          design::threshold::unit_of_level(options), quoted_words(report)),
+                          study::threshold::unit_of_level(options), quoted_words(report)),
               {{"standard", Align::left},
                {"n"},
                {"threshold and 95% (dB)"},
@@ -84,7 +84,7 @@ Table tracks_table(const ThresholdReport& report) {
   const ThresholdOptions& options = report.options();
   Table table{
       "tracks",
-      fmt::format("Every track: thresholds in {}", design::threshold::unit_of_level(options)),
+      fmt::format("Every track: thresholds in {}", study::threshold::unit_of_level(options)),
       {{"participant", Align::left},
        {"track"},
        {"standard", Align::left},

@@ -1,13 +1,13 @@
-#include "analysis/page/wording.hpp"
+#include "analysis/report/page/wording.hpp"
 #include "protocols/threshold/analysis/page/sections.hpp"
 
 namespace touchtrial::analysis::threshold {
 namespace {
 
-using design::threshold::Along;
-using design::threshold::Task;
-using design::threshold::ThresholdOptions;
 using procedures::Censored;
+using study::threshold::Along;
+using study::threshold::Task;
+using study::threshold::ThresholdOptions;
 
 constexpr const char* kOpenEnd = "open";
 

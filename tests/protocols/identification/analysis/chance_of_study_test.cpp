@@ -15,26 +15,26 @@ using namespace analysis::identification;
 /// Whether a participant answers right, or without regard to what was felt.
 enum class Sense { everything, nothing };
 
-design::Study study_with(const std::string& trials) {
+study::Study study_with(const std::string& trials) {
   auto text =
-      nlohmann::json::parse(fake_study_text(design::identification::classification(), "bark"));
+      nlohmann::json::parse(fake_study_text(study::identification::classification(), "bark"));
   text["trials"].update(nlohmann::json::parse(trials));
-  return design::parse_study(text.dump(), ".", "fake.json");
+  return study::parse_study(text.dump(), ".", "fake.json");
 }
 
 void add_session(analysis::Outcomes& outcomes, int session, Sense sense, RandomStream& random) {
   SeededEntropy entropy(static_cast<std::uint64_t>(session));
-  const design::ScheduleDraw draw{entropy.secret("schedule"), session};
-  for (const design::Presentation& shown :
-       design::make_schedule(outcomes.design, draw).presentations) {
+  const study::ScheduleDraw draw{entropy.secret("schedule"), session};
+  for (const study::Presentation& shown :
+       study::make_schedule(outcomes.design, draw).presentations) {
     analysis::TrialOutcome trial;
     trial.row.session = session;
     trial.row.trial = shown.trial;
     trial.row.block = shown.block;
-    trial.row.state = store::TrialState::answered;
+    trial.row.state = record::TrialState::answered;
     trial.stimulus = shown.stimulus;
     trial.kind = shown.kind;
-    trial.scored = shown.kind == design::PresentationKind::scored;
+    trial.scored = shown.kind == study::PresentationKind::scored;
     trial.counted = trial.scored;
     const auto guess = static_cast<int>(random.below(outcomes.classes.size()));
     trial.response = sense == Sense::everything ? shown.stimulus.class_index : guess;
@@ -42,7 +42,7 @@ void add_session(analysis::Outcomes& outcomes, int session, Sense sense, RandomS
   }
 }
 
-analysis::Outcomes outcomes_of(const design::Study& study, Sense sense, int participants,
+analysis::Outcomes outcomes_of(const study::Study& study, Sense sense, int participants,
                                std::uint64_t index) {
   analysis::Outcomes outcomes;
   outcomes.design = study;
@@ -84,7 +84,7 @@ TEST_CASE("Guesses are above chance no more often than p says, whatever the orde
   constexpr int kStudies = 30;
   for (const char* rule : kRules) {
     CAPTURE(rule);
-    const design::Study study = study_with(rule);
+    const study::Study study = study_with(rule);
     int significant = 0;
     double sum = 0.0;
     for (int i = 0; i < kStudies; ++i) {
@@ -130,7 +130,7 @@ TEST_CASE("A restarted block is dealt as one, without its void presentations") {
   const int all = chance_of(outcomes, 0)->trials;
   std::vector<analysis::TrialOutcome> again = outcomes.trials;
   for (analysis::TrialOutcome& trial : again) {
-    trial.row.state = store::TrialState::voided;
+    trial.row.state = record::TrialState::voided;
     trial.counted = false;
   }
   outcomes.trials.insert(outcomes.trials.begin(), again.begin(), again.end());

@@ -1,7 +1,7 @@
 #include "protocols/identification/analysis/cues/cue_report.hpp"
 
 #include "analysis/fake_study.hpp"
-#include "analysis/outcomes.hpp"
+#include "analysis/outcomes/outcomes.hpp"
 #include "core/errors.hpp"
 #include "core/random.hpp"
 #include "protocols/identification/analysis/cues/cues_json.hpp"
@@ -18,13 +18,13 @@ namespace {
 using namespace analysis::identification;
 
 /// The same wave, stronger for each class and a little different in each trial.
-store::Trace stronger_by_class(const design::Presentation& shown) {
+record::Trace stronger_by_class(const study::Presentation& shown) {
   const double strength_n = 0.05 * (1 << shown.stimulus.class_index);
   return stroking_over_wave(3.0, strength_n * (1.0 + 0.001 * shown.trial));
 }
 
 /// An octave shorter for each class; of any strength.
-store::Trace shorter_by_class(const design::Presentation& shown) {
+record::Trace shorter_by_class(const study::Presentation& shown) {
   RandomStream random(1, "cue_report_test", static_cast<std::uint64_t>(shown.trial));
   return stroking_over_wave(12.0 / (1 << shown.stimulus.class_index), random.uniform(0.1, 0.4));
 }
@@ -34,7 +34,7 @@ class FeltStudy : public FakeStudy {
  public:
   FeltStudy(const FakeTraces& traces, const FakeAnswers& answers, int participants = 3,
             bool with_pack = true)
-      : FakeStudy(design::identification::classification(), {.with_pack = with_pack}) {
+      : FakeStudy(study::identification::classification(), {.with_pack = with_pack}) {
     for (int i = 1; i <= participants; ++i) {
       add({.participant = "P0" + std::to_string(i),
            .enrolment = i,
@@ -92,7 +92,7 @@ TEST_CASE("shape, and not strength, distinguishes traces of shorter waves") {
 }
 
 TEST_CASE("participants who swap two labels achieve a third of what is available") {
-  const FakeAnswers swapped = [](const design::Presentation& shown) {
+  const FakeAnswers swapped = [](const study::Presentation& shown) {
     const int own = shown.stimulus.class_index;
     return own < 2 ? 1 - own : own;
   };

@@ -14,7 +14,7 @@ namespace {
 using namespace analysis::identification;
 
 TEST_CASE("a path is thinned evenly, and each point has the rms force until the next") {
-  store::Trace trace;
+  record::Trace trace;
   for (int i = 0; i < 10; ++i) {
     trace.samples.push_back({{0.1 * i, 1.0, -0.5}, {i % 2 == 0 ? 3.0 : -3.0, 4.0, 0.25}});
   }
@@ -27,7 +27,7 @@ TEST_CASE("a path is thinned evenly, and each point has the rms force until the 
   CHECK(points[1].in_contact);
   CHECK_FALSE(points[2].in_contact);
   CHECK(thinned_path(trace, 10).size() == 10);
-  CHECK(thinned_path(store::Trace{}, 10).empty());
+  CHECK(thinned_path(record::Trace{}, 10).empty());
   REQUIRE_THROWS_AS(thinned_path(trace, 0), std::invalid_argument);
 }
 
@@ -56,10 +56,10 @@ TEST_CASE("a field of spline coefficients has a picture too") {
 }
 
 TEST_CASE("a trial's path lies over the field that was felt") {
-  FakeStudy study(design::identification::classification(), {.with_pack = true});
+  FakeStudy study(study::identification::classification(), {.with_pack = true});
   study.add({.participant = "P01",
              .answers = FakeStudy::confusing(0, 1),
-             .traces = [](const design::Presentation&) { return stroking_over_wave(3.0, 0.2); }});
+             .traces = [](const study::Presentation&) { return stroking_over_wave(3.0, 0.2); }});
   study.close_and_unblind();
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   const ExplorationPath path =
@@ -82,7 +82,7 @@ TEST_CASE("a trial's path lies over the field that was felt") {
   CHECK(bare.points.size() == 1500);
 }
 
-store::Trace wave(const design::Presentation& /*shown*/) {
+record::Trace wave(const study::Presentation& /*shown*/) {
   return stroking_over_wave(3.0, 0.2);
 }
 
@@ -98,7 +98,7 @@ TEST_CASE("a trial's name is a participant's, a colon and a number from 1") {
 }
 
 TEST_CASE("without a choice each method's first counted trial is drawn") {
-  FakeStudy study(design::identification::comparison());
+  FakeStudy study(study::identification::comparison());
   study.add({.participant = "P01",
              .enrolment = 1,
              .answers = FakeStudy::always_right(),
@@ -119,7 +119,7 @@ TEST_CASE("without a choice each method's first counted trial is drawn") {
 }
 
 TEST_CASE("a named trial is drawn whether it counts or not, and an unknown one is refused") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   study.add({.participant = "P01", .answers = FakeStudy::always_right(), .traces = wave});
   study.close_and_unblind();
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());

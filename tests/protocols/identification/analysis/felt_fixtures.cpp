@@ -40,11 +40,11 @@ std::vector<ObservedTrial> felt_trials(Difference difference, int classes, int r
   return trials;
 }
 
-store::Trace stroking_over_wave(double wavelength_mm, double amplitude_n) {
+record::Trace stroking_over_wave(double wavelength_mm, double amplitude_n) {
   constexpr int kSamples = 3000;
   constexpr double kStepMm = 0.1;
   constexpr int kStroke = 400;
-  store::Trace trace;
+  record::Trace trace;
   for (int i = 0; i < kSamples; ++i) {
     const int along = i % (2 * kStroke);
     const double x_mm = kStepMm * (along < kStroke ? along : 2 * kStroke - along);

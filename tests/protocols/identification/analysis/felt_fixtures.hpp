@@ -2,7 +2,7 @@
 #pragma once
 
 #include "protocols/identification/analysis/cues/ideal_observer.hpp"
-#include "protocols/store/trace.hpp"
+#include "record/trace.hpp"
 
 #include <vector>
 
@@ -19,6 +19,6 @@ enum class Difference { none, strength, shape, direction };
     Difference difference, int classes, int repeats, double noise = 0.02, std::uint64_t index = 0);
 
 /// 3 s of strokes at 100 mm/s along x over 40 mm, with contact, feeling a lateral wave.
-[[nodiscard]] store::Trace stroking_over_wave(double wavelength_mm, double amplitude_n);
+[[nodiscard]] record::Trace stroking_over_wave(double wavelength_mm, double amplitude_n);
 
 }  // namespace touchtrial

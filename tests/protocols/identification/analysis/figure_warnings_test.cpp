@@ -17,7 +17,7 @@ StudyReport report_of(FakeStudy& study) {
 
 /// One participant with these answers.
 StudyReport report_of_one(const FakeAnswers& answers, const FakeOptions& options = {}) {
-  FakeStudy study(design::identification::classification(), options);
+  FakeStudy study(study::identification::classification(), options);
   study.add({.participant = "P01", .answers = answers});
   return report_of(study);
 }
@@ -28,7 +28,7 @@ int warnings_with(const StudyReport& report, const std::string& part) {
 }
 
 /// Takes the first two classes for each other.
-std::optional<int> swapping(const design::Presentation& shown) {
+std::optional<int> swapping(const study::Presentation& shown) {
   const int felt = shown.stimulus.class_index;
   return felt < 2 ? 1 - felt : felt;
 }
@@ -54,14 +54,14 @@ TEST_CASE(
 }
 
 TEST_CASE("Classes of more than five pooled trials are not warned of") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   study.add({.participant = "P01", .enrolment = 1, .answers = swapping});
   study.add({.participant = "P02", .enrolment = 2, .answers = swapping});
   CHECK(warnings_with(report_of(study), "trials or fewer") == 0);
 }
 
 TEST_CASE("The headline is repeated without invalid trials") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});
   study.add({.participant = "P02", .enrolment = 2, .answers = swapping, .valid = false});
   const StudyReport report = report_of(study);
@@ -79,13 +79,13 @@ TEST_CASE("A Monte Carlo p that cannot be smaller is reported") {
 }
 
 TEST_CASE("One who swaps labels among many is suspected, and guessers are not") {
-  FakeStudy study(design::identification::classification(), {.trials = R"({"repeats": 8})"});
+  FakeStudy study(study::identification::classification(), {.trials = R"({"repeats": 8})"});
   study.add({.participant = "P01", .enrolment = 1, .answers = swapping});
   for (int i = 2; i <= 12; ++i) {
     // Answers that have nothing to do with what is presented.
     study.add({.participant = "P" + std::to_string(i),
                .enrolment = i,
-               .answers = [i](const design::Presentation& shown) {
+               .answers = [i](const study::Presentation& shown) {
                  return std::optional((shown.trial * 7 + i) % 3);
                }});
   }

@@ -1,8 +1,8 @@
 /// \file Outcomes for which a test gives every trial.
 #pragma once
 
-#include "analysis/outcomes.hpp"
-#include "protocols/identification/design/identification.hpp"
+#include "analysis/outcomes/outcomes.hpp"
+#include "protocols/identification/study/identification.hpp"
 
 #include <chrono>
 #include <optional>
@@ -19,15 +19,15 @@ struct HandMadeTrial {
   int method = 0;
   int answered_after_s = 1;  ///< from plane-on; first contact after 0.5 s
   bool within_limits = true;
-  design::PresentationKind kind = design::PresentationKind::scored;
+  study::PresentationKind kind = study::PresentationKind::scored;
 };
 
 /// Classes bark and cloth, methods as named; sessions are of P1, P2 and so on, enrolled in order.
 class HandMadeOutcomes {
  public:
   explicit HandMadeOutcomes(std::vector<std::string> methods = {"adaptive"}) {
-    outcomes.design.protocol = methods.size() > 1 ? &design::identification::comparison()
-                                                  : &design::identification::classification();
+    outcomes.design.protocol = methods.size() > 1 ? &study::identification::comparison()
+                                                  : &study::identification::classification();
     outcomes.classes = {"bark", "cloth"};
     outcomes.choices = outcomes.classes;
     outcomes.exemplars = {{"bark.png"}, {"cloth.png"}};
@@ -42,7 +42,7 @@ class HandMadeOutcomes {
     added.row.session = number;
     added.row.participant = "P" + std::to_string(number);
     added.row.enrolment = number;
-    added.row.state = store::SessionState::completed;
+    added.row.state = record::SessionState::completed;
     added.counted = counted;
     return added;
   }
@@ -55,7 +55,7 @@ class HandMadeOutcomes {
     trial.row.session = of.session;
     trial.row.trial = place;
     trial.row.block = of.method;
-    trial.row.state = of.answered ? store::TrialState::answered : store::TrialState::timed_out;
+    trial.row.state = of.answered ? record::TrialState::answered : record::TrialState::timed_out;
     trial.row.presented_at = std::chrono::seconds(100 * place);
     trial.row.contact_at = trial.row.presented_at + std::chrono::milliseconds(500);
     if (of.answered) {
@@ -64,10 +64,10 @@ class HandMadeOutcomes {
     trial.row.valid = of.within_limits;
     trial.stimulus = {of.felt, 0, of.method};
     trial.kind = of.kind;
-    trial.scored = of.kind == design::PresentationKind::scored;
+    trial.scored = of.kind == study::PresentationKind::scored;
     trial.counted = trial.scored && outcomes.sessions.at(of.session - 1).counted;
     trial.response = of.answered;
-    if (of.kind != design::PresentationKind::catch_trial) trial.right = of.felt;
+    if (of.kind != study::PresentationKind::catch_trial) trial.right = of.felt;
     outcomes.trials.push_back(trial);
   }
 

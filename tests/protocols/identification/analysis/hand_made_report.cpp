@@ -121,7 +121,7 @@ CueReport cues_of(const std::vector<std::string>& classes) {
 
 analysis::PrimaryResult primary_of() {
   analysis::PrimaryResult primary;
-  primary.estimand = design::Estimand::difference;
+  primary.estimand = study::Estimand::difference;
   primary.words = "mean over participants of the accuracy with adaptive less that with tv-gabor";
   primary.test = "sign flips over participants, two-sided";
   primary.sides = analysis::Sides::two;
@@ -141,14 +141,14 @@ analysis::Collection collection_of() {
     analysis::SessionRecord record;
     record.row.session = record.row.enrolment = i;
     record.row.participant = "P0" + std::to_string(i);
-    record.row.state = store::SessionState::completed;
+    record.row.state = record::SessionState::completed;
     record.row.device = "falcon";
     record.deviations = {{"no-masking-noise", kHostile}};
     collection.sessions.push_back(record);
   }
   collection.sessions[6].row.excluded = true;
   collection.sessions[6].exclusion_reason = kHostile;
-  collection.sessions[7].row = store::SessionRow{};
+  collection.sessions[7].row = record::SessionRow{};
   collection.sessions[7].row.session = 8;
   collection.sessions[7].row.withdrawn = true;
   collection.sessions[7].row.erased = true;

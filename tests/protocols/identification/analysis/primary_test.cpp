@@ -1,7 +1,7 @@
 #include "protocols/identification/analysis/primary.hpp"
 
 #include "analysis/fake_study.hpp"
-#include "analysis/page/document.hpp"
+#include "analysis/report/page/document.hpp"
 #include "analysis/text_matching.hpp"
 #include "protocols/identification/analysis/page/sections.hpp"
 #include "support/catch.hpp"
@@ -25,7 +25,7 @@ constexpr const char* kRegistered =
 
 /// The first `right` of the 12 trials are right, the others wrong.
 FakeAnswers right_in(int right) {
-  return [right](const design::Presentation& shown) {
+  return [right](const study::Presentation& shown) {
     const int shift = shown.trial <= right ? 0 : 1;
     return std::optional((shown.stimulus.class_index + shift) % 3);
   };
@@ -118,7 +118,7 @@ StudyReport looked_at(FakeStudy& study) {
 }  // namespace
 
 TEST_CASE("a study with looks, late exclusions and too few participants says all of it") {
-  FakeStudy study(design::identification::classification(), {.registration = kRegistered});
+  FakeStudy study(study::identification::classification(), {.registration = kRegistered});
   const StudyReport report = looked_at(study);
   REQUIRE(report.primary.has_value());
   CHECK(report.primary->verdict == Verdict::undecided);
@@ -142,7 +142,7 @@ TEST_CASE("a study with looks, late exclusions and too few participants says all
 }
 
 TEST_CASE("report --json holds what was registered, the answer, looks and departures") {
-  FakeStudy study(design::identification::classification(), {.registration = kRegistered});
+  FakeStudy study(study::identification::classification(), {.registration = kRegistered});
   const nlohmann::json json = json_of(looked_at(study));
   CHECK(json["registered"]["estimand"] == "mean-accuracy");
   CHECK(json["registered"]["test"] == "t");
@@ -164,7 +164,7 @@ TEST_CASE("report --json holds what was registered, the answer, looks and depart
 }
 
 TEST_CASE("the primary result is the t test of participants' accuracies against chance") {
-  FakeStudy study(design::identification::classification(),
+  FakeStudy study(study::identification::classification(),
                   {.registration = R"({"participants": 6, "estimand": "mean-accuracy"})"});
   add_people(study, 1, {8, 7, 6, 9, 5, 4});
   const StudyReport report = final_report_of(study);
@@ -181,7 +181,7 @@ TEST_CASE("the primary result is the t test of participants' accuracies against 
 }
 
 TEST_CASE("a study file without the fields registers nothing") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   add_people(study, 1, {8, 7, 6, 9, 5, 4});
   const nlohmann::json json = json_of(final_report_of(study));
   CHECK(json["registered"].is_null());
@@ -190,7 +190,7 @@ TEST_CASE("a study file without the fields registers nothing") {
 }
 
 TEST_CASE("exclusions are held against the registered rules") {
-  FakeStudy study(design::identification::classification(),
+  FakeStudy study(study::identification::classification(),
                   {.registration = R"({"participants": 5, "estimand": "mean-accuracy",
                                        "exclusion_rules": {"own_deviations": ["asleep"]}})"});
   add_people(study, 1, {8, 7, 6, 9, 5});
@@ -270,10 +270,10 @@ TEST_CASE("more participants than planned are said, and decide nothing after a l
 }
 
 TEST_CASE("the first row speaks of late exclusions if there were any") {
-  FakeStudy study(design::identification::classification(), {.registration = kRegistered});
+  FakeStudy study(study::identification::classification(), {.registration = kRegistered});
   CHECK(choice_of(looked_at(study), "registered").words ==
         "as registered; no exclusion that was made after outcomes were seen");
-  FakeStudy plain(design::identification::classification(), {.registration = kRegistered});
+  FakeStudy plain(study::identification::classification(), {.registration = kRegistered});
   add_people(plain, 1, {8, 7, 9});
   plain.store().exclude(3, seconds(6), "ill");
   CHECK(choice_of(final_report_of(plain), "registered").words == "as registered");
@@ -281,7 +281,7 @@ TEST_CASE("the first row speaks of late exclusions if there were any") {
 
 TEST_CASE("a look far too early has a level, and an interval of it") {
   FakeStudy study(
-      design::identification::classification(),
+      study::identification::classification(),
       {.registration = R"({"participants": 100, "estimand": "mean-accuracy", "looks": [2]})"});
   add_people(study, 1, {11, 12});
   study.store().look_at_question(seconds(10), "as registered");
@@ -309,7 +309,7 @@ TEST_CASE("p within its level decides nothing after an unregistered look or befo
 
 TEST_CASE("a registered look has Lan and DeMets's level, and so has the end after it") {
   FakeStudy study(
-      design::identification::classification(),
+      study::identification::classification(),
       {.registration = R"({"participants": 8, "estimand": "mean-accuracy", "looks": [4]})"});
   add_people(study, 1, {5, 4, 6, 5});
   study.store().look_at_question(seconds(10), "as registered");
@@ -322,7 +322,7 @@ TEST_CASE("a registered look has Lan and DeMets's level, and so has the end afte
 
 TEST_CASE("a registered look may end collecting, and its interval has the level of its test") {
   FakeStudy study(
-      design::identification::classification(),
+      study::identification::classification(),
       {.registration = R"({"participants": 8, "estimand": "mean-accuracy", "looks": [4]})"});
   add_people(study, 1, {11, 12, 11, 12});
   study.store().look_at_question(seconds(10), "as registered");
@@ -341,7 +341,7 @@ TEST_CASE("a registered look may end collecting, and its interval has the level 
 }
 
 TEST_CASE("without a registered number of participants a p within its level decides nothing") {
-  FakeStudy study(design::identification::classification(),
+  FakeStudy study(study::identification::classification(),
                   {.registration = R"({"estimand": "mean-accuracy"})"});
   add_people(study, 1, {11, 12, 11, 12});
   const StudyReport report = final_report_of(study);
@@ -351,14 +351,14 @@ TEST_CASE("without a registered number of participants a p within its level deci
 }
 
 TEST_CASE("a registered difference is the first method less the second") {
-  FakeStudy study(design::identification::comparison(),
+  FakeStudy study(study::identification::comparison(),
                   {.registration = R"({"participants": 3, "estimand": "difference",
                                        "methods": ["tv-gabor", "adaptive"], "sides": "one",
                                        "test": "sign-flip"})"});
   for (int i = 1; i <= 3; ++i) {
     study.add({.participant = "P" + std::to_string(i),
                .enrolment = i,
-               .answers = [](const design::Presentation& shown) {
+               .answers = [](const study::Presentation& shown) {
                  const bool wrong = shown.stimulus.method == 0 && shown.stimulus.class_index == 0;
                  return std::optional(wrong ? 1 : shown.stimulus.class_index);
                }});
@@ -374,7 +374,7 @@ namespace {
 /// Two methods, one after the other: in the first block `early` of 12 trials are right, in the
 /// second `late`, whichever the method.
 FakeAnswers right_by_block(int early, int late) {
-  return [early, late](const design::Presentation& shown) {
+  return [early, late](const study::Presentation& shown) {
     const int place = shown.block == 0 ? shown.trial : shown.trial - 12;
     const bool right = place <= (shown.block == 0 ? early : late);
     return std::optional(right ? shown.stimulus.class_index : (shown.stimulus.class_index + 1) % 3);
@@ -392,7 +392,7 @@ void add_learners(FakeStudy& study, const std::vector<int>& enrolments) {
 }  // namespace
 
 TEST_CASE("in blocks by method an effect of the period is not one of the methods") {
-  FakeStudy study(design::identification::comparison(),
+  FakeStudy study(study::identification::comparison(),
                   {.registration = R"({"participants": 8, "estimand": "difference"})"});
   add_learners(study, {1, 2, 3, 4, 5, 6, 7, 8});
   const StudyReport report = final_report_of(study);
@@ -422,11 +422,11 @@ TEST_CASE("in blocks by method an effect of the period is not one of the methods
 }
 
 TEST_CASE("with one order of methods alone nothing tells the method from the period") {
-  FakeStudy study(design::identification::comparison(),
+  FakeStudy study(study::identification::comparison(),
                   {.registration = R"({"participants": 3, "estimand": "difference"})"});
   std::vector<int> same_order;
   for (int enrolment = 1; enrolment <= 8 && same_order.size() < 3; ++enrolment) {
-    if (study.key().draw_of(enrolment, design::Draws::rehearsal).method_order == 0) {
+    if (study.key().draw_of(enrolment, study::Draws::rehearsal).method_order == 0) {
       same_order.push_back(enrolment);
     }
   }
@@ -440,10 +440,10 @@ TEST_CASE("with one order of methods alone nothing tells the method from the per
 }
 
 TEST_CASE("a study of mixed blocks, and a registered test, have no period-adjusted one") {
-  FakeStudy mixed(design::identification::comparison(),
+  FakeStudy mixed(study::identification::comparison(),
                   {.trials = R"({"blocks": "mixed"})",
                    .registration = R"({"participants": 4, "estimand": "difference"})"});
-  FakeStudy flips(design::identification::comparison(),
+  FakeStudy flips(study::identification::comparison(),
                   {.registration = R"({"participants": 4, "estimand": "difference",
                                        "test": "sign-flip"})"});
   for (FakeStudy* study : {&mixed, &flips}) {
@@ -463,7 +463,7 @@ TEST_CASE("a study of mixed blocks, and a registered test, have no period-adjust
 TEST_CASE("as good by a margin is judged by the interval above minus the margin") {
   Judged judged(-0.07);
   analysis::PrimaryResult& result = judged.result;
-  result.estimand = design::Estimand::difference;
+  result.estimand = study::Estimand::difference;
   result.margin = 0.07;
   result.interval_level = 0.9;
   const auto verdict = [&](analysis::Interval interval, double p) {
@@ -483,7 +483,7 @@ TEST_CASE("as good by a margin is judged by the interval above minus the margin"
 }
 
 TEST_CASE("a registered margin has the one-sided test and the 90 % interval") {
-  FakeStudy study(design::identification::comparison(),
+  FakeStudy study(study::identification::comparison(),
                   {.registration = R"({"participants": 8, "estimand": "difference",
                                        "methods": ["tv-gabor", "adaptive"], "margin": 0.2})"});
   add_learners(study, {1, 2, 3, 4, 5, 6, 7, 8});

@@ -1,6 +1,6 @@
 // A report for everybody holds nobody's name and nothing that a person wrote.
 #include "analysis/fake_study.hpp"
-#include "analysis/identities.hpp"
+#include "analysis/outcomes/identities.hpp"
 #include "analysis/text_matching.hpp"
 #include "core/bytes.hpp"
 #include "core/files.hpp"
@@ -32,28 +32,28 @@ void add_people_and_texts(FakeStudy& study) {
   for (int i = 0; i < 6; ++i) {
     FakeSession session{.participant = kPlanted[static_cast<std::size_t>(i)],
                         .enrolment = i + 1,
-                        .answers = [i](const design::Presentation& shown) {
+                        .answers = [i](const study::Presentation& shown) {
                           const bool wrong = shown.trial <= 2 + i;
                           return std::optional((shown.stimulus.class_index + (wrong ? 1 : 0)) % 3);
                         }};
-    session.before_trials = [i](store::SessionRecorder& recorder) {
+    session.before_trials = [i](record::SessionRecorder& recorder) {
       if (i == 0) recorder.deviated(milliseconds(10), {"no-curtain", "qqdeviation"});
       if (i == 1) recorder.deviated(milliseconds(10), {"qqcode", "qqdeviation"});
-      recorder.remarked(milliseconds(20), store::EventKind::noted, "qqremark");
+      recorder.remarked(milliseconds(20), record::EventKind::noted, "qqremark");
       recorder.questioned(
           milliseconds(30), "closing",
           R"({"age": 34, "words": "qqremark", "which": )" + std::to_string(i % 2) + "}");
-      if (i == 5) recorder.remarked(milliseconds(40), store::EventKind::stopped, "qqstopped");
+      if (i == 5) recorder.remarked(milliseconds(40), record::EventKind::stopped, "qqstopped");
     };
     session.complete = i != 5;
     study.add(session);
   }
-  store::StudyStore& store = study.store();
+  record::StudyStore& store = study.store();
   store.unblind(seconds(1'769'860'800), "qqlook", true);
   store.look_at("qqbert", seconds(1'769'860'900), "qqperson");
   store.exclude(3, seconds(1'769'861'000), "qqexcluded");
   store.note(1, seconds(1'769'861'100), "qqcode", "qqnote");
-  store.withdraw(4, seconds(1'769'861'200), "qqwithdrew", store::Kept::data);
+  store.withdraw(4, seconds(1'769'861'200), "qqwithdrew", record::Kept::data);
   store.replace(6, "qqafter", seconds(1'769'861'300), "qqreplace");
   store.close_study(seconds(1'769'861'400));
   store.unblind(seconds(1'769'861'500), "qqunblind", false);
@@ -80,7 +80,7 @@ std::size_t found_in(const std::string& text) {
 }  // namespace
 
 TEST_CASE("a public report names nobody and holds nothing that a person wrote") {
-  FakeStudy study(design::identification::classification(), {.simulated = false});
+  FakeStudy study(study::identification::classification(), {.simulated = false});
   add_people_and_texts(study);
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   analysis::Provenance provenance = analysis::provenance_of(study.store(), "study.db");
@@ -126,7 +126,7 @@ TEST_CASE("every code of the data dictionary stays in a public report") {
 }
 
 TEST_CASE("a public report has the numbers of the other one, by rank of accuracy") {
-  FakeStudy study(design::identification::comparison(),
+  FakeStudy study(study::identification::comparison(),
                   {.simulated = false, .session = R"({"closing_questions": [
                     {"id": "which", "kind": "choice", "text": {"en": "Which was best?"},
                      "options": [{"en": "rough"}, {"en": "smooth"}]}]})"});

@@ -1,9 +1,9 @@
 #include "analysis/text_matching.hpp"
-#include "protocols/design/random_orders.hpp"
 #include "protocols/identification/analysis/hand_made_outcomes.hpp"
 #include "protocols/identification/analysis/order.hpp"
 #include "protocols/identification/analysis/page/sections.hpp"
 #include "protocols/identification/analysis/report.hpp"
+#include "study/random_orders.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -77,9 +77,9 @@ TEST_CASE("Accuracy is broken down by a trial's place") {
 TEST_CASE("A catch trial and a lead-in come before, but have no accuracy") {
   HandMadeOutcomes made;
   made.session();
-  made.trial({.felt = kCloth, .answered = kCloth, .kind = design::PresentationKind::lead_in});
+  made.trial({.felt = kCloth, .answered = kCloth, .kind = study::PresentationKind::lead_in});
   made.trial({.felt = kBark, .answered = kBark});
-  made.trial({.answered = kBark, .kind = design::PresentationKind::catch_trial});
+  made.trial({.answered = kBark, .kind = study::PresentationKind::catch_trial});
   made.trial({.felt = kCloth, .answered = kBark});
   made.trial({.felt = kCloth, .answered = kBark});
   // The last of four trials alone is wrong after a texture, and after an answer: it names neither

@@ -1,8 +1,8 @@
 #include "protocols/identification/analysis/report.hpp"
 
 #include "analysis/fake_study.hpp"
+#include "analysis/report/text_table.hpp"
 #include "analysis/text_matching.hpp"
-#include "analysis/text_table.hpp"
 #include "protocols/identification/analysis/page/sections.hpp"
 #include "support/catch.hpp"
 
@@ -25,11 +25,10 @@ StudyReport report_of(FakeStudy& study) {
 /// The comparison with P01 always right and P02 taking bark for straw with tv-gabor only.
 StudyReport small_comparison(FakeStudy& study) {
   study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});
-  study.add(
-      {.participant = "P02", .enrolment = 2, .answers = [](const design::Presentation& shown) {
-         const bool mistaken = shown.stimulus.method == 1 && shown.stimulus.class_index == 0;
-         return mistaken ? 2 : shown.stimulus.class_index;
-       }});
+  study.add({.participant = "P02", .enrolment = 2, .answers = [](const study::Presentation& shown) {
+               const bool mistaken = shown.stimulus.method == 1 && shown.stimulus.class_index == 0;
+               return mistaken ? 2 : shown.stimulus.class_index;
+             }});
   return report_of(study);
 }
 
@@ -47,7 +46,7 @@ bool warned_of(const StudyReport& report, const std::string& part) {
 }  // namespace
 
 TEST_CASE("make_report counts each method for itself and compares two") {
-  FakeStudy study(design::identification::comparison());
+  FakeStudy study(study::identification::comparison());
   const StudyReport report = small_comparison(study);
   CHECK(report.participants == 2);
   CHECK(report.trials == 48);
@@ -67,7 +66,7 @@ TEST_CASE("make_report counts each method for itself and compares two") {
 }
 
 TEST_CASE("A classification has one method and no comparison") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   study.add({.participant = "P01", .answers = FakeStudy::confusing(1, 0)});
   const StudyReport report = report_of(study);
   CHECK(report.methods.size() == 1);
@@ -78,7 +77,7 @@ TEST_CASE("A classification has one method and no comparison") {
 }
 
 TEST_CASE("A report of an open study without sessions has no numbers and says so") {
-  FakeStudy study(design::identification::comparison());
+  FakeStudy study(study::identification::comparison());
   study.store().unblind(std::chrono::seconds(1), "a look", true);
   const StudyReport report = make_report(analysis::load_outcomes(study.store(), study.key()));
   CHECK(warned_of(report, "interim look"));
@@ -92,8 +91,8 @@ TEST_CASE("A report of an open study without sessions has no numbers and says so
 }
 
 TEST_CASE("Time-outs are errors in accuracy, and their own column") {
-  FakeStudy study(design::identification::classification());
-  study.add({.participant = "P01", .answers = [](const design::Presentation& shown) {
+  FakeStudy study(study::identification::classification());
+  study.add({.participant = "P01", .answers = [](const study::Presentation& shown) {
                return shown.trial <= 2 ? std::nullopt : std::optional(shown.stimulus.class_index);
              }});
   const StudyReport report = report_of(study);
@@ -104,7 +103,7 @@ TEST_CASE("Time-outs are errors in accuracy, and their own column") {
 }
 
 TEST_CASE("Sessions that are left out are reported") {
-  FakeStudy study(design::identification::classification());
+  FakeStudy study(study::identification::classification());
   study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});
   study.add({.participant = "P02",
              .enrolment = 2,
@@ -119,7 +118,7 @@ TEST_CASE("Sessions that are left out are reported") {
 }
 
 TEST_CASE("report_json has the published keys in their order") {
-  FakeStudy study(design::identification::comparison());
+  FakeStudy study(study::identification::comparison());
   const StudyReport report = small_comparison(study);
   const auto json = nlohmann::ordered_json::parse(report_json(report));
   const auto keys_of = [](const nlohmann::ordered_json& object) {
@@ -152,7 +151,7 @@ TEST_CASE("report_json has the published keys in their order") {
 }
 
 TEST_CASE("A report of real participants carries no stamp") {
-  FakeStudy study(design::identification::comparison(), {.simulated = false});
+  FakeStudy study(study::identification::comparison(), {.simulated = false});
   const StudyReport report = small_comparison(study);
   CHECK_FALSE(contains(report_json(report), "SIMULATED"));
   CHECK_FALSE(contains(terminal_text(report), "SIMULATED"));
@@ -164,7 +163,7 @@ TEST_CASE("A report has decimal dots whatever the locale") {
     [[nodiscard]] char do_thousands_sep() const override { return '.'; }
     [[nodiscard]] std::string do_grouping() const override { return "\1"; }
   };
-  FakeStudy study(design::identification::comparison());
+  FakeStudy study(study::identification::comparison());
   const StudyReport report = small_comparison(study);
   const std::string json = report_json(report);
   const std::string text = terminal_text(report);
@@ -175,7 +174,7 @@ TEST_CASE("A report has decimal dots whatever the locale") {
 }
 
 TEST_CASE("Every table of a simulated report is stamped and fits the terminal") {
-  FakeStudy study(design::identification::comparison(),
+  FakeStudy study(study::identification::comparison(),
                   {.label = "an uncommonly long label for one texture"});
   const StudyReport report = small_comparison(study);
   for (const std::size_t width : {std::size_t{80}, analysis::kTextWidth}) {
@@ -199,7 +198,7 @@ TEST_CASE("Every table of a simulated report is stamped and fits the terminal") 
 
 TEST_CASE(
     "The report of a comparison has its sections on the terminal, and a table of each result") {
-  FakeStudy study(design::identification::comparison());
+  FakeStudy study(study::identification::comparison());
   const StudyReport report = small_comparison(study);
   std::vector<std::string> titles;
   std::istringstream text(terminal_text(report));

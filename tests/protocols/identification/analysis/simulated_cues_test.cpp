@@ -1,4 +1,4 @@
-#include "analysis/outcomes.hpp"
+#include "analysis/outcomes/outcomes.hpp"
 #include "protocols/identification/analysis/cues/cue_report.hpp"
 #include "protocols/session/commitment.hpp"
 #include "protocols/session/tiny_study.hpp"
@@ -20,7 +20,7 @@ simulation::SubjectModel quick_subject(double feature_noise) {
 }
 
 MethodCues simulated_cues(TinyStudy& study, const simulation::SubjectModel& subject) {
-  store::StudyStore store = store::StudyStore::create(
+  record::StudyStore store = record::StudyStore::create(
       study.next_database(), session::commitment_of(study.key(), study.pack(), true, false), {},
       study.key().signer());
   static_cast<void>(simulation::simulate_study(study.key(), study.pack(), subject,

@@ -1,6 +1,6 @@
 // The content of a report's document, and the names of its parts.
-#include "analysis/page/document.hpp"
-#include "analysis/page/wording.hpp"
+#include "analysis/report/page/document.hpp"
+#include "analysis/report/page/wording.hpp"
 #include "protocols/identification/analysis/hand_made_report.hpp"
 #include "support/catch.hpp"
 

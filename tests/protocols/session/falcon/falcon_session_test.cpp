@@ -1,14 +1,14 @@
 // A whole classification session on an emulated Falcon: study, pack, servo thread, driver, the
 // unmodified libusb, the database, and event codes on a line. Servo ticks and USB exchanges go in
 // lockstep, as fast as the processor goes.
-#include "device/falcon/rig/falcon_rig.hpp"
-#include "device/falcon/usb_falcon.hpp"
-#include "device/falcon/usbfs_shim/usb_model.hpp"
-#include "device/falcon/usbfs_shim/usbfs_shim.hpp"
+#include "device/drivers/falcon/rig/falcon_rig.hpp"
+#include "device/drivers/falcon/usb_falcon.hpp"
+#include "device/drivers/falcon/usbfs_shim/usb_model.hpp"
+#include "device/drivers/falcon/usbfs_shim/usbfs_shim.hpp"
 #include "protocols/session/person_with_hand.hpp"
 #include "protocols/session/still_time.hpp"
 #include "protocols/session/whole_session.hpp"
-#include "protocols/store/payload_json.hpp"
+#include "record/payload_json.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -153,7 +153,7 @@ TEST_CASE("a whole session on the emulated Falcon loses no response, though it i
   CHECK(tally.presentations == 26);
   CHECK(lab.person.named.size() == 25);
   // The seconds before the fault, which only the key's holder can read.
-  const store::InterruptionDetail detail = lab.whole.check(lab.person.named, kUnlucky);
+  const record::InterruptionDetail detail = lab.whole.check(lab.person.named, kUnlucky);
   CHECK(detail.ticks > 100);
   CHECK(std::ranges::count(detail.flight, '\n') == detail.ticks + 1);
 
@@ -164,8 +164,8 @@ TEST_CASE("a whole session on the emulated Falcon loses no response, though it i
   CHECK(lab.falcon.emulator.complaints().empty());
   CHECK(lab.falcon.emulator.loads() == 1);  // since its power came back
 
-  for (const store::Event& event : lab.whole.all(store::EventKind::trace_stored)) {
-    const store::TraceBody trace = store::trace_body_from_json(event.body);
+  for (const record::Event& event : lab.whole.all(record::EventKind::trace_stored)) {
+    const record::TraceBody trace = record::trace_body_from_json(event.body);
     REQUIRE(trace.servo);
     CHECK(trace.servo->lost == 0);
     CHECK(trace.overruns == 0);
@@ -215,15 +215,15 @@ TEST_CASE("a pause on the emulated Falcon leaves no force, and its trial comes a
   CHECK(lab.person.named.size() == 25);
   REQUIRE(!experimenter.force_n.empty());
   CHECK(std::ranges::max(experimenter.force_n) == 0.0);
-  const std::vector<store::Event> interrupted = lab.whole.all(store::EventKind::interrupted);
+  const std::vector<record::Event> interrupted = lab.whole.all(record::EventKind::interrupted);
   REQUIRE(interrupted.size() == 1);
-  const store::TrialBody body = store::trial_from_json(interrupted.front().body);
-  CHECK(body.reason == store::kPauseReason);
-  CHECK(lab.whole.all(store::EventKind::answered).size() == 25);
+  const record::TrialBody body = record::trial_from_json(interrupted.front().body);
+  CHECK(body.reason == record::kPauseReason);
+  CHECK(lab.whole.all(record::EventKind::answered).size() == 25);
   // The trial that was paused is the next one.
-  const std::vector<store::Event> presented = lab.whole.all(store::EventKind::presented);
-  CHECK(store::trial_from_json(presented.at(2).body).trial == body.trial);
-  CHECK(store::trial_from_json(presented.at(3).body).trial == body.trial);
+  const std::vector<record::Event> presented = lab.whole.all(record::EventKind::presented);
+  CHECK(record::trial_from_json(presented.at(2).body).trial == body.trial);
+  CHECK(record::trial_from_json(presented.at(3).body).trial == body.trial);
   CHECK(lab.experimenter.consents == 1);
   CHECK(lab.falcon.emulator.complaints().empty());
 }

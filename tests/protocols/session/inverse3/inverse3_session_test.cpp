@@ -1,11 +1,11 @@
 // A whole classification session on the emulated Inverse service: study, pack, servo thread,
 // driver, sockets, the service in a process of its own with a hand on its device, the database, and
 // event codes on a line. A tick of the servo is one exchange, as fast as the processor goes.
-#include "device/inverse3/haply_service.hpp"
-#include "device/inverse3/stepped_inverse3.hpp"
+#include "device/drivers/inverse3/haply_service.hpp"
+#include "device/drivers/inverse3/stepped_inverse3.hpp"
 #include "protocols/session/still_time.hpp"
 #include "protocols/session/whole_session.hpp"
-#include "protocols/store/payload_json.hpp"
+#include "record/payload_json.hpp"
 #include "support/as_recorded.hpp"
 #include "support/catch.hpp"
 
@@ -127,7 +127,7 @@ TEST_CASE("a whole session on the emulated Inverse3 outlives the end of Haply's 
   const session::SessionTally tally = lab.whole.run(lab.station, lab.person, lab.explorer);
   CHECK(tally.presentations == 11);
   CHECK(lab.person.named.size() == 10);
-  const store::InterruptionDetail detail =
+  const record::InterruptionDetail detail =
       lab.whole.check(lab.person.named, LaboratoryWithService::kUnlucky);
   CHECK(detail.ticks == LaboratoryWithService::kReadsBeforeTheEnd);
   // The force that the service said it delivered lies beside the commanded one.
@@ -143,8 +143,9 @@ TEST_CASE("a whole session on the emulated Inverse3 outlives the end of Haply's 
   CHECK(force_on(lab.service) == 0.0);
   CHECK(lab.service.report().at("complaints") == nlohmann::json::array());
 
-  const store::SessionOpening opening = store::opening_from_json(
-      as_recorded(lab.whole.all(store::EventKind::opened).front(), lab.whole.participant_key).body);
+  const record::SessionOpening opening = record::opening_from_json(
+      as_recorded(lab.whole.all(record::EventKind::opened).front(), lab.whole.participant_key)
+          .body);
   REQUIRE(opening.station);
   CHECK(opening.device_serial == "049D");
   CHECK(opening.station->firmware.find("force gate 0, damping 0") != std::string::npos);

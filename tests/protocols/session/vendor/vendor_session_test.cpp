@@ -1,9 +1,9 @@
 // A whole classification session on each stand-in for a vendor's library: study, pack, servo
 // thread, the driver with its own thread, the database, and event codes on a line. A tick of the
 // servo is a step of the stand-in and of the hand on it.
-#include "device/dhd/dhd_device.hpp"
+#include "device/drivers/dhd/dhd_device.hpp"
+#include "device/drivers/openhaptics/openhaptics_device.hpp"
 #include "device/fakes/loaded_fake.hpp"
-#include "device/openhaptics/openhaptics_device.hpp"
 #include "protocols/session/person_with_hand.hpp"
 #include "protocols/session/still_time.hpp"
 #include "protocols/session/whole_session.hpp"
@@ -177,7 +177,7 @@ void check_session() {
   const session::SessionTally tally = lab.whole.run(lab.station, lab.person, lab.explorer);
   CHECK(tally.presentations == 11);
   CHECK(lab.person.named.size() == 10);
-  const store::InterruptionDetail detail = lab.whole.check(lab.person.named, Laboratory::kUnlucky);
+  const record::InterruptionDetail detail = lab.whole.check(lab.person.named, Laboratory::kUnlucky);
   CHECK(detail.ticks > Laboratory::kTicksToThePull);
 
   // The helper was told what to do; there was no force without consent, and none is left.

@@ -9,7 +9,7 @@
 namespace touchtrial {
 namespace {
 
-using design::threshold::ThresholdOptions;
+using study::threshold::ThresholdOptions;
 
 void add_grid(ThresholdOptions& options) {
   procedures::ParameterGrid& grid = options.track.grid;
@@ -38,7 +38,7 @@ ThresholdOptions detection_options() {
 
 ThresholdOptions constant_options(std::vector<double> standards) {
   ThresholdOptions options;
-  options.task = design::threshold::Task::discrimination;
+  options.task = study::threshold::Task::discrimination;
   options.standards = std::move(standards);
   options.track.procedure = "constant-stimuli";
   options.track.levels = levels_from(-32.0, -2.0, 5.0);
@@ -50,9 +50,9 @@ ThresholdOptions constant_options(std::vector<double> standards) {
 
 ThresholdOptions same_different_options() {
   ThresholdOptions options;
-  options.task = design::threshold::Task::discrimination;
-  options.question = design::threshold::Question::same_different;
-  options.along = design::threshold::Along::blend;
+  options.task = study::threshold::Task::discrimination;
+  options.question = study::threshold::Question::same_different;
+  options.along = study::threshold::Along::blend;
   options.standards = {0.0};
   options.track.procedure = "constant-stimuli";
   options.track.levels = {-20.0, -10.0, 0.0};
@@ -65,17 +65,17 @@ HandMadeTracks::HandMadeTracks(const ThresholdOptions& options,
                                const std::vector<std::string>& classes) {
   outcomes.study = "weak";
   outcomes.design.name = "weak";
-  outcomes.design.protocol = &design::threshold::protocol();
+  outcomes.design.protocol = &study::threshold::protocol();
   outcomes.design.options = std::make_shared<ThresholdOptions>(options);
   for (const std::string& label : classes) {
-    design::StudyClass& added = outcomes.design.classes.emplace_back();
+    study::StudyClass& added = outcomes.design.classes.emplace_back();
     added.label = label;
     added.images.emplace_back(label + ".png");
     outcomes.exemplars.push_back({label + ".png"});
   }
   outcomes.classes = classes;
   outcomes.methods = {"adaptive"};
-  for (const design::Choice& choice : design::threshold::protocol().choices(outcomes.design)) {
+  for (const study::Choice& choice : study::threshold::protocol().choices(outcomes.design)) {
     outcomes.choices.push_back(choice.label);
   }
   outcomes.state.closed = true;
@@ -83,7 +83,7 @@ HandMadeTracks::HandMadeTracks(const ThresholdOptions& options,
 }
 
 const ThresholdOptions& HandMadeTracks::options() const {
-  return design::threshold::options_of(outcomes.design);
+  return study::threshold::options_of(outcomes.design);
 }
 
 void HandMadeTracks::session(bool counted) {
@@ -92,24 +92,24 @@ void HandMadeTracks::session(bool counted) {
   added.row.session = number;
   added.row.participant = "P" + std::to_string(number);
   added.row.enrolment = number;
-  added.row.state = store::SessionState::completed;
+  added.row.state = record::SessionState::completed;
   added.counted = counted;
 }
 
 void HandMadeTracks::answer(const HandMadeAnswer& of) {
   const auto place = static_cast<int>(outcomes.trials.size()) + 1;
-  const bool is_control = of.kind == design::PresentationKind::lead_in;
+  const bool is_control = of.kind == study::PresentationKind::lead_in;
   analysis::TrialOutcome& trial = outcomes.trials.emplace_back();
   trial.participant = "P" + std::to_string(of.session);
   trial.row.session = of.session;
   trial.row.trial = place;
   trial.row.block = is_control ? 1 : 0;
-  trial.row.state = store::TrialState::answered;
+  trial.row.state = record::TrialState::answered;
   trial.row.presented_at = std::chrono::seconds(20 * place);
   trial.row.answered_at = trial.row.presented_at + std::chrono::seconds(8);
   trial.kind = of.kind;
   trial.chosen = {of.track, of.level, of.target};
-  trial.scored = of.kind == design::PresentationKind::scored;
+  trial.scored = of.kind == study::PresentationKind::scored;
   trial.counted =
       trial.scored && outcomes.sessions.at(static_cast<std::size_t>(of.session - 1)).counted;
   trial.response = of.response;
@@ -119,13 +119,13 @@ void HandMadeTracks::answer(const HandMadeAnswer& of) {
 void HandMadeTracks::missed(int session, int track, int level) {
   answer({session, track, level});
   outcomes.trials.back().response.reset();
-  outcomes.trials.back().row.state = store::TrialState::timed_out;
+  outcomes.trials.back().row.state = record::TrialState::timed_out;
   outcomes.trials.back().row.answered_at.reset();
 }
 
 void HandMadeTracks::track(int session, int number, const procedures::Observer& observer,
                            RandomStream& random) {
-  const procedures::TrackSettings settings = design::threshold::block_settings(outcomes.design)
+  const procedures::TrackSettings settings = study::threshold::block_settings(outcomes.design)
                                                  .tracks.at(static_cast<std::size_t>(number - 1));
   const auto procedure = procedures::make_procedure(settings, random);
   const auto choices = static_cast<std::uint64_t>(outcomes.choices.size());
@@ -140,7 +140,7 @@ void HandMadeTracks::track(int session, int number, const procedures::Observer& 
   }
 }
 
-void HandMadeTracks::outside(int session, design::PresentationKind kind, int right, int wrong) {
+void HandMadeTracks::outside(int session, study::PresentationKind kind, int right, int wrong) {
   const auto top = static_cast<int>(options().track.levels.size()) - 1;
   for (int i = 0; i < right + wrong; ++i) {
     const int target = i % 2;

@@ -2,10 +2,10 @@
 /// answers.
 #pragma once
 
-#include "analysis/outcomes.hpp"
+#include "analysis/outcomes/outcomes.hpp"
 #include "core/random.hpp"
 #include "protocols/procedures/psychometric_function.hpp"
-#include "protocols/threshold/design/threshold.hpp"
+#include "protocols/threshold/study/threshold.hpp"
 
 #include <memory>
 #include <optional>
@@ -18,11 +18,11 @@ namespace touchtrial {
 [[nodiscard]] std::vector<double> levels_from(double low, double high, double step);
 
 /// Detection in two intervals with QUEST+: levels of -40 to 0 dB.
-[[nodiscard]] design::threshold::ThresholdOptions detection_options();
+[[nodiscard]] study::threshold::ThresholdOptions detection_options();
 /// Discrimination of gains with constant stimuli, about these standards in dB.
-[[nodiscard]] design::threshold::ThresholdOptions constant_options(std::vector<double> standards);
+[[nodiscard]] study::threshold::ThresholdOptions constant_options(std::vector<double> standards);
 /// Same or different along a blend of two textures at three levels.
-[[nodiscard]] design::threshold::ThresholdOptions same_different_options();
+[[nodiscard]] study::threshold::ThresholdOptions same_different_options();
 
 /// One answered trial.
 struct HandMadeAnswer {
@@ -31,13 +31,13 @@ struct HandMadeAnswer {
   int level = 0;
   int target = 0;
   int response = 0;
-  design::PresentationKind kind = design::PresentationKind::scored;
+  study::PresentationKind kind = study::PresentationKind::scored;
 };
 
 /// Sessions are of P1, P2 and so on.
 class HandMadeTracks {
  public:
-  explicit HandMadeTracks(const design::threshold::ThresholdOptions& options,
+  explicit HandMadeTracks(const study::threshold::ThresholdOptions& options,
                           const std::vector<std::string>& classes = {"bark"});
 
   void session(bool counted = true);
@@ -47,12 +47,12 @@ class HandMadeTracks {
   /// The whole track of an observer, whose answers `random` draws.
   void track(int session, int number, const procedures::Observer& observer, RandomStream& random);
   /// Trials outside the tracks, at the highest level; targets alternate.
-  void outside(int session, design::PresentationKind kind, int right, int wrong);
+  void outside(int session, study::PresentationKind kind, int right, int wrong);
 
   analysis::Outcomes outcomes;
 
  private:
-  [[nodiscard]] const design::threshold::ThresholdOptions& options() const;
+  [[nodiscard]] const study::threshold::ThresholdOptions& options() const;
 };
 
 }  // namespace touchtrial

@@ -1,7 +1,7 @@
 #include "analysis/checkers/checkers.hpp"
 #include "analysis/exports/dataset.hpp"
-#include "analysis/figures/figure.hpp"
-#include "analysis/results.hpp"
+#include "analysis/report/figures/figure.hpp"
+#include "analysis/report/results.hpp"
 #include "protocols/threshold/analysis/figures/figures.hpp"
 #include "protocols/threshold/analysis/hand_made_tracks.hpp"
 #include "protocols/threshold/analysis/page/sections.hpp"
@@ -20,25 +20,25 @@ namespace {
 namespace own = analysis::threshold;
 
 /// Three participants, one of whom feels nothing, with a control block and catch trials.
-HandMadeTracks small_study(const design::threshold::ThresholdOptions& options) {
+HandMadeTracks small_study(const study::threshold::ThresholdOptions& options) {
   HandMadeTracks made(options, {"bark", "cloth"});
   const double thresholds[] = {-18.0, -14.0, 60.0};
   for (int person = 1; person <= 3; ++person) {
     made.session();
-    const bool is_blend = options.along == design::threshold::Along::blend;
+    const bool is_blend = options.along == study::threshold::Along::blend;
     const int tracks = (is_blend ? 1 : 2) * static_cast<int>(options.standards.size());
     for (int track = 1; track <= tracks; ++track) {
       RandomStream random(5, "page", static_cast<std::uint64_t>(10 * person + track));
       made.track(person, track,
                  {procedures::Shape::weibull, thresholds[person - 1], 3.0, 0.5, 0.02}, random);
     }
-    made.outside(person, design::PresentationKind::catch_trial, 3, 1);
-    made.outside(person, design::PresentationKind::lead_in, 6, 4);
+    made.outside(person, study::PresentationKind::catch_trial, 3, 1);
+    made.outside(person, study::PresentationKind::lead_in, 6, 4);
   }
   return made;
 }
 
-std::vector<design::threshold::ThresholdOptions> kinds_of_studies() {
+std::vector<study::threshold::ThresholdOptions> kinds_of_studies() {
   return {detection_options(), constant_options({-12.0, -6.0}), same_different_options()};
 }
 
@@ -101,16 +101,16 @@ TEST_CASE("studies without trials have no figures of thresholds") {
 }
 
 TEST_CASE("thresholds and their intervals read as text, censored ones without a number") {
-  const design::threshold::ThresholdOptions options = detection_options();
+  const study::threshold::ThresholdOptions options = detection_options();
   const std::vector<double>& levels = options.track.levels;
   CHECK(own::threshold_text({-21.25, -23.0, -19.5}, levels) == "−21.2 [−23.0, −19.5]");
   CHECK(own::threshold_text({-21.0, {}, -19.5}, levels) == "−21.0 [open, −19.5]");
   CHECK(own::threshold_text({-21.0, {}, {}}, levels) == "−21.0");
   CHECK(own::threshold_text({{}, {}, {}, procedures::Censored::below}, levels) == "below −40.0");
   CHECK(own::threshold_text({{}, {}, {}, procedures::Censored::above}, levels) == "above 0.0");
-  design::threshold::ThresholdOptions order = constant_options({0.5});
+  study::threshold::ThresholdOptions order = constant_options({0.5});
   CHECK(own::quantity_text({0.1, 0.05, {}}, order) == "10.0% [5.0, open]");
-  order.along = design::threshold::Along::order;
+  order.along = study::threshold::Along::order;
   CHECK(own::quantity_at(order, {0, 0.5}, -20.0).value() == Approx(0.05));
   CHECK(own::quantity_text({0.05, 0.04, 0.06}, order) == "0.050 [0.040, 0.060]");
   CHECK_FALSE(own::quantity_at(options, {0, 0.0}, -20.0));
@@ -139,10 +139,10 @@ TEST_CASE("thresholds.csv has a row for each track, and tracks.csv one for each 
 }
 
 TEST_CASE("a standard near the pack's gain has fewer levels, and is censored at its own highest") {
-  design::threshold::ThresholdOptions options = constant_options({-12.0, -3.0});
+  study::threshold::ThresholdOptions options = constant_options({-12.0, -3.0});
   HandMadeTracks made(options);
   made.session();
-  const std::size_t levels = design::threshold::levels_of(options, {0, -3.0}).size();
+  const std::size_t levels = study::threshold::levels_of(options, {0, -3.0}).size();
   REQUIRE(levels < options.track.levels.size());
   for (int i = 0; i < 60; ++i) {
     made.answer({1, 2, i % static_cast<int>(levels), i % 2, i / 2 % 2});

@@ -1,4 +1,4 @@
-#include "analysis/results.hpp"
+#include "analysis/report/results.hpp"
 #include "protocols/threshold/analysis/hand_made_tracks.hpp"
 #include "protocols/threshold/analysis/report.hpp"
 #include "protocols/threshold/analysis/threshold_analysis.hpp"
@@ -13,17 +13,17 @@ namespace touchtrial {
 namespace {
 
 namespace own = analysis::threshold;
-using design::PresentationKind;
 using procedures::Censored;
 using procedures::Observer;
 using procedures::Shape;
+using study::PresentationKind;
 
 Observer observer_at(double threshold) {
   return {Shape::weibull, threshold, 3.5, 0.5, 0.01};
 }
 
 /// Participants with these thresholds, each with every track of the study.
-HandMadeTracks tracks_of(const design::threshold::ThresholdOptions& options, int tracks,
+HandMadeTracks tracks_of(const study::threshold::ThresholdOptions& options, int tracks,
                          const std::vector<double>& thresholds) {
   HandMadeTracks made(options);
   for (std::size_t i = 0; i < thresholds.size(); ++i) {
@@ -91,7 +91,7 @@ TEST_CASE("constant stimuli quote the likelihood, and say how well the function 
 }
 
 TEST_CASE("a staircase also has the mean of its reversals") {
-  design::threshold::ThresholdOptions options = detection_options();
+  study::threshold::ThresholdOptions options = detection_options();
   options.track.procedure = "up-down";
   const own::ThresholdReport report = own::make_report(tracks_of(options, 1, {-20.0}).outcomes);
   REQUIRE(report.tracks.at(0).reversals);
@@ -123,7 +123,7 @@ TEST_CASE("a censored track has no number anywhere, and its mean says how many t
 }
 
 TEST_CASE("if every track is censored there is no threshold, and no comparison fails") {
-  design::threshold::ThresholdOptions options = detection_options();
+  study::threshold::ThresholdOptions options = detection_options();
   options.tracks_each = 2;
   const HandMadeTracks made = tracks_of(options, 2, {40.0, 40.0});
   const auto json = json_of(made);
@@ -251,7 +251,7 @@ TEST_CASE("a participant who becomes better has a threshold that falls") {
 
 TEST_CASE("an adaptive track of an observer who does not change looks like no learning") {
   for (const char* procedure : {"quest-plus", "up-down"}) {
-    design::threshold::ThresholdOptions options = detection_options();
+    study::threshold::ThresholdOptions options = detection_options();
     options.track.procedure = procedure;
     const own::ThresholdReport report =
         own::make_report(tracks_of(options, 1, std::vector<double>(30, -20.0)).outcomes);

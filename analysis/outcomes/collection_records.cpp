@@ -1,0 +1,162 @@
+#include "analysis/outcomes/collection_records.hpp"
+
+#include "analysis/report/text_figures.hpp"
+#include "record/payload_json.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace touchtrial::analysis {
+namespace {
+
+constexpr std::array kKinds = {record::EventKind::opened,   record::EventKind::practised,
+                               record::EventKind::deviated, record::EventKind::stopped,
+                               record::EventKind::resumed,  record::EventKind::interrupted,
+                               record::EventKind::paused,   record::EventKind::trace_stored,
+                               record::EventKind::noted,    record::EventKind::closed};
+
+void add_opening(const record::Event& event, SessionRecord& session) {
+  record::SessionOpening opening = record::opening_from_json(event.body);
+  session.device_serial = std::move(opening.device_serial);
+  session.opened_utc = std::move(opening.opened_utc);
+  session.station = std::move(opening.station);
+  session.group = std::move(opening.group);
+}
+
+/// What a person wrote, if the event is opened.
+std::string words_of(const record::Event& event, const std::string& text) {
+  return event.sealed.empty() ? text : "(sealed)";
+}
+
+void add_exclusion(const record::Event& event, SessionRecord& session) {
+  const record::ParticipantBody body = record::participant_from_json(event.body);
+  session.exclusion_reason = words_of(event, body.reason);
+  session.after_outcomes = body.after_outcomes;
+}
+
+std::string stop_in(const record::Event& event) {
+  const record::StopBody body = record::stop_from_json(event.body);
+  return body.code.empty() ? words_of(event, body.text) : body.code;
+}
+
+void add_end(const record::ClosedBody& closed, SessionRecord& session) {
+  session.answers = closed.answers;
+  session.one_key = closed.one_key;
+  session.largest_force_n = closed.largest_force_n;
+}
+
+void add_practice(const record::PracticeBody& practised, SessionRecord& session) {
+  if (!session.practice) session.practice.emplace();
+  PracticeRecord& practice = *session.practice;
+  practice.rounds = std::max(practice.rounds, practised.round);
+  ++practice.presentations;
+  if (practised.correct)
+    practice.correct = practice.correct.value_or(0) + (*practised.correct ? 1 : 0);
+}
+
+void add_deviation(const std::string& code, const std::string& text, SessionRecord& session) {
+  const bool known = std::ranges::any_of(session.deviations, [&](const Deviation& one) {
+    return one.code == code && one.text == text;
+  });
+  if (!known) session.deviations.push_back({code, text});
+}
+
+}  // namespace
+
+std::span<const record::EventKind> kinds_in_sessions() {
+  return kKinds;
+}
+
+bool is_partly_sealed(record::EventKind kind) {
+  switch (kind) {
+    case record::EventKind::practised:
+    case record::EventKind::deviated:
+    case record::EventKind::stopped:
+    case record::EventKind::closed:
+    case record::EventKind::participant_excluded:
+    case record::EventKind::participant_withdrawn:
+    case record::EventKind::participant_replaced:
+    case record::EventKind::participant_noted:
+      return true;
+    default:
+      return false;
+  }
+}
+
+void add_to_record(const record::Event& event, SessionRecord& session) {
+  switch (event.kind) {
+    case record::EventKind::opened:
+      return add_opening(event, session);
+    case record::EventKind::practised:
+      return add_practice(record::practice_from_json(event.body), session);
+    case record::EventKind::deviated: {
+      const record::DeviationBody body = record::deviation_from_json(event.body);
+      return add_deviation(body.code, body.text, session);
+    }
+    case record::EventKind::participant_noted: {
+      const record::NoteBody body = record::note_from_json(event.body);
+      if (!body.code.empty()) add_deviation(body.code, body.text, session);
+      return;
+    }
+    case record::EventKind::participant_excluded:
+      return add_exclusion(event, session);
+    case record::EventKind::participant_replaced:
+      session.replacement_reason =
+          words_of(event, record::replacement_from_json(event.body).reason);
+      return;
+    case record::EventKind::stopped:
+      session.stop_reason = stop_in(event);
+      return;
+    case record::EventKind::participant_withdrawn:
+      session.withdrawal_reason = words_of(event, record::withdrawal_from_json(event.body).reason);
+      return;
+    case record::EventKind::resumed:
+      // A session that was only paused does not count as resumed.
+      if (record::resumed_from_json(event.body).after == "program-ended") ++session.resumed;
+      return;
+    case record::EventKind::interrupted:
+      // A pause takes a presentation off and counts against nobody.
+      if (record::trial_from_json(event.body).reason != record::kPauseReason)
+        ++session.interruptions;
+      return;
+    case record::EventKind::paused:
+      ++session.pauses;
+      return;
+    case record::EventKind::noted:
+      ++session.notes;
+      return;
+    case record::EventKind::closed:
+      return add_end(record::closed_from_json(event.body), session);
+    default:
+      return;
+  }
+}
+
+std::string exclusion_words(const SessionRecord& session) {
+  const bool is_late = session.after_outcomes && !session.exclusion_reason.empty();
+  return (is_late ? "after outcomes were seen: " : "") + session.exclusion_reason;
+}
+
+std::vector<std::string> people_notes(const Collection& collection) {
+  std::vector<std::string> notes;
+  const int kept = collection.flow.withdrawn - collection.flow.erased;
+  if (kept > 0) {
+    notes.push_back(counted(kept, "participant") +
+                    " withdrew and let the data be used: counted like the others.");
+  }
+  for (const record::PersonLook& look : collection.looks) {
+    notes.push_back(collection.is_public ? "Outcomes of one participant alone were looked at."
+                                         : "Outcomes of participant " + look.participant +
+                                               " alone were looked at: " + look.reason + ".");
+  }
+  return notes;
+}
+
+std::optional<ServoTrial> servo_trial_of(const record::Event& trace_stored) {
+  if (!StudyEvents::names_servo(trace_stored)) return std::nullopt;
+  const record::TraceBody body = record::trace_body_from_json(trace_stored.body);
+  if (!body.servo) return std::nullopt;
+  return ServoTrial{trace_stored.session, body.trial, *body.servo, body.overruns};
+}
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,106 @@
+/// \file Stimuli and answers of a study after unblinding.
+#pragma once
+
+#include "analysis/outcomes/answers.hpp"
+#include "analysis/outcomes/collection.hpp"
+#include "analysis/outcomes/demographics.hpp"
+#include "analysis/outcomes/incidents.hpp"
+#include "analysis/outcomes/looks.hpp"
+#include "record/study_store.hpp"
+#include "study/study_key.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial::analysis {
+
+/// A session, and whether its trials count towards accuracy.
+struct SessionOutcome {
+  record::SessionRow row;
+  bool counted = false;
+  int order_block = -1;        ///< study::order_block_of the enrolment number
+  std::optional<int> group{};  ///< index into the study's groups
+};
+
+/// One trial with its stimulus and answer.
+struct TrialOutcome {
+  std::string participant;
+  record::TrialRow row;
+  study::StimulusIndex stimulus;  ///< without meaning for a catch trial
+  double gain_db = 0.0;           ///< study::Presentation::gain_db
+  study::PresentationKind kind = study::PresentationKind::scored;
+  std::optional<study::ChosenLevel> chosen{};  ///< by an adaptive order
+  bool scored = false;                         ///< by the schedule; not a lead-in or catch trial
+  bool counted = false;                        ///< counts towards accuracy
+  std::optional<int> response;  ///< index of the chosen alternative; empty: no response
+  std::optional<int> right;     ///< index of the right choice; empty: there is none
+  std::optional<record::TrialMeasures> measures;
+  int visit = 1;
+  std::optional<int> group{};  ///< index into the study's groups
+
+  /// Whether the response is right. A trial without a response is wrong.
+  [[nodiscard]] bool correct() const noexcept { return response && response == right; }
+  /// Whether the trial is valid by the whole validity rule: its part in clear and its sealed part.
+  [[nodiscard]] bool valid() const noexcept {
+    return row.valid && (!measures || measures->within_limits);
+  }
+};
+
+/// A study's trials with the labels of their stimuli and choices.
+struct Outcomes {
+  std::string study;
+  bool simulated = false;
+  bool pilot = false;
+  bool visual = false;  ///< textures were seen on a screen, not felt
+  record::StudyState state;
+  std::vector<std::string> classes;                 ///< labels
+  std::vector<std::vector<std::string>> exemplars;  ///< image file names, by class
+  std::vector<std::string> choices;                 ///< labels of the alternatives
+  std::vector<std::string> methods;                 ///< labels of the presented methods
+  std::vector<SessionOutcome> sessions;             ///< by number, including erased sessions
+  /// The number of sessions that had not ended at an interim look. These are neither in `sessions`
+  /// nor in `trials`.
+  int sessions_unseen = 0;
+  std::vector<TrialOutcome> trials;  ///< by session and trial, without erased sessions
+  study::Study design;               ///< the study file, which has the rule for drawing orders
+  LookRecord looked;                 ///< who looked at outcomes, and what was decided after that
+  Collection collection;
+  std::vector<Characteristic> demographics{};  ///< of the participants who count
+  std::vector<QuestionAnswer> answers{};       ///< of `sessions`
+  std::vector<Incident> incidents{};           ///< of `sessions`, with texts and times
+  std::vector<InstrumentMark> marks{};         ///< of `sessions`
+  /// The questions that were asked: the study's own, until somebody adds those of the program.
+  Questionnaires asked{};
+};
+
+/// "session 2, event 7: <what>"
+[[nodiscard]] std::string shown(const record::ChainFault& fault);
+
+/// Opens every sealed schedule and measure and scores the answers with them.
+///
+/// A session counts if it was completed and is neither excluded, erased nor replaced, and its
+/// participant has all visits that the study needs. A pilot or simulated session counts only if the
+/// whole study is one. A scored trial of a counted session
+/// counts if it ended, either with an answer or without a response when time ran out. A trial that
+/// was interrupted and repeated keeps its number, and its last presentation with an answer counts.
+/// A trial that was interrupted and never repeated does not count. After an interim look, the
+/// result has only the sessions that had ended before it, until the next unblinding.
+///
+/// Chains, sealed ends and derived tables are checked against the events first; traces are not.
+///
+/// \param participant  whose sessions alone are opened, if a look at this participant or at the
+///   study shows them; empty: the study's
+/// \throws StoreError if the study has not been unblinded, or nothing shows this participant
+/// \throws VerificationError if the key does not match the database, the database is inconsistent,
+///   or a session does not agree with its schedule; the message names the session
+[[nodiscard]] Outcomes load_outcomes(const record::StudyStore& store, const study::StudyKey& key,
+                                     const std::string& participant = {});
+
+/// The same after a look at the registered question alone: only what question_alone (results.hpp)
+/// makes of it may be shown.
+/// \throws as load_outcomes; StoreError if the last look was none of that kind
+[[nodiscard]] Outcomes load_for_question(const record::StudyStore& store,
+                                         const study::StudyKey& key);
+
+}  // namespace touchtrial::analysis

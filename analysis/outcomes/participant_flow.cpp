@@ -1,0 +1,84 @@
+#include "analysis/outcomes/collection.hpp"
+#include "analysis/outcomes/collection_records.hpp"
+
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+namespace touchtrial::analysis {
+namespace {
+
+/// The session by which each participant is counted, in order of these sessions. This is the
+/// participant's last session, of the visits that are needed; it replaced all earlier ones of its
+/// visit.
+std::map<int, const record::SessionRow*> sessions_that_stand(
+    const std::vector<record::SessionRow>& rows, int visits_needed) {
+  std::map<std::string, const record::SessionRow*> last;
+  for (const record::SessionRow& row : rows) {
+    if (row.visit <= visits_needed) last[row.participant] = &row;
+  }
+  std::map<int, const record::SessionRow*> standing;
+  for (const auto& [participant, row] : last) standing[row->session] = row;
+  return standing;
+}
+
+bool unseen_after_interim_look(const record::SessionRow& row, const record::StudyState& state) {
+  return (state.unblinded || state.question) && !state.reports(row.session);
+}
+
+/// The one counter of the flow that a participant's session belongs to.
+int& end_of(const record::SessionRow& row, const record::StudyCommitment& commitment,
+            int visits_needed, const record::StudyState& state, ParticipantFlow& flow) {
+  if (row.erased) return flow.erased;
+  if (!row.replaced_by.empty() && row.replaced_by != row.participant) return flow.replaced;
+  if (row.excluded) return flow.excluded;
+  if (row.state == record::SessionState::stopped) return flow.stopped;
+  if (row.state == record::SessionState::open) return flow.open;
+  if (!session_counts(row, commitment)) return flow.other_kind;
+  if (row.visit < visits_needed) return flow.open;  // the next visit is still to come
+  if (unseen_after_interim_look(row, state)) return flow.unseen;
+  return flow.analysed;
+}
+
+}  // namespace
+
+std::set<int> counted_sessions(std::span<const record::SessionRow> rows,
+                               const record::StudyCommitment& commitment) {
+  const int needed = prescription_from_json(commitment.configuration).visits_needed;
+  std::map<std::pair<std::string, int>, std::set<int>> visits;  // that count, by participant
+  const auto own = [&](const record::SessionRow& row) -> std::set<int>& {
+    return visits[{row.participant, row.enrolment}];
+  };
+  for (const record::SessionRow& row : rows) {
+    if (session_counts(row, commitment) && row.visit <= needed) own(row).insert(row.visit);
+  }
+  std::set<int> counted;
+  for (const record::SessionRow& row : rows) {
+    const bool whole = static_cast<int>(own(row).size()) == needed;
+    if (whole && session_counts(row, commitment)) counted.insert(row.session);
+  }
+  return counted;
+}
+
+ParticipantFlow participant_flow(const std::vector<record::SessionRow>& rows,
+                                 const std::vector<SessionRecord>& records,
+                                 const record::StudyCommitment& commitment,
+                                 const record::StudyState& state) {
+  std::map<int, std::string> reasons;
+  for (const SessionRecord& record : records) {
+    reasons[record.row.session] = exclusion_words(record);
+  }
+  const int needed = prescription_from_json(commitment.configuration).visits_needed;
+  ParticipantFlow flow;
+  for (const auto& [session, row] : sessions_that_stand(rows, needed)) {
+    ++flow.enrolled;
+    if (row->withdrawn) ++flow.withdrawn;
+    int& end = end_of(*row, commitment, needed, state, flow);
+    ++end;
+    if (&end == &flow.excluded) flow.exclusion_reasons.push_back(reasons[session]);
+  }
+  return flow;
+}
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,22 @@
+/// \file The figures that every protocol's report has.
+#pragma once
+
+#include "analysis/outcomes/study_head.hpp"
+#include "analysis/report/figures/figure.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial::analysis {
+
+/// Participants from enrolment to analysis.
+[[nodiscard]] std::optional<Figure> flow_figure(const StudyHead& report);
+/// The servo's lateness; nothing for studies in virtual time.
+[[nodiscard]] std::optional<Figure> servo_figure(const StudyHead& report);
+
+/// Stamps the right edges with upright text below SIMULATED, where every figure leaves room.
+/// \param stamp  empty: leaves the figures as they are
+void stamp_figures(const std::string& stamp, std::vector<Figure>& figures);
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,164 @@
+#include "analysis/report/figures/svg.hpp"
+
+#include "analysis/report/escaping.hpp"
+#include "analysis/report/figures/gnuplot.hpp"
+#include "core/errors.hpp"
+
+#include <array>
+#include <cstddef>
+
+#include <fmt/format.h>
+
+namespace touchtrial::analysis {
+namespace {
+
+using std::string_view;
+
+/// What precedes an id or a reference to one.
+constexpr std::array<string_view, 8> kBeforeIds{" id=\"", " id='",  "href=\"#", "href='#",
+                                                "url(#",  "url('#", "url(\"#",  "url(&quot;#"};
+/// Attributes that hold several ids.
+constexpr std::array<string_view, 2> kBeforeLists{"aria-labelledby=\"", "aria-describedby=\""};
+
+template <std::size_t N>
+string_view beginning_of(string_view text, const std::array<string_view, N>& candidates) {
+  for (const string_view one : candidates) {
+    if (text.starts_with(one)) return one;
+  }
+  return {};
+}
+
+/// A list of ids with the prefix before each.
+std::string prefixed_list(string_view list, const std::string& prefix) {
+  std::string all;
+  bool at_begin = true;
+  for (const char c : list) {
+    if (at_begin && c != ' ') all += prefix;
+    at_begin = c == ' ';
+    all += c;
+  }
+  return all;
+}
+
+/// One tag with the prefix before every id that it gives or refers to.
+std::string prefixed_tag(string_view tag, const std::string& prefix) {
+  std::string text;
+  while (!tag.empty()) {
+    if (const string_view before = beginning_of(tag, kBeforeIds); !before.empty()) {
+      text.append(before).append(prefix);
+      tag.remove_prefix(before.size());
+    } else if (const string_view list = beginning_of(tag, kBeforeLists); !list.empty()) {
+      tag.remove_prefix(list.size());
+      const string_view ids = tag.substr(0, tag.find('"'));
+      text.append(list).append(prefixed_list(ids, prefix));
+      tag.remove_prefix(ids.size());
+    } else {
+      text += tag.front();
+      tag.remove_prefix(1);
+    }
+  }
+  return text;
+}
+
+/// Puts the prefix before every id in the tags. Texts between tags stay: a label may look like an
+/// id.
+std::string with_prefixed_ids(string_view svg, const std::string& prefix) {
+  std::string text;
+  text.reserve(svg.size() + svg.size() / 16);
+  while (!svg.empty()) {
+    const std::size_t open = svg.find('<');
+    text += svg.substr(0, open);
+    if (open == string_view::npos) break;
+    svg.remove_prefix(open);
+    const std::size_t close = svg.find('>');
+    const std::size_t length = close == string_view::npos ? svg.size() : close + 1;
+    text += prefixed_tag(svg.substr(0, length), prefix);
+    svg.remove_prefix(length);
+  }
+  return text;
+}
+
+/// Up to the end of the first sentence, with its full stop.
+std::string first_sentence(const std::string& text) {
+  const std::size_t end = text.find(". ");
+  return end == std::string::npos ? text : text.substr(0, end + 1);
+}
+
+[[noreturn]] void refuse_svg() {
+  throw Error("gnuplot: printed no SVG" + gnuplot_remedy());
+}
+
+/// The value of an attribute of gnuplot's root element.
+/// \param name  with the equals sign and the opening double quote
+string_view attribute(string_view drawn, string_view name) {
+  const std::size_t begin = drawn.find(name);
+  if (begin == string_view::npos) refuse_svg();
+  const std::size_t end = drawn.find('"', begin + name.size());
+  if (end == string_view::npos) refuse_svg();
+  return drawn.substr(begin + name.size(), end - begin - name.size());
+}
+
+/// Removes every <title>..</title>.
+std::string without_tool_tips(string_view body) {
+  static constexpr string_view kEnd = "</title>";
+  std::string kept;
+  while (!body.empty()) {
+    const std::size_t open = body.find("<title>");
+    const std::size_t end = open == string_view::npos ? open : body.find(kEnd, open);
+    kept += body.substr(0, end == string_view::npos ? end : open);
+    if (end == string_view::npos) break;
+    body.remove_prefix(end + kEnd.size());
+  }
+  return kept;
+}
+
+/// Removes the groups without content: gnuplot opens one at each change of pen.
+std::string without_empty_groups(string_view body) {
+  static constexpr string_view kClosed = ">\n</g>\n";
+  static constexpr string_view kOpened = "<g fill=\"none\"";
+  std::string kept;
+  while (!body.empty()) {
+    const std::size_t open = body.find(kOpened);
+    kept += body.substr(0, open);
+    if (open == string_view::npos) break;
+    body.remove_prefix(open);
+    const std::size_t close = body.find('>');
+    if (close != string_view::npos && body.substr(close).starts_with(kClosed)) {
+      body.remove_prefix(close + kClosed.size());
+    } else {
+      kept += kOpened;
+      body.remove_prefix(kOpened.size());
+    }
+  }
+  return kept;
+}
+
+}  // namespace
+
+std::string accessible_svg(string_view drawn, const Figure& figure) {
+  static constexpr string_view kDescribed = "</desc>";
+  const string_view box = attribute(drawn, "viewBox=\"");
+  const std::size_t described = drawn.find(kDescribed);
+  if (described == string_view::npos) refuse_svg();
+  const std::string body = without_tool_tips(drawn.substr(described + kDescribed.size()));
+  return fmt::format(
+             "<svg xmlns=\"http://www.w3.org/2000/svg\" "
+             "xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"{0}cm\" height=\"{1}cm\" "
+             "viewBox=\"{2}\" role=\"img\" aria-labelledby=\"{3}-title {3}-desc\">\n"
+             "<title id=\"{3}-title\">{4}</title>\n<desc id=\"{3}-desc\">{5}</desc>\n",
+             figure.width_cm, figure.height_cm, box, figure.id,
+             xml_escaped(one_line(first_sentence(figure.caption))),
+             xml_escaped(one_line(figure.alt))) +
+         without_empty_groups(with_prefixed_ids(body, figure.id + "-"));
+}
+
+std::string inline_svg(string_view file, const std::string& prefix) {
+  const std::size_t begin = file.find("<svg");
+  const std::size_t end = file.rfind("</svg>");
+  if (begin == string_view::npos || end == string_view::npos || end < begin) return "";
+  const string_view svg = file.substr(begin, end + 6 - begin);
+  if (svg.find("<script") != string_view::npos) return "";
+  return with_prefixed_ids(svg, prefix);
+}
+
+}  // namespace touchtrial::analysis

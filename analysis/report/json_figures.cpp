@@ -1,0 +1,93 @@
+#include "analysis/report/json_figures.hpp"
+
+#include "analysis/report/bibliography.hpp"
+
+#include <cmath>
+
+namespace touchtrial::analysis {
+
+nlohmann::ordered_json figure_json(std::optional<double> figure) {
+  if (!figure || !std::isfinite(*figure)) return nullptr;
+  return *figure;
+}
+
+nlohmann::ordered_json interval_json(const Interval& interval) {
+  return nlohmann::ordered_json::array({figure_json(interval.low), figure_json(interval.high)});
+}
+
+nlohmann::ordered_json interval_json(const std::optional<Interval>& interval) {
+  if (!interval) return nullptr;
+  return interval_json(*interval);
+}
+
+nlohmann::ordered_json quartiles_json(const Quartiles& quartiles) {
+  return {{"n", quartiles.n},
+          {"lower_quartile", figure_json(quartiles.lower)},
+          {"median", figure_json(quartiles.median)},
+          {"upper_quartile", figure_json(quartiles.upper)}};
+}
+
+std::optional<Interval> known(const Interval& interval, const Proportion& of) {
+  return of.n == 0 ? std::nullopt : std::optional(interval);
+}
+
+void put_proportion(nlohmann::ordered_json& object, const Proportion& proportion) {
+  object["n"] = proportion.n;
+  object["correct"] = proportion.correct;
+  object["p"] = figure_json(proportion.share());
+}
+
+void put_stamp(nlohmann::ordered_json& object, bool simulated, const std::string& device) {
+  object["simulated"] = simulated;
+  if (!simulated) return;
+  object["stamp"] = "SIMULATED";
+  if (!device.empty()) object["simulated_on"] = device;
+}
+
+void put_state(nlohmann::ordered_json& object, const record::StudyState& state, bool pilot) {
+  object["state"] = name_of(state);
+  object["interim"] = (state.unblinded || state.question) && !state.closed;
+  object["question_alone"] = state.question.has_value();
+  object["pilot"] = pilot;
+}
+
+nlohmann::ordered_json statistics_json(const engine::GlcmStatistics& statistics) {
+  return {{"asm", statistics.angular_second_moment},
+          {"energy", statistics.energy},
+          {"entropy", statistics.entropy},
+          {"contrast", statistics.contrast},
+          {"correlation", statistics.correlation}};
+}
+
+nlohmann::ordered_json glcm_json(const engine::GlcmTable& glcm) {
+  nlohmann::ordered_json directions = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < engine::kGlcmOffsets.size(); ++i) {
+    directions[std::to_string(engine::kGlcmOffsets[i].degrees)] = statistics_json(glcm[i]);
+  }
+  return directions;
+}
+
+void put_method(nlohmann::ordered_json& object, const std::string& method,
+                const std::vector<std::string>& references) {
+  object["method"] = method;
+  object["references"] = references;
+}
+
+nlohmann::ordered_json references_object() {
+  nlohmann::ordered_json all = nlohmann::ordered_json::object();
+  for (const Publication& one : publications()) {
+    // Only the cues cite Lin, and they name the publication themselves.
+    if (one.source != Source::lin) all[std::string(one.key)] = std::string(one.text);
+  }
+  return all;
+}
+
+nlohmann::ordered_json registration_object(const study::Registration& registration) {
+  return {{"hypothesis", registration.hypothesis},
+          {"participants", registration.participants},
+          {"stopping_rule", registration.stopping_rule},
+          {"exclusions", registration.exclusions},
+          {"primary_test", registration.primary_test}};
+}
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,84 @@
+#include "analysis/report/page/document.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+namespace touchtrial::analysis {
+namespace {
+
+constexpr const char* kBetweenWords = ", ";
+
+void add_sources(const Cited& cited, std::vector<Source>& references) {
+  for (const Source source : cited.sources) {
+    if (reference_number(source, references) == 0) references.push_back(source);
+  }
+}
+
+void add_sources(const Table& table, std::vector<Source>& references) {
+  for (const Cited& note : table.notes) add_sources(note, references);
+}
+
+}  // namespace
+
+bool has_tables_or_warnings(const Section& section) {
+  return std::any_of(section.blocks.begin(), section.blocks.end(), [](const Block& block) {
+    return std::holds_alternative<Table>(block) || std::holds_alternative<Warnings>(block);
+  });
+}
+
+std::vector<Source> references_of(const Document& document) {
+  std::vector<Source> references;
+  for (const Section& section : document.sections) {
+    for (const Block& block : section.blocks) {
+      if (const auto* cited = std::get_if<Cited>(&block)) add_sources(*cited, references);
+      if (const auto* table = std::get_if<Table>(&block)) add_sources(*table, references);
+    }
+  }
+  return references;
+}
+
+std::vector<Source> references_of(const Table& table) {
+  std::vector<Source> references;
+  add_sources(table, references);
+  return references;
+}
+
+std::size_t reference_number(Source source, const std::vector<Source>& references) {
+  const auto found = std::find(references.begin(), references.end(), source);
+  if (found == references.end()) return 0;
+  return static_cast<std::size_t>(found - references.begin()) + 1;
+}
+
+std::string citation_mark(const Cited& cited, const std::vector<Source>& references) {
+  if (cited.sources.empty()) return "";
+  std::string mark;
+  for (const Source source : cited.sources) {
+    mark += (mark.empty() ? " [" : ", ") + std::to_string(reference_number(source, references));
+  }
+  return mark + "]";
+}
+
+std::string stamped(const std::string& caption, const std::string& stamp) {
+  std::string missing;
+  for (std::size_t at = 0; at < stamp.size();) {
+    const std::size_t end = std::min(stamp.find(kBetweenWords, at), stamp.size());
+    const std::string word = stamp.substr(at, end - at);
+    if (caption.find(word) == std::string::npos) {
+      missing += (missing.empty() ? "" : kBetweenWords) + word;
+    }
+    at = end + std::string_view(kBetweenWords).size();
+  }
+  return missing.empty() ? caption : caption + " [" + missing + "]";
+}
+
+std::vector<const Table*> tables_of(const Document& document) {
+  std::vector<const Table*> tables;
+  for (const Section& section : document.sections) {
+    for (const Block& block : section.blocks) {
+      if (const auto* table = std::get_if<Table>(&block)) tables.push_back(table);
+    }
+  }
+  return tables;
+}
+
+}  // namespace touchtrial::analysis

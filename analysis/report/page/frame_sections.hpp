@@ -1,0 +1,43 @@
+/// \file The sections that every protocol's report has.
+#pragma once
+
+#include "analysis/report/page/document.hpp"
+#include "analysis/report/page/study_document.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial::analysis {
+
+[[nodiscard]] Section warnings_section(const std::vector<std::string>& warnings);
+
+/// The answer to the registered question, departures from what was registered, and the estimate
+/// under every choice of sessions and trials.
+/// \return without blocks if the study has no question and no departure
+[[nodiscard]] std::vector<Block> verdict_blocks(const StudyHead& head);
+/// Adds to every table and every sentence with a p that it is not adjusted for unregistered looks.
+void say_unadjusted(const std::vector<Look>& looks, std::vector<Section>& sections);
+
+/// The flow of participants, dates and conditions, and deviations from the protocol; nothing about
+/// outcomes.
+/// \param head  of a study that is unblinded: adds the numbers of people, what they told about
+/// themselves in bands, and looks at outcomes; null: none of these
+[[nodiscard]] Section participants_section(const Collection& collection,
+                                           const StudyHead* head = nullptr);
+/// Times, forces and speeds.
+/// \return without blocks if no trial counts
+[[nodiscard]] Section exploration_section(const StudyHead& head);
+/// Answers to closing questions: counts of options, quartiles of numbers, and texts.
+/// \return without blocks if nobody answered any
+[[nodiscard]] Section said_section(const StudyHead& head);
+/// What was registered before the study.
+[[nodiscard]] Section registration_section(const study::Registration& registration);
+/// The timing of the servo over the trials that ran in real time.
+/// \return nothing if there is no such trial
+[[nodiscard]] std::optional<Table> servo_table(const Collection& collection);
+
+/// The part of the header about the state of the study and the evidence for the report.
+[[nodiscard]] Definitions evidence_header(const Provenance& provenance);
+
+}  // namespace touchtrial::analysis

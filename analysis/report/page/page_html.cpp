@@ -1,0 +1,257 @@
+#include "analysis/report/escaping.hpp"
+#include "analysis/report/figures/svg.hpp"
+#include "analysis/report/page/document.hpp"
+#include "analysis/report/page/page_style.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace touchtrial::analysis {
+namespace {
+
+constexpr std::size_t kFoldedRows = 60;  ///< longer tables are folded away
+constexpr std::size_t kWholeRows = 12;   ///< longer tables may break across printed pages
+/// Text columns with longer cells get a minimum width.
+constexpr std::size_t kWideHtmlCell = 40;
+
+constexpr const char* kHead = R"(<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
+)";
+
+/// The document with its references, and the number of tables and of figures written so far.
+struct Writer {
+  const Document& document;
+  std::vector<Source> references;
+  int tables = 0;
+  int figures = 0;
+};
+
+/// The text escaped, with no line break within "p < 0.001" or "N = 20".
+std::string html_text(const std::string& text) {
+  constexpr const char* kNoBreak = "\u00a0";
+  std::string html = xml_escaped(text);
+  for (const std::string sign : {"=", "&lt;"}) {
+    for (std::size_t at = html.find(sign + " "); at != std::string::npos;
+         at = html.find(sign + " ", at + 1)) {
+      html.replace(at + sign.size(), 1, kNoBreak);
+      if (at > 0 && html[at - 1] == ' ') html.replace(at - 1, 1, kNoBreak);
+    }
+  }
+  return html;
+}
+
+std::string cited_html(const Writer& writer, const Cited& cited) {
+  std::string text = html_text(cited.text);
+  if (!cited.lead.empty()) text = "<strong>" + html_text(cited.lead) + "</strong> " + text;
+  for (std::size_t i = 0; i < cited.sources.size(); ++i) {
+    const std::size_t number = reference_number(cited.sources[i], writer.references);
+    text += fmt::format("{}<a href=\"#reference-{}\" aria-label=\"reference {}\">{}</a>",
+                        i == 0 ? " [" : ", ", number, number, number);
+  }
+  return cited.sources.empty() ? text : text + "]";
+}
+
+std::string html_of(Writer& writer, const Cited& paragraph) {
+  return (paragraph.lead.empty() ? "<p>" : "<p class=\"lead\">") + cited_html(writer, paragraph) +
+         "</p>\n";
+}
+
+std::string html_of(Writer& /*writer*/, const Subheading& heading) {
+  return "<h3 id=\"" + heading.id + "\">" + html_text(heading.title) + "</h3>\n";
+}
+
+std::string html_of(Writer& /*writer*/, const Warnings& warnings) {
+  if (warnings.sentences.empty()) return "";
+  std::string html = "<div class=\"warnings\">\n";
+  if (!warnings.title.empty()) html += "<p>" + html_text(warnings.title) + "</p>\n";
+  html += "<ul>\n";
+  for (const std::string& one : warnings.sentences) html += "<li>" + html_text(one) + "</li>\n";
+  return html + "</ul>\n</div>\n";
+}
+
+std::string html_of(Writer& /*writer*/, const Definitions& definitions) {
+  std::string html = "<dl>\n";
+  for (const auto& [name, meaning] : definitions.entries) {
+    html += "<dt>" + html_text(name) + "</dt><dd>" + html_text(meaning) + "</dd>\n";
+  }
+  return definitions.entries.empty() ? "" : html + "</dl>\n";
+}
+
+std::string header_row(const Table& table) {
+  std::string html = "<thead><tr>";
+  for (const Column& column : table.columns) {
+    html += fmt::format("<th scope=\"col\"{}>{}</th>",
+                        column.align == Align::left ? " class=\"l\"" : "", html_text(column.title));
+  }
+  return html + "</tr></thead>\n";
+}
+
+std::string cell_html(const Column& column, const Cell& cell, bool wide) {
+  std::string kinds = column.align == Align::left ? "l" : "";
+  if (wide) kinds += " wide";
+  if (cell.strong) kinds += kinds.empty() ? "s" : " s";
+  return (kinds.empty() ? "<td>" : "<td class=\"" + kinds + "\">") + html_text(cell.text) + "</td>";
+}
+
+bool is_wide(const Table& table, std::size_t column) {
+  return table.columns[column].align == Align::left &&
+         std::any_of(table.rows.begin(), table.rows.end(), [&](const std::vector<Cell>& row) {
+           return row[column].text.size() > kWideHtmlCell;
+         });
+}
+
+std::string body_rows(const Table& table) {
+  std::vector<bool> wide;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) wide.push_back(is_wide(table, i));
+  std::string html = "<tbody>\n";
+  for (const std::vector<Cell>& row : table.rows) {
+    html += "<tr><th scope=\"row\">" + html_text(row[0].text) + "</th>";
+    for (std::size_t i = 1; i < row.size(); ++i) {
+      html += cell_html(table.columns[i], row[i], wide[i]);
+    }
+    html += "</tr>\n";
+  }
+  return html + "</tbody>\n";
+}
+
+/// "<b>Table 3.</b> "; nothing on a page that does not number.
+std::string number_of(const Writer& writer, const char* what, int number) {
+  return writer.document.numbered ? fmt::format("<b>{} {}.</b> ", what, number) : "";
+}
+
+std::string notes_html(const Writer& writer, const Table& table) {
+  if (table.notes.empty()) return "";
+  std::string html = "<div class=\"notes\">\n";
+  for (const Cited& note : table.notes) html += "<p>" + cited_html(writer, note) + "</p>\n";
+  return html + "</div>\n";
+}
+
+std::string html_of(Writer& writer, const Table& table) {
+  const std::string caption = fmt::format("{}{}", number_of(writer, "Table", ++writer.tables),
+                                          html_text(stamped(table.caption, writer.document.stamp)));
+  std::string html = fmt::format(
+      "<div class=\"scroll\" role=\"region\" tabindex=\"0\" "
+      "aria-labelledby=\"table-{0}-caption\">\n"
+      "<table>\n<caption id=\"table-{0}-caption\"><span>{1}</span></caption>\n",
+      table.id, caption);
+  html += header_row(table) + body_rows(table) + "</table>\n</div>\n" + notes_html(writer, table);
+  if (table.rows.size() > kFoldedRows) {
+    html = fmt::format("<details>\n<summary>Table {}, {} rows</summary>\n", writer.tables,
+                       table.rows.size()) +
+           html + "</details>\n";
+  }
+  return fmt::format("<div class=\"table{}\" id=\"table-{}\">\n",
+                     table.rows.size() <= kWholeRows ? " whole" : "", table.id) +
+         html + "</div>\n";
+}
+
+std::string html_of(Writer& writer, const Picture& picture) {
+  const std::string svg = inline_svg(picture.svg, "figure-" + picture.id + "-");
+  const int number = ++writer.figures;
+  std::string html = "<figure id=\"figure-" + picture.id + "\">\n";
+  if (!svg.empty()) {
+    html += fmt::format(
+        "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"Figure {}\">"
+        "<div class=\"plot\" role=\"img\" aria-label=\"{}\">\n{}\n</div></div>\n",
+        number, html_text(picture.alt), svg);
+  }
+  if (svg.empty()) {
+    // The caption would describe marks and bars that are missing, so the description stands
+    // instead.
+    return html + fmt::format("<figcaption>{}<b>Not drawn.</b> {}</figcaption>\n</figure>\n",
+                              number_of(writer, "Figure", number),
+                              html_text(stamped(picture.alt, writer.document.stamp)));
+  }
+  html += fmt::format("<figcaption>{}{}</figcaption>\n", number_of(writer, "Figure", number),
+                      html_text(stamped(picture.caption, writer.document.stamp)));
+  return html +
+         fmt::format("<details><summary>{}In words</summary><p>{}</p></details>\n",
+                     number_of(writer, "Figure", number), html_text(picture.alt)) +
+         "</figure>\n";
+}
+
+std::string html_of(Writer& writer, const Flow& flow) {
+  std::string html = "<figure class=\"flow\" id=\"figure-" + flow.id + "\">\n<ol>\n";
+  for (const FlowStep& step : flow.steps) {
+    html += "<li><div class=\"box\">" + html_text(step.text) + "</div>";
+    if (!step.leaving.empty()) html += "<ul class=\"leaving\">";
+    for (const std::string& one : step.leaving) html += "<li>" + html_text(one) + "</li>";
+    html += step.leaving.empty() ? "</li>\n" : "</ul></li>\n";
+  }
+  return html + fmt::format("</ol>\n<figcaption><b>Figure {}.</b> {}</figcaption>\n</figure>\n",
+                            ++writer.figures,
+                            html_text(stamped(flow.caption, writer.document.stamp)));
+}
+
+std::string section_html(Writer& writer, const Section& section) {
+  std::string html = fmt::format("<section aria-labelledby=\"{0}\">\n<h2 id=\"{0}\">{1}</h2>\n",
+                                 section.id, html_text(section.title));
+  for (const Block& block : section.blocks) {
+    html += std::visit([&](const auto& one) { return html_of(writer, one); }, block);
+  }
+  return html + "</section>\n";
+}
+
+std::string references_html(const Writer& writer) {
+  if (writer.references.empty()) return "";
+  std::string html =
+      "<section aria-labelledby=\"references\">\n<h2 id=\"references\">References</h2>\n"
+      "<ol class=\"references\">\n";
+  for (std::size_t i = 0; i < writer.references.size(); ++i) {
+    html += fmt::format("<li id=\"reference-{}\">{}</li>\n", i + 1,
+                        html_text(std::string(citation_of(writer.references[i]))));
+  }
+  return html + "</ol>\n</section>\n";
+}
+
+std::string navigation(const Writer& writer) {
+  std::string html =
+      "<nav aria-labelledby=\"contents\">\n<h2 id=\"contents\">Contents</h2>\n<ul>\n";
+  for (const Section& section : writer.document.sections) {
+    html += "<li><a href=\"#" + section.id + "\">" + html_text(section.title) + "</a></li>\n";
+  }
+  if (!writer.references.empty()) html += "<li><a href=\"#references\">References</a></li>\n";
+  html += "<li><a href=\"#this-report\">" + html_text(writer.document.about) + "</a></li>\n";
+  return html + "</ul>\n</nav>\n";
+}
+
+std::string header_html(const Writer& writer) {
+  std::string html = "<header>\n";
+  for (const std::string& banner : writer.document.banners) {
+    html += "<p class=\"banner\">" + html_text(banner) + "</p>\n";
+  }
+  return html + "<h1>" + html_text(writer.document.title) + "</h1>\n</header>\n";
+}
+
+/// The sections, with the contents behind the first: whoever opens the page sees the result.
+std::string main_html(Writer& writer) {
+  std::string html = "<main id=\"main\" tabindex=\"-1\">\n";
+  std::string contents = navigation(writer);
+  for (const Section& section : writer.document.sections) {
+    html += section_html(writer, section) + contents;
+    contents.clear();
+  }
+  html += references_html(writer);
+  return html + "<section aria-labelledby=\"this-report\">\n<h2 id=\"this-report\">" +
+         html_text(writer.document.about) + "</h2>\n" + html_of(writer, writer.document.header) +
+         "</section>\n</main>\n";
+}
+
+}  // namespace
+
+std::string page_html(const Document& document) {
+  Writer writer{document, references_of(document)};
+  const std::string title = html_text(stamped(document.title, document.stamp));
+  std::string html = kHead + ("<title>" + title + "</title>\n<style>") + kPageStyle +
+                     "</style>\n</head>\n<body>\n";
+  html += header_html(writer) + main_html(writer) + "<footer>" + html_text(document.colophon) +
+          "</footer>\n";
+  return html + "</body>\n</html>\n";
+}
+
+}  // namespace touchtrial::analysis

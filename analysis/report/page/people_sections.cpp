@@ -1,0 +1,419 @@
+// Who took part, when and how, and how hands explored.
+#include "analysis/outcomes/collection_records.hpp"
+#include "analysis/report/page/frame_sections.hpp"
+#include "analysis/report/page/wording.hpp"
+#include "analysis/report/text_figures.hpp"
+#include "core/text.hpp"
+#include "core/utc.hpp"
+#include "study/deviation_codes.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+
+namespace touchtrial::analysis {
+namespace {
+
+void add_leaving(int n, const std::string& why, FlowStep& step) {
+  if (n > 0) step.leaving.push_back(fmt::format("{} {}", n, why));
+}
+
+/// Adds a line like "2 excluded: moved the device; fell asleep". A reason that was given several
+/// times is followed by its count.
+void add_excluded(const ParticipantFlow& flow, FlowStep& step) {
+  if (flow.excluded == 0) return;
+  std::map<std::string, int> reasons;
+  for (const std::string& reason : flow.exclusion_reasons) ++reasons[reason];
+  std::string text = fmt::format("{} excluded", flow.excluded);
+  const char* separator = ": ";
+  for (const auto& [reason, n] : reasons) {
+    text += separator + reason + (n > 1 ? fmt::format(" ({})", n) : "");
+    separator = "; ";
+  }
+  step.leaving.push_back(text);
+}
+
+Flow flow_of(const ParticipantFlow& flow) {
+  FlowStep enrolled{counted(flow.enrolled, "participant") + " enrolled"};
+  add_leaving(flow.erased, "withdrew; the keys of their sealed data were destroyed", enrolled);
+  add_leaving(flow.replaced, "replaced by somebody else", enrolled);
+  add_excluded(flow, enrolled);
+  add_leaving(flow.stopped, "stopped before the end", enrolled);
+  add_leaving(flow.open, "not ended yet", enrolled);
+  add_leaving(flow.other_kind, "pilots or simulations among others", enrolled);
+  add_leaving(flow.unseen, "ended after the interim look", enrolled);
+  return {"flow",
+          "Participants from enrolment to analysis, each counted once, by the session that was "
+          "not replaced",
+          {enrolled, {counted(flow.analysed, "participant") + " analysed"}}};
+}
+
+std::string devices_of(const std::vector<SessionRecord>& sessions) {
+  std::map<std::string, int> devices;
+  for (const SessionRecord& one : sessions) {
+    if (one.row.erased) continue;
+    std::string name = one.row.device;
+    if (one.station && !one.station->model.empty()) name += ", " + one.station->model;
+    if (!one.device_serial.empty()) name += ", serial " + one.device_serial;
+    if (one.station && !one.station->firmware.empty())
+      name += ", firmware " + one.station->firmware;
+    if (ran_unverified(one)) {
+      name += std::string(", ") + study::kUnverifiedDevice;
+    } else if (one.station) {
+      name += one.station->calibration.empty()
+                  ? ", without a certificate"
+                  : ", certificate " + one.station->calibration.substr(0, 12);
+    }
+    ++devices[name];
+  }
+  std::string text;
+  for (const auto& [name, n] : devices) {
+    text += (text.empty() ? "" : "; ") + name + " (" + counted(n, "session") + ")";
+  }
+  return text;
+}
+
+/// "3 interruptions in 1 session, 2 pauses in 2 sessions"; empty without any.
+std::string incidents_of(const std::vector<SessionRecord>& sessions) {
+  std::vector<std::string> parts;
+  const auto add = [&](int SessionRecord::*kind, const char* name) {
+    int all = 0;
+    int with = 0;
+    for (const SessionRecord& one : sessions) {
+      all += one.*kind;
+      with += one.*kind > 0 ? 1 : 0;
+    }
+    if (all > 0) parts.push_back(counted(all, name) + " in " + counted(with, "session"));
+  };
+  add(&SessionRecord::interruptions, "interruption");
+  add(&SessionRecord::pauses, "pause");
+  add(&SessionRecord::notes, "note");
+  return listed(parts);
+}
+
+std::string dates_text(const std::vector<SessionRecord>& sessions) {
+  const auto dates = dates_of(sessions);
+  if (!dates) return "none: no session was in real time";
+  return dates->first == dates->last ? dates->first : dates->first + " to " + dates->last;
+}
+
+std::string timeout_words(const std::string& on_timeout) {
+  return on_timeout.empty() ? "" : ", then: " + on_timeout;
+}
+
+Definitions conditions_of(const Collection& collection) {
+  const Prescription& rule = collection.prescription;
+  Definitions definitions;
+  auto& entries = definitions.entries;
+  entries.emplace_back("sessions", std::to_string(collection.sessions.size()));
+  entries.emplace_back("dates", dates_text(collection.sessions));
+  if (rule.visits > 1) entries.emplace_back("visits", std::to_string(rule.visits));
+  if (!rule.groups.empty()) entries.emplace_back("groups", listed(rule.groups));
+  entries.emplace_back(
+      "order", rule.intervals > 0 ? fmt::format("{}, {} planes a trial", rule.order, rule.intervals)
+                                  : fmt::format("{}, {} of each stimulus", rule.order,
+                                                counted(rule.repeats, "presentation")));
+  entries.emplace_back(
+      "exploration",
+      rule.explore_limit_s > 0.0
+          ? fmt::format("at most {} s{}{}", plain_figure(rule.explore_limit_s, 0),
+                        rule.intervals > 0 ? " a plane" : "", timeout_words(rule.on_timeout))
+          : "without a limit");
+  if (!rule.sight.empty()) entries.emplace_back("vision kept out by", rule.sight);
+  entries.emplace_back("masking noise", rule.masking_wanted
+                                            ? plain_figure(rule.masking_dbfs, 0) + " dBFS"
+                                            : "not prescribed");
+  const std::string incidents = incidents_of(collection.sessions);
+  if (!incidents.empty()) entries.emplace_back("besides trials", incidents);
+  const std::string devices = devices_of(collection.sessions);
+  if (!devices.empty()) entries.emplace_back("device", devices);
+  return definitions;
+}
+
+/// Keeps some of a table's columns.
+/// \param kept  in ascending order, the first column among them
+void keep_columns(const std::vector<std::size_t>& kept, Table& table) {
+  const auto chosen = [&](const auto& all) {
+    auto some = all;
+    some.clear();
+    for (const std::size_t i : kept) some.push_back(all[i]);
+    return some;
+  };
+  table.columns = chosen(table.columns);
+  for (std::vector<Cell>& row : table.rows) row = chosen(row);
+}
+
+/// Each deviation with the participants in whose sessions it occurred, or their number alone.
+std::optional<Table> deviations_table(const Collection& collection) {
+  const std::vector<SessionRecord>& sessions = collection.sessions;
+  std::map<std::pair<std::string, std::string>, std::set<std::string>> found;
+  for (const SessionRecord& one : sessions) {
+    for (const Deviation& deviation : one.deviations) {
+      found[{deviation.code, deviation.text}].insert(one.row.participant);
+    }
+  }
+  if (found.empty()) return {};
+  Table table{
+      "deviations",
+      "Deviations from the protocol",
+      {{"code", Align::left}, {"what", Align::left}, {"participants"}, {"whose", Align::left}}};
+  constexpr std::size_t kNamed = 10;
+  for (const auto& [deviation, whose] : found) {
+    std::vector<std::string> names(whose.begin(), whose.end());
+    const bool many = names.size() > kNamed;
+    if (many) names.resize(kNamed);
+    table.rows.push_back({deviation.first, deviation.second.empty() ? kNoFigure : deviation.second,
+                          std::to_string(whose.size()),
+                          listed(names, " and ") + (many ? " …" : "")});
+  }
+  if (collection.is_public) {
+    keep_columns({0, 2}, table);
+    table.notes = {{"The code \"other\" stands for codes that were made up while the study ran."}};
+  }
+  return table;
+}
+
+std::string remark_of(const SessionRecord& one) {
+  std::vector<std::string> parts;
+  if (!one.exclusion_reason.empty()) parts.push_back("excluded: " + exclusion_words(one));
+  if (!one.row.replaced_by.empty()) {
+    parts.push_back("replaced by " + one.row.replaced_by +
+                    (one.replacement_reason.empty() ? "" : ": " + one.replacement_reason));
+  }
+  if (!one.stop_reason.empty()) parts.push_back("stopped: " + one.stop_reason);
+  if (one.row.withdrawn) {
+    parts.push_back("withdrew, data kept" +
+                    (one.withdrawal_reason.empty() ? "" : ": " + one.withdrawal_reason));
+  }
+  if (one.interruptions > 0) parts.push_back(counted(one.interruptions, "interruption"));
+  if (one.pauses > 0) parts.push_back(counted(one.pauses, "pause"));
+  if (one.resumed > 0) parts.push_back("resumed " + counted(one.resumed, "time"));
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : "; ") + part;
+  return text.empty() ? kNoFigure : text;
+}
+
+std::string practice_of(const SessionRecord& one) {
+  if (!one.practice) return kNoFigure;
+  const std::string correct =
+      one.practice->correct ? fmt::format("{} of ", *one.practice->correct) : "";
+  return fmt::format("{}{} in {}{}", correct, one.practice->presentations,
+                     counted(one.practice->rounds, "round"),
+                     one.practice->passed ? "" : ", not passed");
+}
+
+/// Tells whether the table of sessions has more to say about a session than that it was completed.
+bool is_remarkable(const SessionRecord& one) {
+  return one.row.withdrawn || one.row.excluded ||
+         one.row.state != record::SessionState::completed || one.resumed > 0 ||
+         one.interruptions > 0 || one.pauses > 0 || !one.row.replaced_by.empty() ||
+         one.practice.has_value();
+}
+
+std::optional<Table> sessions_table(const Collection& collection) {
+  const std::vector<SessionRecord>& sessions = collection.sessions;
+  if (collection.is_public || std::none_of(sessions.begin(), sessions.end(), is_remarkable))
+    return {};
+  Table table{"sessions",
+              "Sessions with more to report than that they were completed",
+              {{"session", Align::left},
+               {"participant", Align::left},
+               {"state", Align::left},
+               {"practice, right", Align::left},
+               {"remarks", Align::left}}};
+  for (const SessionRecord& one : sessions) {
+    if (!is_remarkable(one)) continue;
+    table.rows.push_back({std::to_string(one.row.session),
+                          one.row.erased ? kNoFigure : one.row.participant,
+                          one.row.erased ? "erased" : std::string(name_of(one.row.state)),
+                          one.row.erased ? kNoFigure : practice_of(one),
+                          one.row.erased ? kNoFigure : remark_of(one)});
+  }
+  return table;
+}
+
+Table looks_table(const std::vector<Look>& looks, bool is_public) {
+  Table table{
+      "looks",
+      "When outcomes were looked at",
+      {{"date", Align::left}, {"participants"}, {"look", Align::left}, {"why", Align::left}}};
+  for (const Look& look : looks) {
+    std::string kind = name_of(look.kind);
+    if (!look.participant.empty() && !is_public) kind += ", " + look.participant;
+    const bool is_dated = look.at.count() > 0;  // not in virtual time
+    if (look.station > 0) kind += fmt::format(", station {}", look.station);
+    table.rows.push_back({is_dated ? utc_words(look.at) : kNoFigure,
+                          std::to_string(look.participants), kind, look.reason});
+  }
+  if (is_public) keep_columns({0, 1, 2}, table);
+  return table;
+}
+
+Table people_table(const StudyHead& head) {
+  const ParticipantFlow& flow = head.collection.flow;
+  const int planned = head.course.planned;
+  Table table{"people",
+              "How many people took part",
+              {{"number of", Align::left},
+               {"planned"},
+               {"enrolled"},
+               {"completed"},
+               {"excluded"},
+               {"withdrew"},
+               {"in the results"}}};
+  table.rows = {{"participants", planned > 0 ? std::to_string(planned) : "not stated",
+                 std::to_string(flow.enrolled), std::to_string(head.course.completed),
+                 std::to_string(flow.excluded), std::to_string(flow.withdrawn),
+                 std::to_string(flow.analysed)}};
+  table.notes = {
+      {"Completed: with those who were left out afterwards. In the results: after all "
+       "exclusions as they were made; the sections below are about these."}};
+  if (head.course.excluded_afterwards > 0) {
+    table.notes.push_back(
+        {fmt::format("Excluded after outcomes were seen: {}. The first row of the result counts "
+                     "these.",
+                     counted(head.course.excluded_afterwards, "session"))});
+  }
+  return table;
+}
+
+/// "age: 20-29 (12), others (8)"
+Cited bands_sentence(const Characteristic& of) {
+  std::string text = of.name + ":";
+  text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  if (of.bands.empty()) {
+    return {fmt::format("{} not shown, because it would single out fewer than {} people.", text,
+                        kFewestOfBand)};
+  }
+  const char* separator = " ";
+  for (const Band& band : of.bands) {
+    text += fmt::format("{}{} ({})", separator, band.name, band.people);
+    separator = ", ";
+  }
+  if (of.others > 0) {
+    text += fmt::format(", others and not told ({}; bands of fewer than {} are not shown)",
+                        of.others, kFewestOfBand);
+  }
+  return {text + "."};
+}
+
+std::vector<Cell> exploration_row(const std::string& what, const Quartiles& of, int decimals,
+                                  double unit = 1.0) {
+  const auto cell = [&](std::optional<double> value) {
+    return Cell(plain_figure(value ? std::optional(unit * *value) : value, decimals));
+  };
+  return {what, std::to_string(of.n), cell(of.lower), cell(of.median), cell(of.upper)};
+}
+
+Table explorations_table(const StudyHead& head, std::size_t index) {
+  const Explorations& one = head.explorations[index];
+  const std::string method = head.explorations.size() > 1 ? one.method + ": " : "";
+  Table table{
+      "explorations-" + std::to_string(index + 1),
+      method + "how hands explored, over the trials that count",
+      {{"what", Align::left}, {"trials"}, {"lower quartile"}, {"median"}, {"upper quartile"}}};
+  table.rows = {exploration_row("time until answer (s)", one.answer_s, 1),
+                exploration_row("time in contact (s)", one.contact_s, 1),
+                exploration_row("path in contact (mm)", one.path_mm, 0),
+                exploration_row("speed in contact (mm/s)", one.speed_mm_s, 0),
+                exploration_row("force, rms (N)", one.force_n, 2),
+                exploration_row("at the force limit (%)", one.saturated, 1, 100.0)};
+  const double limit_s = head.collection.prescription.explore_limit_s;
+  const std::string allowed = limit_s > 0.0
+                                  ? fmt::format("{} s were allowed", plain_figure(limit_s, 0))
+                                  : std::string("the time was not limited");
+  table.notes = {{fmt::format(
+      "Trials of all participants pooled, each with the same weight. {}; {} of {} ended without "
+      "a response. Path, speed, force: in contact; speed: a trial's path over its time there. At "
+      "the "
+      "force limit: share of the time in contact.",
+      allowed, one.without_response, counted(one.trials, "trial"))}};
+  return table;
+}
+
+/// "No (12), Sometimes (5)", or the quartiles of numbers.
+std::string said_in(const QuestionSummary& of) {
+  if (of.kind == study::QuestionKind::number) {
+    return of.numbers.median
+               ? fmt::format("median {}, quartiles {} and {}", plain_figure(of.numbers.median, 1),
+                             plain_figure(of.numbers.lower, 1), plain_figure(of.numbers.upper, 1))
+               : kNoFigure;
+  }
+  if (of.kind == study::QuestionKind::text) return "in words";
+  std::vector<std::string> parts;
+  for (const Band& option : of.options) {
+    parts.push_back(fmt::format("{} ({})", option.name, option.people));
+  }
+  if (of.others > 0) {
+    parts.push_back(fmt::format("others ({}; options of fewer than {} are not shown)", of.others,
+                                kFewestOfBand));
+  }
+  return parts.empty() ? kNoFigure : listed(parts);
+}
+
+}  // namespace
+
+Section participants_section(const Collection& collection, const StudyHead* head) {
+  Section section{"participants", "Participants", {}};
+  if (head != nullptr) section.blocks.emplace_back(people_table(*head));
+  if (head != nullptr) {
+    for (const Characteristic& one : head->demographics) {
+      section.blocks.emplace_back(bands_sentence(one));
+    }
+  }
+  section.blocks.emplace_back(flow_of(collection.flow));
+  for (const std::string& note : people_notes(collection)) {
+    section.blocks.emplace_back(Cited{note, {}});
+  }
+  section.blocks.emplace_back(conditions_of(collection));
+  if (auto deviations = deviations_table(collection)) {
+    section.blocks.emplace_back(std::move(*deviations));
+  } else {
+    const bool has_departures = head != nullptr && !head->departures.empty();
+    section.blocks.emplace_back(Cited{
+        has_departures ? "No deviation was recorded during sessions; departures from the plan are "
+                         "listed above."
+                       : "No deviation from the protocol was recorded.",
+        {}});
+  }
+  if (head != nullptr && !head->looks.empty()) {
+    section.blocks.emplace_back(looks_table(head->looks, collection.is_public));
+  }
+  if (auto sessions = sessions_table(collection)) {
+    section.blocks.emplace_back(std::move(*sessions));
+  }
+  return section;
+}
+
+Section said_section(const StudyHead& head) {
+  Section section{"said", "What participants said", {}};
+  if (head.said.empty()) return section;
+  Table questions{"questions",
+                  "Answers to the questions after the session",
+                  {{"question", Align::left}, {"participants"}, {"answers", Align::left}}};
+  Table texts{"answers-in-words",
+              "Answers in words",
+              {{"question", Align::left}, {"participant", Align::left}, {"answer", Align::left}}};
+  for (const QuestionSummary& one : head.said) {
+    const std::string& wording = one.wording.empty() ? one.question : one.wording;
+    questions.rows.push_back({wording, std::to_string(one.answered), said_in(one)});
+    for (const auto& [participant, text] : one.texts) {
+      texts.rows.push_back({one.question, participant, text});
+    }
+  }
+  section.blocks.emplace_back(std::move(questions));
+  if (!texts.rows.empty()) section.blocks.emplace_back(std::move(texts));
+  return section;
+}
+
+Section exploration_section(const StudyHead& head) {
+  Section section{"exploration", "Exploration", {}};
+  for (std::size_t i = 0; i < head.explorations.size(); ++i) {
+    if (head.explorations[i].trials > 0) section.blocks.emplace_back(explorations_table(head, i));
+  }
+  return section;
+}
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,28 @@
+/// \file Small pictures in rows and columns, as one picture of a document.
+#pragma once
+
+#include "analysis/report/page/document.hpp"
+#include "core/bytes.hpp"
+#include "engine/pictures/force_arrows.hpp"
+
+#include <string>
+#include <vector>
+
+namespace touchtrial::analysis {
+
+/// Pictures under titles, each row with a label. Cells are PNG files.
+struct Tiles {
+  std::vector<std::string> titles;
+  std::vector<std::string> labels;  ///< of the rows; empty: none
+  std::vector<std::vector<Bytes>> cells;
+  int side_px = 104;  ///< of a cell, in pixels of style sheets
+};
+
+/// \param id,caption,alt  of the picture
+[[nodiscard]] Picture picture_of_tiles(std::string id, std::string caption, std::string alt,
+                                       const Tiles& tiles);
+
+/// The middle of a patch, at most so many pixels wide and high.
+[[nodiscard]] engine::ArrowPatch middle_of_patch(engine::ArrowPatch patch, int side_px);
+
+}  // namespace touchtrial::analysis

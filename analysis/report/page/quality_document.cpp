@@ -1,0 +1,158 @@
+#include "analysis/report/page/frame_sections.hpp"
+#include "analysis/report/page/study_document.hpp"
+#include "analysis/report/page/wording.hpp"
+#include "analysis/report/text_figures.hpp"
+#include "analysis/statistics/confusion.hpp"
+#include "core/text.hpp"
+#include "study/deviation_codes.hpp"
+
+#include <fmt/format.h>
+
+namespace touchtrial::analysis {
+namespace {
+
+Table sessions_table(const SessionCounts& counts) {
+  Table table{"session-counts",
+              "Sessions, each counted once",
+              {{"how they stand", Align::left}, {"sessions"}}};
+  const auto add = [&](const char* name, int n) {
+    table.rows.push_back({name, std::to_string(n)});
+  };
+  add("completed", counts.completed);
+  add("open", counts.open);
+  add("stopped", counts.stopped);
+  add("excluded", counts.excluded);
+  add("replaced", counts.replaced);
+  add("withdrawn, data erased", counts.erased);
+  table.notes = {{"Withdrawn before replaced before excluded before a session's own state."}};
+  return table;
+}
+
+Table trials_table(const TrialQuality& quality) {
+  Table table{"trial-counts", "Trials", {{"what", Align::left}, {"trials"}, {"share"}}};
+  const auto add = [&](const char* name, int n, int of) {
+    const auto share = percentage(n, of);
+    table.rows.push_back(
+        {name, std::to_string(n), share ? plain_figure(share, 1) + "%" : kNoFigure});
+  };
+  add("presented", quality.presented, quality.presented);
+  add("answered", quality.answered, quality.presented);
+  add("answered after a pause, without a reaction time", quality.paused, quality.answered);
+  add("no response: time ran out", quality.no_response, quality.presented);
+  add("interrupted presentations, repeated or not", quality.interrupted, 0);
+  add("interrupted, and not repeated yet", quality.not_repeated, quality.presented);
+  add("with a trace", quality.with_trace, quality.presented);
+  add("valid by the study's rule, as far as it is in clear", quality.valid, quality.with_trace);
+  add("with servo ticks that came late", quality.with_overruns, quality.with_trace);
+  table.notes = {
+      {"Shares: of presented trials; of pauses, of answers; of validity and late ticks, of trials "
+       "with a trace."}};
+  return table;
+}
+
+Table answers_table(const Collection& collection) {
+  Table table{"answers-by-session",
+              "Answers in the sessions that have ended",
+              {{"session", Align::left}, {"answers"}, {"one key"}}};
+  for (const SessionRecord& session : collection.sessions) {
+    if (!session.answers) continue;
+    table.rows.push_back({std::to_string(session.row.session), std::to_string(*session.answers),
+                          session.one_key ? "yes" : ""});
+  }
+  table.notes = {
+      {"One key: 95% of 20 answers or more came from one key, although the right answers are "
+       "spread over all keys. Nobody who tells some of the textures apart answers so. It is not "
+       "said of trials with several planes. How else answers are spread is an outcome."}};
+  return table;
+}
+
+Table hands_table(const Collection& collection) {
+  Table table{
+      "hands-by-session",
+      "Trials in which the hand was outside a window",
+      {{"session", Align::left}, {"with a trace"}, {"contact"}, {"path"}, {"force"}, {"speed"}}};
+  for (const SessionRecord& session : collection.sessions) {
+    const HandCounts& outside = session.outside;
+    if (outside.trials == 0) continue;
+    table.rows.push_back({std::to_string(session.row.session), std::to_string(outside.trials),
+                          std::to_string(outside.contact), std::to_string(outside.path),
+                          std::to_string(outside.force), std::to_string(outside.speed)});
+  }
+  const study::ValidityRule& rule = collection.prescription.validity;
+  table.notes = {{fmt::format(
+      "Contact: less than {} s at the plane, at most 3 mm above it. Path: less than {} mm along "
+      "it. "
+      "Force: a mean push below {} N or above {} N. Speed: a mean below {} or above {} mm/s. "
+      "Somebody who does not press or does not move shows here; what was presented does not.",
+      rule.least_contact_s, rule.least_path_mm, rule.least_median_n, rule.largest_median_n,
+      study::kSlowestMmS, study::kFastestMmS)}};
+  return table;
+}
+
+std::vector<std::string> banners_of(const QualityReport& report) {
+  std::vector<std::string> banners;
+  if (report.simulated) {
+    const std::string device = simulated_on(simulated_devices(report.collection));
+    if (!device.empty()) banners.push_back(device);
+    banners.emplace_back("SIMULATED: this study's participants are simulated.");
+  }
+  if (report.pilot) banners.emplace_back("PILOT: not to be pooled with the study's data.");
+  if (!report.state.unblinded) {
+    banners.emplace_back(
+        "BLIND: outcomes are shown once the study has been unblinded. Nothing here reveals them.");
+  }
+  if (report.visual) {
+    banners.emplace_back("Seen on a screen, not felt: never to be pooled with what was felt.");
+  }
+  return banners;
+}
+
+Section servo_section(const QualityReport& report) {
+  Section section{"servo", "Servo", {}};
+  if (auto servo = servo_table(report.collection)) {
+    section.blocks.emplace_back(std::move(*servo));
+  } else {
+    section.blocks.emplace_back(
+        Cited{"No trial was in real time: nothing is known about a servo's lateness.", {}});
+  }
+  if (report.servo) {
+    section.blocks.emplace_back(Cited{"Scheduling that servo threads obtained: " +
+                                          listed(report.servo->scheduling, " and ") + ".",
+                                      {}});
+  }
+  return section;
+}
+
+}  // namespace
+
+Document quality_document(const QualityReport& report, const Provenance& provenance) {
+  Document document;
+  document.title = "Quality of the study " + report.study;
+  document.stamp = report.simulated ? "SIMULATED" : "";
+  if (report.pilot) document.stamp += document.stamp.empty() ? "PILOT" : ", PILOT";
+  document.banners = banners_of(report);
+  if (provenance.unverified) {
+    document.stamp += std::string(document.stamp.empty() ? "" : ", ") + study::kUnverifiedDevice;
+    document.banners.push_back(unverified_banner());
+  }
+  if (provenance.lacks) document.banners.push_back(provenance.vouched);
+  document.header = evidence_header(provenance);
+  document.header.entries.insert(document.header.entries.begin(),
+                                 {{"protocol", report.protocol},
+                                  {"participants", std::to_string(report.participants)},
+                                  {"trials", std::to_string(report.trials)}});
+  document.sections = {{"counts",
+                        "Sessions and trials",
+                        {sessions_table(report.sessions), trials_table(report.quality)}},
+                       participants_section(report.collection),
+                       {"answers", "Answers by session", {answers_table(report.collection)}},
+                       {"hands", "Hands by session", {hands_table(report.collection)}},
+                       servo_section(report)};
+  if (!report.notes.empty()) document.sections.push_back(warnings_section(report.notes));
+  document.colophon = fmt::format("{}touchtrial {}, {}, event {} of the file's chain",
+                                  simulated_line(report.simulated), provenance.program_version,
+                                  provenance.database, provenance.head.length);
+  return document;
+}
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,55 @@
+/// \file The document of a study's report, in the order of a results section. Docs: docs/report.md.
+#pragma once
+
+#include "analysis/outcomes/quality.hpp"
+#include "analysis/outcomes/study_head.hpp"
+#include "analysis/report/page/document.hpp"
+
+#include <string>
+#include <vector>
+
+namespace touchtrial::analysis {
+
+/// Shows a reader from which database a report was made.
+struct Provenance {
+  std::string database;         ///< file name, without its folder
+  std::string program_version;  ///< version of the program that made the report
+  std::string seal;             ///< commitment made before trial 1, hexadecimal
+  record::ChainHead head;       ///< head of the file's chain
+  record::StudyState state;
+  std::string texts{};      ///< what has to be said of the participants' texts; may be empty
+  bool unverified = false;  ///< as any_ran_unverified
+  std::string vouched{};    ///< HeadCheck::words; empty: the database was not held against heads
+  bool lacks = false;       ///< something that a head file knows
+};
+
+/// \param database  file name to show
+[[nodiscard]] Provenance provenance_of(const record::StudyStore& store,
+                                       const std::string& database);
+
+/// The warning of a report with sessions on a device without a valid certificate.
+[[nodiscard]] std::string unverified_banner();
+
+/// The stamp that follows SIMULATED on every table and figure: those of PILOT, INTERIM LOOK and
+/// UNVERIFIED DEVICE that hold, or empty.
+[[nodiscard]] std::string further_stamp(bool pilot, const Provenance& provenance);
+
+/// Pictures for a report. The id of a picture tells to which section it belongs (docs/report.md).
+using Pictures = std::vector<Picture>;
+
+/// The frame of every protocol's report: title, banners, header, and the sections on warnings,
+/// participants and registration.
+///
+/// \param headline  the result in a few sentences; stands first, after the verdict on the
+///   registered question
+/// \param results  the protocol's other sections, in their order; sections without blocks are left
+///   out
+/// \param figures_missing  whether the header says that figures could not be drawn
+[[nodiscard]] Document framed_document(const StudyHead& head, Section headline,
+                                       std::vector<Section> results, const Provenance& provenance,
+                                       bool figures_missing = false);
+
+/// The report before unblinding: how data collection proceeds, and nothing about outcomes.
+[[nodiscard]] Document quality_document(const QualityReport& report, const Provenance& provenance);
+
+}  // namespace touchtrial::analysis

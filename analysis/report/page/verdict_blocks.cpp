@@ -1,0 +1,257 @@
+#include "analysis/outcomes/departures.hpp"
+#include "analysis/report/page/frame_sections.hpp"
+#include "analysis/report/page/wording.hpp"
+#include "analysis/report/text_figures.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace touchtrial::analysis {
+namespace {
+
+bool is_difference(const PrimaryResult& primary) {
+  return primary.estimand == study::Estimand::difference;
+}
+
+/// A value of the estimand: "77.0%", or "+3.2 points".
+std::string estimand_figure(const PrimaryResult& primary, std::optional<double> value) {
+  if (!value) return kNoFigure;
+  return is_difference(primary) ? points_figure(value) + " points" : share_figure(value);
+}
+
+/// "95%", and never "100%".
+std::string level_words(double level) {
+  const std::string text = fmt::format("{:.4g}%", 100.0 * level);
+  return text == "100%" ? fmt::format("{:.10g}%", 100.0 * level) : text;
+}
+
+std::string first_letter_raised(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') {
+    text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  }
+  return text;
+}
+
+/// "11 participants analysed; 20 planned, 14 completed"
+std::string people_of(const PrimaryResult& primary, const StudyCourse& course) {
+  const std::string planned = course.planned > 0 ? std::to_string(course.planned) : "no number";
+  return fmt::format("{} analysed; {} planned, {} completed",
+                     counted(primary.registered().participants, "participant"), planned,
+                     course.completed);
+}
+
+/// The verdict, for a reader who stops there.
+std::string lead_of(Verdict verdict) {
+  const bool is_decided = verdict == Verdict::supported || verdict == Verdict::not_supported;
+  return first_letter_raised(name_of(verdict)) + (is_decided ? " by the registered test." : ".");
+}
+
+/// The verdict, the estimate with its interval and test, and why the verdict is what it is.
+Cited verdict_sentence(const StudyHead& head) {
+  const PrimaryResult& primary = *head.primary;
+  const PrimaryChoice& choice = primary.registered();
+  std::string text = fmt::format("{}: {}", first_letter_raised(primary.words),
+                                 estimand_figure(primary, choice.estimate));
+  if (choice.interval) {
+    text += fmt::format(", {} t interval {}", level_words(primary.interval_level),
+                        share_range(choice.interval));
+  }
+  text += " (" + people_of(primary, head.course) + ")";
+  text += ". " + first_letter_raised(primary.test);
+  if (primary.p) text += ": " + p_phrase(*primary.p);
+  text += fmt::format(", alpha {:.3g}", primary.alpha);
+  if (primary.level != primary.alpha) {
+    text += fmt::format(", nominal level at this look {:.3g}", primary.level);
+  }
+  if (primary.bound && !primary.margin) {
+    text += fmt::format(", lower {} limit {}", level_words(1.0 - primary.level),
+                        estimand_figure(primary, primary.bound));
+  }
+  std::vector<Source> sources{Source::student};
+  if (primary.crossover) sources = {Source::hills_armitage, Source::senn};
+  return {text + ". " + primary.because, std::move(sources), lead_of(primary.verdict)};
+}
+
+bool are_same(const PrimaryChoice& a, const PrimaryChoice& b) {
+  const auto ends = [](const PrimaryChoice& one) {
+    return one.interval ? std::optional(std::pair(one.interval->low, one.interval->high))
+                        : std::nullopt;
+  };
+  return a.participants == b.participants && a.trials == b.trials && a.estimate == b.estimate &&
+         ends(a) == ends(b);
+}
+
+/// The choices without those that give the numbers of an earlier one, each with the words of
+/// these.
+std::vector<std::pair<PrimaryChoice, std::vector<std::string>>> different(
+    const std::vector<PrimaryChoice>& choices) {
+  std::vector<std::pair<PrimaryChoice, std::vector<std::string>>> all;
+  for (const PrimaryChoice& choice : choices) {
+    const auto same =
+        std::ranges::find_if(all, [&](const auto& one) { return are_same(one.first, choice); });
+    if (same == all.end()) {
+      all.emplace_back(choice, std::vector<std::string>{});
+    } else {
+      same->second.push_back(choice.words);
+    }
+  }
+  return all;
+}
+
+/// What belongs to a comparison of two methods, one after the other.
+Cited crossover_sentence(const PrimaryResult& primary, const CrossoverEstimate& crossover) {
+  std::string text = fmt::format("{} had the first method first, {} had it last",
+                                 crossover.first_first, crossover.second_first);
+  if (crossover.period) {
+    text += fmt::format(". Second period less first, whichever the method: {} points",
+                        points_figure(crossover.period));
+    if (crossover.period_interval) text += " " + share_range(crossover.period_interval);
+  }
+  if (primary.permutation) {
+    text += fmt::format(
+        ". Check by dealing the orders anew within the blocks in which they were dealt: {}; the "
+        "least p that they could give is {:.3g}",
+        p_phrase(primary.permutation->p), primary.permutation->least);
+  }
+  return {text +
+              ". What the first method leaves behind for the second (carry-over) is confounded "
+              "with the order: it is not tested, and never chooses the analysis.",
+          {Source::senn, Source::phipson_smyth}};
+}
+
+/// Rows for the first choice with stations as strata, if the study has several.
+void add_stations(const PrimaryResult& primary, Table& table) {
+  if (!primary.stations) return;
+  const StratifiedMean& stations = *primary.stations;
+  const PrimaryChoice& choice = primary.registered();
+  const auto add = [&](const std::string& what, double mean,
+                       const std::optional<Interval>& interval) {
+    table.rows.push_back({what, std::to_string(choice.participants), std::to_string(choice.trials),
+                          is_difference(primary) ? points_figure(mean) : share_figure(mean),
+                          share_range(interval), kNoFigure});
+  };
+  add(fmt::format("first row, {} stations as fixed strata", stations.strata), stations.mean,
+      stations.interval);
+  if (stations.random) {
+    add(fmt::format("first row, {} stations as a sample of others", stations.strata),
+        stations.random->mean, stations.random->interval);
+  }
+}
+
+Cited note_of(const StratifiedMean& stations) {
+  std::string text =
+      "Fixed strata: for these stations, from the spread between participants of one station.";
+  if (!stations.random) {
+    return {text + fmt::format(" With fewer than {} stations nothing can be said of others.",
+                               kFewestRandomStrata),
+            {Source::student}};
+  }
+  text += fmt::format(
+      " A sample of others: the standard deviation between stations is {} points; Hartung, Knapp, "
+      "Sidik and Jonkman's interval.",
+      plain_figure(100.0 * stations.random->spread, 1));
+  return {text, {Source::student, Source::paule_mandel, Source::inthout}};
+}
+
+Table choices_table(const StudyHead& head) {
+  const PrimaryResult& primary = *head.primary;
+  Table table{"primary",
+              "The deciding question under every choice of sessions and trials",
+              {{"choice", Align::left},
+               {"participants"},
+               {"trials"},
+               {is_difference(primary) ? "difference (points)" : "mean"},
+               {"t " + level_words(primary.interval_level) +
+                (is_difference(primary) ? " (points)" : " (%)")},
+               {"p"}}};
+  std::vector<Cited> repeated;
+  for (const auto& [choice, same] : different(primary.choices)) {
+    const bool first = table.rows.empty();
+    if (!same.empty()) {
+      repeated.push_back({same.size() + 1 == primary.choices.size()
+                              ? "Every other choice gives the same numbers: excluded sessions put "
+                                "back, valid trials alone, trials with a response alone."
+                              : fmt::format("The same numbers as \"{}\": {}.", choice.words,
+                                            fmt::join(same, "; "))});
+    }
+    const std::string estimate =
+        is_difference(primary) ? points_figure(choice.estimate) : share_figure(choice.estimate);
+    table.rows.push_back({choice.words, std::to_string(choice.participants),
+                          std::to_string(choice.trials), Cell(estimate, first),
+                          share_range(choice.interval), first ? p_figure(primary.p) : kNoFigure});
+  }
+  add_stations(primary, table);
+  table.notes = {
+      {"p belongs to the first row alone; the others show what a choice changes. Each "
+       "participant weighs the same, however many trials it has. Intervals are cut where possible "
+       "values end."}};
+  table.notes.insert(table.notes.end(), repeated.begin(), repeated.end());
+  if (head.course.excluded_afterwards > 0) {
+    table.notes.push_back({counted(head.course.excluded_afterwards, "session") +
+                           " excluded after outcomes were seen."});
+  }
+  if (primary.stations) table.notes.push_back(note_of(*primary.stations));
+  if (!is_difference(primary) && primary.p) {
+    table.notes.push_back(
+        {*primary.p <= primary.level
+             ? "A mean above chance says that some people can, not that everybody can."
+             : "A mean that is not shown to be above chance does not say that nobody can; "
+               "\"Accuracy\" has the test of that."});
+  }
+  return table;
+}
+
+/// Whether a column's title announces p values: "p", "sign-flip p", "p, Holm", "McNemar mid-p",
+/// "p of the exchange".
+bool is_of_p(const Column& column) {
+  const std::string_view title = column.title;
+  return title == "p" || title.starts_with("p, ") || title.starts_with("p of ") ||
+         title.ends_with(" p") || title.ends_with("-p");
+}
+
+bool tells_p(const std::string& text) {
+  return text.find("p = ") != std::string::npos || text.find("p < ") != std::string::npos;
+}
+
+}  // namespace
+
+std::vector<Block> verdict_blocks(const StudyHead& head) {
+  std::vector<Block> blocks;
+  if (head.primary) {
+    blocks.emplace_back(verdict_sentence(head));
+    if (const auto& crossover = head.primary->crossover) {
+      blocks.emplace_back(crossover_sentence(*head.primary, *crossover));
+    }
+  }
+  if (!head.departures.empty()) {
+    blocks.emplace_back(Warnings{head.departures, head.registration.analysis
+                                                      ? "Departures from what was registered:"
+                                                      : "Departures from the plan:"});
+  } else if (head.registration.analysis) {
+    blocks.emplace_back(Cited{"No departure from what was registered is recorded."});
+  }
+  if (head.primary) blocks.emplace_back(choices_table(head));
+  return blocks;
+}
+
+void say_unadjusted(const std::vector<Look>& looks, std::vector<Section>& sections) {
+  const std::string words = unadjusted_words(looks);
+  if (words.empty()) return;
+  for (Section& section : sections) {
+    for (Block& block : section.blocks) {
+      if (auto* table = std::get_if<Table>(&block)) {
+        const bool has_p = std::ranges::any_of(table->columns, is_of_p) ||
+                           std::ranges::any_of(table->notes, tells_p, &Cited::text);
+        if (has_p) table->notes.push_back({words});
+      } else if (auto* sentence = std::get_if<Cited>(&block)) {
+        if (tells_p(sentence->text)) sentence->text += " The " + words;
+      }
+    }
+  }
+}
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,263 @@
+#include "analysis/report/registered.hpp"
+
+#include "analysis/report/text_figures.hpp"
+#include "analysis/statistics/group_sequential.hpp"
+#include "core/named.hpp"
+#include "core/text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+namespace touchtrial::analysis {
+namespace {
+
+int unregistered_of(const std::vector<Look>& looks) {
+  return static_cast<int>(std::ranges::count_if(looks, &Look::is_unregistered));
+}
+
+/// Whether a session is one that the plan is about, whoever left it out later.
+bool is_completed(const Outcomes& outcomes, const record::SessionRow& row) {
+  return row.state == record::SessionState::completed && row.replaced_by.empty() &&
+         row.visit == outcomes.design.visits_needed() && row.pilot == outcomes.pilot &&
+         row.simulated == outcomes.simulated;
+}
+
+int completed_participants(const Outcomes& outcomes) {
+  return static_cast<int>(std::ranges::count_if(
+      outcomes.sessions,
+      [&](const SessionOutcome& session) { return is_completed(outcomes, session.row); }));
+}
+
+std::string share_text(double share, bool is_difference) {
+  return fmt::format("{}{:.1f}{}", share < 0.0 ? "−" : "", 100.0 * std::abs(share),
+                     is_difference ? " points" : "%");
+}
+
+/// The interval, unless all participants are alike: that it has no width is no certainty.
+std::optional<Interval> telling_interval(const PrimaryResult& result) {
+  const std::optional<Interval>& interval = result.registered().interval;
+  return interval && interval->low < interval->high ? interval : std::nullopt;
+}
+
+/// What the interval says of the smallest effect that was registered.
+std::string words_on_worth(const PrimaryResult& result) {
+  const std::optional<Interval> interval = telling_interval(result);
+  if (!result.smallest_effect || !interval) return "";
+  const double worth = *result.smallest_effect;
+  const std::string least = share_text(worth, result.estimand == study::Estimand::difference);
+  if (interval->low >= worth) {
+    return " The interval lies above " + least + ", the smallest registered as worth having.";
+  }
+  if (interval->high < worth) {
+    return " The interval lies below " + least + ", the smallest registered as worth having.";
+  }
+  return " The interval contains " + least +
+         ", the smallest registered as worth having: whether it is reached is undecided.";
+}
+
+/// What the interval says of the margin: "as good" may be better, or still a little worse.
+std::string words_on_margin(const PrimaryResult& result) {
+  const std::optional<Interval> interval = telling_interval(result);
+  if (!result.margin || !interval) return "";
+  const std::string level = fmt::format(" The {:.6g}% interval", 100.0 * result.interval_level);
+  const std::string margin = share_text(-*result.margin, true);
+  if (interval->high < -*result.margin) {
+    return level + " lies below " + margin +
+           ", the registered margin: the first method is worse "
+           "by more than that.";
+  }
+  if (interval->low <= -*result.margin) {
+    return level + " contains " + margin + ", the registered margin.";
+  }
+  const std::string above = level + " lies above " + margin + ", the registered margin";
+  if (interval->low > 0.0) return above + ", and above 0: the first method is better.";
+  if (interval->high < 0.0) {
+    return above + ", and below 0: the first method is worse, but by less than the margin.";
+  }
+  return above + ", and contains 0.";
+}
+
+/// What a reader of the interval might miss: that it ends where possible values end, or has no
+/// width.
+std::string words_on_ends(const PrimaryResult& result) {
+  const PrimaryChoice& choice = result.registered();
+  if (!choice.interval || !choice.estimate) return "";
+  if (!telling_interval(result)) {
+    return std::string(result.crossover ? " Within an order of methods participants"
+                                        : " Participants") +
+           " do not differ; that the interval has no width is no certainty.";
+  }
+  const double least = result.estimand == study::Estimand::difference ? -1.0 : 0.0;
+  const bool low = choice.interval->low == least && *choice.estimate > least;
+  const bool high = choice.interval->high == 1.0 && *choice.estimate < 1.0;
+  if (low && high) return " The interval holds every possible value: it says nothing.";
+  return low || high ? " The interval is cut where possible values end." : "";
+}
+
+/// A one-sided test may reject although the two-sided interval holds what it rejects.
+std::string words_on_sides(const PrimaryResult& result) {
+  const std::optional<Interval> interval = telling_interval(result);
+  if (!interval || !result.bound || result.margin || interval->low > result.null) return "";
+  const bool difference = result.estimand == study::Estimand::difference;
+  return fmt::format(
+      " The two-sided interval reaches {}; the lower limit of the one-sided test, {}, does not.",
+      difference ? "0" : "chance", share_text(*result.bound, difference));
+}
+
+bool has_one_order(const PrimaryResult& result) {
+  const auto& groups = result.crossover;
+  return groups && (groups->first_first == 0) != (groups->second_first == 0);
+}
+
+bool may_stop_at_look(const PrimaryResult& result, const StudyCourse& course) {
+  return course.at_registered_look && result.p && *result.p <= result.level;
+}
+
+/// What belongs to a result that ends collecting early.
+std::string words_on_early_end(const PrimaryResult& result, const StudyCourse& course) {
+  if (!may_stop_at_look(result, course) || course.completed >= course.planned) return "";
+  const std::string look = fmt::format("the registered look at {}",
+                                       counted(course.registered_looks.back(), "participant"));
+  return (course.closed ? " Collecting ended at " + look : " At " + look + " collecting may end") +
+         "; an estimate that ends it early is too large on average.";
+}
+
+/// More participants than planned do no harm as long as nobody has seen outcomes.
+std::string words_on_number(const StudyCourse& course) {
+  if (course.planned == 0 || course.completed <= course.planned) return "";
+  return fmt::format(
+      " {} completed, {} more than planned; the study's outcomes had not been looked at before.",
+      counted(course.completed, "participant"), course.completed - course.planned);
+}
+
+/// "p > 0.05.", or with the digits that tell them apart.
+std::string compared_p(const PrimaryResult& result) {
+  const double p = *result.p;
+  if (p == result.level) return fmt::format("p = {:.5g}, the level itself.", p);
+  const char sign = p < result.level ? '<' : '>';
+  const bool look_alike = fmt::format("{:.3f}", p) == fmt::format("{:.3f}", result.level);
+  return look_alike ? fmt::format("p = {:.8f} {} {:.5g}.", p, sign, result.level)
+                    : fmt::format("p {} {:.3g}.", sign, result.level);
+}
+
+/// Why the registered test cannot decide yet; empty if it can.
+std::string obstacle(const PrimaryResult& result, const StudyCourse& course) {
+  if (has_one_order(result)) {
+    return "All participants had the methods in the same order, so that an effect of the method "
+           "and one of the period cannot be told apart.";
+  }
+  if (!result.p) return "There are too few participants for the test.";
+  const bool reached = course.planned == 0 || course.completed >= course.planned;
+  const bool may_stop = may_stop_at_look(result, course);
+  if (!course.closed && !may_stop) return "Collecting is not over.";
+  if (!reached && !may_stop) {
+    return fmt::format("Collecting ended with {} of {} planned participants.", course.completed,
+                       course.planned);
+  }
+  if (course.unregistered_looks > 0 && *result.p <= result.level) {
+    return fmt::format("After {} the error rate of the test is not known.",
+                       counted(course.unregistered_looks, "unregistered look"));
+  }
+  if (course.planned == 0 && *result.p <= result.level) {
+    return "No number of participants was registered, so collecting could have ended because of "
+           "the outcomes.";
+  }
+  const bool is_over = course.planned > 0 && course.completed > course.planned;
+  if (is_over && !course.registered_looks.empty() && *result.p <= result.level) {
+    return fmt::format(
+        "After a look at outcomes {} more than the {} planned were collected, so the error rate of "
+        "the test is not known.",
+        counted(course.completed - course.planned, "participant"), course.planned);
+  }
+  return "";
+}
+
+bool is_against(const PrimaryResult& result) {
+  return result.registered().estimate.value_or(result.null) <= result.null;
+}
+
+}  // namespace
+
+std::string name_of(Verdict verdict) {
+  using enum Verdict;
+  static constexpr auto kNames =
+      std::to_array<Named<Verdict>>({{"supported", supported},
+                                     {"not supported", not_supported},
+                                     {"undecided", undecided},
+                                     {"not registered", not_registered}});
+  return std::string(name_in(kNames, verdict));
+}
+
+StudyCourse course_of(const Outcomes& outcomes, int analysed) {
+  const std::vector<Look>& looks = outcomes.looked.looks;
+  StudyCourse course{
+      .planned = outcomes.design.registration.participants,
+      .completed = completed_participants(outcomes),
+      .analysed = analysed,
+      .closed = outcomes.state.closed,
+      .pilot = outcomes.pilot,
+      .has_registration = outcomes.design.registration.analysis.has_value(),
+      .unregistered_looks = unregistered_of(looks),
+      .excluded_afterwards = static_cast<int>(outcomes.looked.excluded_afterwards.size())};
+  std::set<int> made;
+  for (const Look& look : looks) {
+    if (look.kind == LookKind::registered) made.insert(look.participants);
+  }
+  course.registered_looks = {made.begin(), made.end()};
+  // Collecting may end at a registered look.
+  const auto is_last_look = [&](int participants) {
+    return !made.empty() && participants == *made.rbegin();
+  };
+  course.at_registered_look = is_last_look(course.completed) || is_last_look(analysed);
+  return course;
+}
+
+double level_of(const PrimaryResult& result, const StudyCourse& course, study::Spending spending) {
+  if (course.registered_looks.empty() || course.planned <= 0) return result.alpha;
+  std::vector<double> shares;
+  for (const int look : course.registered_looks) {
+    shares.push_back(std::min(1.0, static_cast<double>(look) / course.planned));
+  }
+  if (!course.at_registered_look && shares.back() < 1.0) shares.push_back(1.0);
+  const AlphaSpending kind =
+      spending == study::Spending::pocock ? AlphaSpending::pocock : AlphaSpending::obrien_fleming;
+  constexpr double kLeastLevel = 1e-9;
+  return std::max(kLeastLevel, nominal_levels(result.alpha, result.sides, kind, shares).back());
+}
+
+void judge(PrimaryResult& result, const StudyCourse& course) {
+  result.ended_at_look =
+      course.closed && course.completed < course.planned && may_stop_at_look(result, course);
+  const auto decide = [&](Verdict verdict, const std::string& because) {
+    result.verdict = verdict;
+    result.because = because;
+  };
+  if (course.pilot) return decide(Verdict::not_registered, "A pilot decides nothing.");
+  if (!course.has_registration) {
+    return decide(Verdict::not_registered,
+                  "The study file registers no estimand and no test, so nothing is decided here.");
+  }
+  const std::string worth =
+      words_on_worth(result) + words_on_margin(result) + words_on_ends(result);
+  const std::string hindered = obstacle(result, course);
+  if (!hindered.empty()) return decide(Verdict::undecided, hindered + worth);
+  if (*result.p > result.level) {
+    const std::optional<Interval> interval = telling_interval(result);
+    const std::optional<double> least =
+        result.margin ? std::optional(-*result.margin) : result.smallest_effect;
+    const bool open = least && (!interval || interval->high >= *least);
+    return decide(open ? Verdict::undecided : Verdict::not_supported, compared_p(result) + worth);
+  }
+  if (is_against(result)) {
+    return decide(Verdict::not_supported,
+                  "The test rejects, but in the direction opposite to the hypothesis." + worth);
+  }
+  decide(Verdict::supported, compared_p(result) + words_on_sides(result) + worth +
+                                 words_on_early_end(result, course) + words_on_number(course));
+}
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,96 @@
+/// \file The registered question and its answer. Docs: docs/statistics.md, "The registered
+/// question".
+#pragma once
+
+#include "analysis/outcomes/outcomes.hpp"
+#include "analysis/statistics/crossover.hpp"
+#include "analysis/statistics/mean_test.hpp"
+#include "analysis/statistics/proportion.hpp"
+#include "analysis/statistics/strata.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial::analysis {
+
+enum class Verdict {
+  supported,       ///< the registered test rejects, in the registered direction
+  not_supported,   ///< it does not, and what would be worth having is excluded, or was not stated
+  undecided,       ///< the study cannot tell, or not by the registered test
+  not_registered,  ///< nothing was registered that could be decided
+};
+
+/// "supported", "not supported", "undecided", "not registered"
+[[nodiscard]] std::string name_of(Verdict verdict);
+
+/// The estimate under one choice of sessions and trials.
+struct PrimaryChoice {
+  std::string name;   ///< "registered", "taken", "put_back", "all", "valid", "answered"
+  std::string words;  ///< what it leaves out
+  int participants = 0;
+  int trials = 0;
+  std::optional<double> estimate{};
+  std::optional<Interval> interval{};  ///< Student's, at PrimaryResult::interval_level
+};
+
+/// The question that decides a study, and its answer.
+struct PrimaryResult {
+  study::Estimand estimand = study::Estimand::mean_accuracy;
+  std::string words;  ///< the estimand with the study's labels
+  std::string test;   ///< in words
+  double null = 0.0;  ///< the estimand under the null hypothesis
+  Sides sides = Sides::one;
+  double alpha = 0.05;
+  double level = 0.05;  ///< that p must not exceed; less than alpha at an interim look or after one
+  double interval_level = 0.95;  ///< 1 - alpha, or 1 - 2 alpha with a margin
+  std::optional<double> smallest_effect{};
+  std::optional<double> margin{};        ///< of non-inferiority; the null hypothesis is -margin
+  std::optional<double> p{};             ///< of the registered choice
+  std::optional<double> bound{};         ///< one-sided: the lower limit that goes with the test
+  std::vector<PrimaryChoice> choices{};  ///< the registered one first
+  /// Of the registered choice, if the test is the period-adjusted one.
+  std::optional<CrossoverEstimate> crossover{};
+  std::optional<CrossoverPermutation> permutation{};
+  Verdict verdict = Verdict::not_registered;
+  std::string because{};       ///< why, in one sentence or more
+  bool ended_at_look = false;  ///< collecting ended at a registered look, as registered
+  /// The registered choice with stations as strata, at interval_level; nothing unless the study
+  /// was collected from two stations or more.
+  std::optional<StratifiedMean> stations{};
+
+  [[nodiscard]] const PrimaryChoice& registered() const { return choices.front(); }
+};
+
+/// The numbers of people and looks on which a verdict depends, besides the estimate.
+struct StudyCourse {
+  int planned = 0;    ///< participants; 0: not stated
+  int completed = 0;  ///< participants with a completed session, left out later or not
+  int analysed = 0;   ///< participants of the registered choice
+  bool closed = false;
+  bool pilot = false;
+  bool has_registration = false;
+  int unregistered_looks = 0;
+  int excluded_afterwards = 0;          ///< sessions excluded after outcomes were seen
+  bool at_registered_look = false;      ///< the report is of an interim look that was registered
+  std::vector<int> registered_looks{};  ///< participants at those that were made, ascending
+};
+
+[[nodiscard]] StudyCourse course_of(const Outcomes& outcomes, int analysed);
+
+/// The level that p must not exceed: alpha, or the nominal level by Lan and DeMets if registered
+/// looks were made; then at least 1e-9, so that there is an interval of this level.
+[[nodiscard]] double level_of(const PrimaryResult& result, const StudyCourse& course,
+                              study::Spending spending);
+
+/// Decides on the registered question: sets `verdict` and `because`.
+///
+/// It is undecided if all participants had one order of two methods in blocks, if the test needs
+/// more participants, if the study is open, ended before its planned number of participants, or has
+/// a p that is within its level after an unregistered look, or after a registered one with more
+/// participants than planned; and if p is above its level while the interval contains the smallest
+/// effect worth having, does not lie below minus the margin, or has no width.
+/// \pre result has at least one choice
+void judge(PrimaryResult& result, const StudyCourse& course);
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,89 @@
+#include "analysis/report/results.hpp"
+
+#include "core/errors.hpp"
+#include "study/protocol.hpp"
+
+#include <map>
+#include <utility>
+
+namespace touchtrial::analysis {
+namespace {
+
+std::map<std::string_view, const ProtocolAnalysis*>& known_analyses() {
+  static std::map<std::string_view, const ProtocolAnalysis*> all;
+  return all;
+}
+
+/// Leaves of a report's head the registered estimate, its interval and test, and what is in clear.
+void keep_question(StudyHead& head, Collection in_clear) {
+  head.collection = std::move(in_clear);
+  head.warnings.clear();
+  head.explorations.clear();
+  head.prevalence.reset();
+  if (!head.primary) return;
+  head.primary->choices.resize(1);
+  head.primary->permutation.reset();
+  head.primary->stations.reset();
+  if (head.primary->crossover) {
+    head.primary->crossover->period.reset();
+    head.primary->crossover->period_interval.reset();
+  }
+}
+
+class QuestionAlone final : public Results {
+ public:
+  QuestionAlone(StudyHead head, const record::StudyStore& store)
+      : head_(std::move(head)), quality_(make_quality(store)) {
+    keep_question(head_, load_collection(store));
+  }
+
+  const StudyHead& head() const override { return head_; }
+  std::string json() const override { return framed_json(head_, "{}"); }
+  Document document(const Provenance& provenance, const Pictures&) const override {
+    std::vector<Section> quality = quality_document(quality_, provenance).sections;
+    std::erase_if(quality, [](const Section& one) { return one.id == "participants"; });
+    return framed_document(head_, {"result", "Result", {}}, std::move(quality), provenance);
+  }
+
+ private:
+  StudyHead head_;
+  QualityReport quality_;
+};
+
+}  // namespace
+
+std::unique_ptr<const Results> question_alone(const Results& results,
+                                              const record::StudyStore& store) {
+  return std::make_unique<QuestionAlone>(results.head(), store);
+}
+
+std::vector<Figure> Results::figures(const std::string&) const {
+  return {};
+}
+
+std::vector<ResultTable> ProtocolAnalysis::tables(const Outcomes&) const {
+  return {};
+}
+
+std::vector<TrialColumn> ProtocolAnalysis::trial_columns() const {
+  return {};
+}
+
+std::vector<std::filesystem::path> ProtocolAnalysis::export_model(
+    const record::StudyStore&, const Outcomes& outcomes, const std::filesystem::path&) const {
+  throw UsageError("--format r: the protocol " + outcomes.design.protocol_name() +
+                   " has no model for R; choose csv, json, bids or psych-ds");
+}
+
+void add_analysis(std::string_view protocol, const ProtocolAnalysis& analysis) {
+  known_analyses()[protocol] = &analysis;
+}
+
+const ProtocolAnalysis& analysis_of(const study::Study& study) {
+  const auto found = known_analyses().find(study.protocol->name());
+  if (found != known_analyses().end()) return *found->second;
+  throw StudyError(one_line("study " + study.name + ": the protocol " + study.protocol_name() +
+                            " has no report; export the trials instead"));
+}
+
+}  // namespace touchtrial::analysis

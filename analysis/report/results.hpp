@@ -1,0 +1,101 @@
+/// \file The interface of a protocol's analysis, which turns outcomes into text, JSON, a page,
+/// figures and tables. Commands and exports know the analysis of a protocol only by this interface.
+#pragma once
+
+#include "analysis/exports/data_table.hpp"
+#include "analysis/exports/trial_tables.hpp"
+#include "analysis/outcomes/outcomes.hpp"
+#include "analysis/report/figures/figure.hpp"
+#include "analysis/report/page/study_document.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace touchtrial::analysis {
+
+/// The source from which the traces of trials are read.
+struct TraceSource {
+  const record::StudyStore& store;
+  const study::StudyKey& key;
+};
+
+/// What a user wants in a report besides its tables.
+struct ReportWishes {
+  enum class Traces { if_few, yes, no };
+
+  const TraceSource* source = nullptr;  ///< null: sections that need traces are omitted
+  bool page = false;                    ///< make a page with figures, not only terminal text
+  Traces traces = Traces::if_few;       ///< read traces for sections that need all, such as cues
+  std::string trial{};            ///< an exploration to draw, as "P01:3"; empty: none is named
+  bool published_values = false;  ///< show the values of the source publication for comparison
+  std::function<void(int done, int of)> progress{};  ///< called while traces are read
+};
+
+/// A study's results. Immutable and thread-safe.
+class Results {
+ public:
+  virtual ~Results() = default;
+
+  /// The part that all reports have in common.
+  [[nodiscard]] virtual const StudyHead& head() const = 0;
+  /// One JSON object, indented, ending with a line feed; numbers that do not exist are null.
+  [[nodiscard]] virtual std::string json() const = 0;
+  /// The figures to draw, in the order of the document.
+  /// \param stamp  further_stamp of the study
+  [[nodiscard]] virtual std::vector<Figure> figures(const std::string& stamp) const;
+  /// The report, as a page and as text for a terminal.
+  /// \param pictures  the drawn figures
+  [[nodiscard]] virtual Document document(const Provenance& provenance,
+                                          const Pictures& pictures) const = 0;
+};
+
+/// The answer to the registered question and how the study was collected: what a registered look
+/// shows of results, whatever the protocol.
+/// \param store  has what is in clear, for the quality of the data
+[[nodiscard]] std::unique_ptr<const Results> question_alone(const Results& results,
+                                                            const record::StudyStore& store);
+
+/// A table of results in its own file.
+struct ResultTable {
+  std::string file;  ///< the file's name
+  DataTable table;
+  bool has_words = false;  ///< of people: for its reader alone
+};
+
+/// The part of a protocol that analyses outcomes. Stateless and thread-safe.
+class ProtocolAnalysis {
+ public:
+  virtual ~ProtocolAnalysis() = default;
+
+  /// \param outcomes  unblinded; need not outlive the results
+  /// \throws UsageError, naming the wish, if the protocol cannot fulfil one
+  /// \throws VerificationError if a trace does not open
+  [[nodiscard]] virtual std::unique_ptr<const Results> results(
+      const Outcomes& outcomes, const ReportWishes& wishes) const = 0;
+  /// Tables that `export --format csv` writes in addition to those of every study.
+  [[nodiscard]] virtual std::vector<ResultTable> tables(const Outcomes& outcomes) const;
+  /// Columns about what an adaptive order chose, which tables of trials have in addition. Their
+  /// names are known to meaning_of (exports/dataset.hpp).
+  [[nodiscard]] virtual std::vector<TrialColumn> trial_columns() const;
+  /// Writes the files of `export --format r`: a table, a script that fits a model to it, and
+  /// instructions.
+  /// \return the files, in the order in which they were written
+  /// \throws UsageError if the protocol has no such model
+  /// \throws FileError if the folder or a file cannot be written
+  virtual std::vector<std::filesystem::path> export_model(
+      const record::StudyStore& store, const Outcomes& outcomes,
+      const std::filesystem::path& folder) const;
+};
+
+/// Registers a protocol's analysis. Call before the first report. Not thread-safe.
+/// \param protocol  the protocol's name; both arguments must outlive the program's use of them
+void add_analysis(std::string_view protocol, const ProtocolAnalysis& analysis);
+
+/// \throws StudyError if the study's protocol has no analysis
+[[nodiscard]] const ProtocolAnalysis& analysis_of(const study::Study& study);
+
+}  // namespace touchtrial::analysis

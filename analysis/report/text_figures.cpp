@@ -1,0 +1,72 @@
+#include "analysis/report/text_figures.hpp"
+
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace touchtrial::analysis {
+
+std::string percent(std::optional<double> percentage, int decimals) {
+  if (!percentage) return "-";
+  return fmt::format("{:.{}f}%", *percentage, decimals);
+}
+
+std::string percent_of_share(std::optional<double> share) {
+  if (!share) return "-";
+  return percent(100.0 * *share, 1);
+}
+
+std::string percent_of(const Proportion& proportion) {
+  return percent_of_share(proportion.share());
+}
+
+std::string signed_figure(std::optional<double> figure, int decimals) {
+  if (!figure) return "-";
+  const std::string text = fmt::format("{:+.{}f}", *figure, decimals);
+  // A number that rounds to zero has no sign.
+  return text.find_first_of("123456789") == std::string::npos ? text.substr(1) : text;
+}
+
+std::string p_value(double p) {
+  // Rounds halves up, so that 0.03125, a smallest possible p, is not shown as less.
+  return fmt::format("{:.3g}", p * (1.0 + 1e-9));
+}
+
+std::string heading(const std::string& title, bool simulated) {
+  return fmt::format("\n{}{}\n", title, simulated ? " [SIMULATED]" : "");
+}
+
+namespace {
+
+std::string words_of_device(const std::string& recorded) {
+  constexpr std::string_view kHeld = "simulated ";
+  if (recorded == "simulated") return "ideal device (no such device is sold)";
+  if (recorded == "given-function") return "no device (answers follow a given function)";
+  if (recorded == kStatedPeople) return "no device (people's accuracies are stated)";
+  return recorded.starts_with(kHeld) ? "modelled device " + recorded.substr(kHeld.size())
+                                     : recorded;
+}
+
+}  // namespace
+
+std::string device_words(const std::set<std::string>& recorded) {
+  std::string words;
+  for (const std::string& device : recorded) {
+    words += (words.empty() ? "" : "; ") + words_of_device(device);
+  }
+  return words;
+}
+
+std::string simulated_on(const std::string& device) {
+  return device.empty() ? "" : "simulated on: " + device;
+}
+
+std::string simulated_on_line(const std::string& device) {
+  return device.empty() ? "" : simulated_on(device) + "\n";
+}
+
+std::string simulated_line(bool simulated) {
+  return simulated ? "SIMULATED: these numbers come from simulated participants.\n" : "";
+}
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,61 @@
+/// \file A device on a cable and the person at the terminal, as acceptance and bring-up need them.
+#pragma once
+
+#include "app/run/attended_run.hpp"
+#include "device/acceptance/acceptance.hpp"
+#include "device/device_settings.hpp"
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace touchtrial::app {
+
+/// The person or a signal ended the acceptance.
+struct AcceptanceStopped {};
+
+/// Prompts go to standard error: standard output holds the result only. Belongs to the main thread.
+class AcceptanceTerminal final : public device::AcceptanceBench, public device::AcceptancePerson {
+ public:
+  /// Opens the device and waits until it is ready.
+  /// \throws AcceptanceStopped; DeviceError if it has no motors; as device::open_device and
+  ///   AttendedRun::wait_until_ready
+  AcceptanceTerminal(const std::string& driver, const device::DeviceSettings& settings);
+
+  [[nodiscard]] const device::SchedulingObtained& scheduling() const noexcept {
+    return run_.scheduling();
+  }
+
+  [[nodiscard]] device::DeviceInfo info() const override { return info_; }
+  [[nodiscard]] device::SafetyLimits limits() const override;
+  void limit_force(double most_n) override;
+  [[nodiscard]] device::ServoReport run(const std::string& name,
+                                        device::Measurement& measurement) override;
+  [[nodiscard]] std::optional<device::ServoReport> run_suspended(
+      device::Measurement& measurement) override;
+
+  [[nodiscard]] device::Consent ready(const device::Prompt& prompt) override;
+  [[nodiscard]] std::optional<double> weight_n(device::DeviceAxis axis, double least_n,
+                                               double most_n) override;
+  [[nodiscard]] std::optional<double> temperature_c(const std::string& question) override;
+  [[nodiscard]] std::string saw(const std::string& question) override;
+  void tell(const std::string& text) override;
+
+ private:
+  void require_going_on() const;
+
+  std::unique_ptr<device::HapticDevice> device_;
+  device::SafetyLimits limits_;
+  double most_n_ = std::numeric_limits<double>::infinity();  ///< of limit_force
+  AttendedRun run_;
+  device::DeviceInfo info_;
+};
+
+/// Does the work in a process of its own: when that is suspended, the shell, which waits for this
+/// one, does not take the terminal away. Called before there are threads.
+/// \return the exit code, in both processes
+int in_own_process(const std::function<int()>& work);
+
+}  // namespace touchtrial::app

@@ -1,0 +1,352 @@
+// device fit: whether a study's plane and its stiffness fit a device, even if none is at hand.
+#include "app/commands/commands.hpp"
+#include "app/commands/device_words.hpp"
+#include "app/commands/study_inputs.hpp"
+#include "app/terminal/console.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "device/acceptance/certificate.hpp"
+#include "device/drivers/registry.hpp"
+#include "device/drivers/simulated/simulated_hand.hpp"
+#include "device/model/workspace_fit.hpp"
+#include "device/servo/scaled_device.hpp"
+#include "engine/image_file.hpp"
+#include "study/study.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+namespace touchtrial::app {
+namespace {
+
+using nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+/// The origin of a workspace.
+enum class WorkspaceSource {
+  maker,   ///< the maker's statement about all these devices; none was read
+  model,   ///< a device model; none was read
+  device,  ///< the device that is plugged in
+  none,    ///< the device reports positions on the plane, whatever its size
+};
+
+struct StudyFit {
+  std::string study;
+  std::string device;                ///< as it was named
+  std::string driver;                ///< empty: of a model that no driver serves
+  std::optional<std::string> model;  ///< that stood for the device
+  PlaneGeometry plane;
+  std::optional<device::Workspace> workspace;
+  WorkspaceSource source = WorkspaceSource::none;
+  device::WorkspaceFit fit;
+  device::RenderedStiffness rendered;
+  /// Of the device that was read, or its model; if neither was, the scale alone.
+  device::DeviceInfo limits;
+};
+
+const char* word_for(device::PlaneOrientation orientation) {
+  return orientation == device::PlaneOrientation::horizontal ? "horizontal" : "vertical";
+}
+
+const char* word_for(WorkspaceSource source) {
+  switch (source) {
+    case WorkspaceSource::maker:
+      return "maker";
+    case WorkspaceSource::model:
+      return "model";
+    case WorkspaceSource::device:
+      return "device";
+    case WorkspaceSource::none:
+      break;
+  }
+  return "none";
+}
+
+std::string source_words(const StudyFit& fit) {
+  if (fit.source == WorkspaceSource::device) return "as the device reports";
+  if (fit.source == WorkspaceSource::maker) return "as its maker states; no device was read";
+  return "of the device model " + fit.model.value_or("") + "; no device was read";
+}
+
+std::string workspace_text(const StudyFit& fit) {
+  if (!fit.workspace && fit.model) {
+    return "not compared with a frame: the device model " + *fit.model +
+           " has no workspace; connect the device, or give a model file with a workspace\n";
+  }
+  if (!fit.workspace) return "accepts any plane: it has no frame of its own\n";
+  const Vec3 size = fit.workspace->greatest_mm - fit.workspace->least_mm;
+  return fmt::format("workspace {:.1f} x {:.1f} x {:.1f} mm{}, {}\n", size.x, size.y, size.z,
+                     fit.workspace->shape == device::WorkspaceShape::ellipsoid ? " (rounded)" : "",
+                     source_words(fit));
+}
+
+ordered_json vec_json(Vec3 v) {
+  return ordered_json::array({v.x, v.y, v.z});
+}
+
+ordered_json plane_json(const PlaneGeometry& plane) {
+  return {{"width_px", plane.width_px},
+          {"height_px", plane.height_px},
+          {"width_mm", plane.width_mm()},
+          {"height_mm", plane.height_mm()},
+          {"pitch_mm", plane.pitch_mm}};
+}
+
+ordered_json workspace_json(const StudyFit& fit) {
+  if (!fit.workspace) return nullptr;
+  const bool rounded = fit.workspace->shape == device::WorkspaceShape::ellipsoid;
+  return {{"from", word_for(fit.source)},
+          {"shape", rounded ? "ellipsoid" : "box"},
+          {"least_mm", vec_json(fit.workspace->least_mm)},
+          {"greatest_mm", vec_json(fit.workspace->greatest_mm)}};
+}
+
+/// The part of the plane that all pictures of a study cover, as a session presents it.
+/// \throws FileError if a picture cannot be read
+PlaneGeometry common_plane_of(const study::Study& study) {
+  PlaneGeometry plane{study.rendering.pitch_mm, 0, 0};
+  for (const study::StudyClass& shown : study.classes) {
+    for (const auto& image : shown.images) {
+      const GreyImage picture = engine::read_grey_image(study.folder / image);
+      const bool first = plane.height_px == 0;
+      plane.height_px = first ? picture.height() : std::min(plane.height_px, picture.height());
+      plane.width_px = first ? picture.width() : std::min(plane.width_px, picture.width());
+    }
+  }
+  return plane;
+}
+
+/// A device by the name that a user or the study gives it.
+struct NamedDevice {
+  std::string name;
+  const device::DeviceDriver* driver = nullptr;  ///< null: none serves it
+  std::optional<device::DeviceModel> model;      ///< that stands for the device if none is read
+  bool is_read = true;                           ///< if its driver needs that, and it can be opened
+};
+
+/// \throws UsageError as device::model_of_device
+NamedDevice device_named(const std::string& name) {
+  NamedDevice named{.name = name, .driver = nullptr, .model = {}};
+  for (const device::DeviceDriver& driver : device::device_drivers()) {
+    if (driver.name == name) named.driver = &driver;
+    for (const device::DeviceProduct& product : driver.products) {
+      if (product.name != name) continue;
+      named.driver = &driver;
+      if (!product.model.empty()) named.model = device::device_model(product.model);
+    }
+  }
+  if (named.driver == nullptr) named.model = device::model_of_device(name);
+  return named;
+}
+
+/// \throws UsageError if neither the command nor the study names a device; as device_named
+/// \throws StudyError as simulation::device_of
+NamedDevice device_to_fit(const std::string& given, const study::Study& study) {
+  if (!given.empty()) return device_named(given);
+  if (study.device.empty()) {
+    throw UsageError(one_line(
+        study.source + ": names no device; give --device, or name one by /rendering/device"));
+  }
+  const device::DeviceModel model = simulation::device_of(study);
+  return {study.device, device::driver_of_model(model.name), model, false};
+}
+
+/// What opening the device would tell, as far as the model has it.
+void fill_from_model(const device::DeviceModel& model, StudyFit& fit) {
+  fit.model = model.name;
+  fit.limits.max_stiffness_n_per_mm = model.max_stiffness_n_per_mm;
+  if (!model.workspace) return;
+  fit.workspace = device::scaled(*model.workspace, fit.limits.scale.length);
+  fit.source = WorkspaceSource::model;
+}
+
+/// Fills in the workspace and the limits of the device.
+/// \throws DeviceError if only the device could tell and it cannot be opened
+void fill_device(const NamedDevice& named, const device::DeviceSettings& settings, StudyFit& fit) {
+  if (named.driver == nullptr || !named.is_read) return fill_from_model(*named.model, fit);
+  if (named.driver->workspace_is_known) {
+    if (!named.driver->nominal_workspace) return;
+    fit.workspace = device::scaled(*named.driver->nominal_workspace, fit.limits.scale.length);
+    fit.source = WorkspaceSource::maker;
+    return;
+  }
+  try {
+    fit.limits = device::open_device(fit.driver, settings)->info();
+    fit.workspace = fit.limits.workspace;
+    fit.source = WorkspaceSource::device;
+  } catch (const DeviceError&) {
+    if (!named.model) throw;
+    fill_from_model(*named.model, fit);
+  }
+}
+
+/// \param orientation  nothing: as the settings say
+/// \throws DeviceError as fill_device
+/// \throws FileError as common_plane_of
+StudyFit fit_of(const study::Study& study, const NamedDevice& named,
+                const device::DeviceSettings& settings,
+                std::optional<device::PlaneOrientation> orientation) {
+  StudyFit fit;
+  fit.study = study.name;
+  fit.device = named.name;
+  fit.driver = named.driver != nullptr ? named.driver->name : "";
+  const device::DeviceUse use = settings.use_of(fit.driver);
+  fit.limits.scale = use.scale;
+  fill_device(named, settings, fit);
+  fit.rendered = rendered_stiffness(study.rendering);
+  fit.plane = common_plane_of(study);
+  fit.fit = device::fit_plane(fit.plane, fit.workspace, use, orientation);
+  return fit;
+}
+
+/// Empty unless the device says what it renders.
+std::string stiffness_text(const StudyFit& fit) {
+  const std::string limits = device::rendering_limits_text(fit.limits);
+  if (limits.empty()) return "";
+  return fmt::format("stiffness {:g} N/mm of the wall, {:g} N/mm of the texture: {} {}, {}\n",
+                     fit.rendered.wall_n_per_mm, fit.rendered.texture_n_per_mm, fit.device, limits,
+                     fit.model ? "by its device model" : "as it reports");
+}
+
+std::string fit_text(const StudyFit& fit) {
+  std::string text =
+      fmt::format("{}: plane {:.1f} x {:.1f} mm ({} x {} px of {} mm)\n{}: ", fit.study,
+                  fit.plane.width_mm(), fit.plane.height_mm(), fit.plane.width_px,
+                  fit.plane.height_px, fit.plane.pitch_mm, fit.device);
+  text += workspace_text(fit) + stiffness_text(fit);
+  if (!fit.fit.fits) return text;
+  if (!fit.workspace && fit.model) return text;
+  if (!fit.fit.placement) return text + "fits\n";
+  const Vec3 origin = fit.fit.placement->origin_mm;
+  return text + fmt::format(
+                    "fits: {}, top-left corner at {:.1f}, {:.1f}, {:.1f} mm (right, up, "
+                    "towards the person), {:.0f} mm around it\n",
+                    word_for(fit.fit.placement->orientation), origin.x, origin.y, origin.z,
+                    device::kWorkspaceMarginMm);
+}
+
+/// \param limit  0: not known
+ordered_json limit_json(double limit) {
+  return limit > 0.0 ? ordered_json(limit) : ordered_json(nullptr);
+}
+
+ordered_json stiffness_json(const StudyFit& fit) {
+  return {{"wall_n_per_mm", fit.rendered.wall_n_per_mm},
+          {"texture_n_per_mm", fit.rendered.texture_n_per_mm},
+          {"damping_n_s_per_mm", fit.rendered.damping_n_s_per_mm},
+          {"limit_n_per_mm", limit_json(fit.limits.max_stiffness_n_per_mm)},
+          {"damping_limit_n_s_per_mm", limit_json(fit.limits.max_damping_n_s_per_mm)}};
+}
+
+/// The format is documented in docs/devices/README.md.
+std::string fit_json(const StudyFit& fit) {
+  ordered_json object = {{"study", fit.study},
+                         {"device", fit.device},
+                         {"driver", fit.driver},
+                         {"model", fit.model ? ordered_json(*fit.model) : ordered_json(nullptr)},
+                         {"fits", fit.fit.fits},
+                         {"margin_mm", device::kWorkspaceMarginMm},
+                         {"plane", plane_json(fit.plane)},
+                         {"workspace", workspace_json(fit)},
+                         {"stiffness", stiffness_json(fit)},
+                         {"orientation", nullptr},
+                         {"origin_mm", nullptr},
+                         {"crop", nullptr}};
+  if (fit.fit.placement) {
+    object["orientation"] = word_for(fit.fit.placement->orientation);
+    object["origin_mm"] = vec_json(fit.fit.placement->origin_mm);
+  }
+  if (!fit.fit.fits && fit.fit.largest.width_px > 0) object["crop"] = plane_json(fit.fit.largest);
+  return json_text(object);
+}
+
+struct DeviceFitArguments {
+  fs::path study;
+  std::string device;  ///< empty: the study's
+  std::optional<device::PlaneOrientation> orientation;
+  fs::path settings;
+  fs::path certificate;  ///< empty: NAME-certificate.json, if it is there
+  bool json = false;
+};
+
+/// \throws DeviceError if no session would take the certificate, as far as can be said without the
+///   device, or the study's wall is as stiff as one that oscillated
+void check_with_certificate(const fs::path& file, const study::Study& study, const StudyFit& fit) {
+  const device::Certificate certificate = device::read_certificate(file).certificate;
+  device::DeviceInfo info = fit.limits;
+  if (fit.source != WorkspaceSource::device) {
+    // No device was read, so that it can be any of this driver's.
+    info.name = fit.driver;
+    info.model = certificate.model;
+    info.serial = certificate.serial;
+    info.firmware = certificate.firmware;
+  }
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  const std::string warning = device::check_certificate(certificate, info, now);
+  if (!warning.empty()) spdlog::warn("{}", warning);
+  device::require_stable(certificate, study.rendering.stiffness_n_per_mm);
+}
+
+int fit(const DeviceFitArguments& arguments) {
+  const device::DeviceSettings settings = device::device_settings_for(arguments.settings);
+  const study::Study study = study::load_study(arguments.study);
+  const NamedDevice named = device_to_fit(arguments.device, study);
+  const StudyFit fit = fit_of(study, named, settings, arguments.orientation);
+  print(arguments.json ? fit_json(fit) : fit_text(fit));
+  if (!fit.fit.fits) {
+    throw DeviceError(device::misfit_text(fit.device, fit.plane, *fit.workspace, fit.fit));
+  }
+  const fs::path usual = fit.driver + "-certificate.json";
+  const bool has_usual = !fit.driver.empty() && is_there(usual);
+  if (!arguments.certificate.empty() || has_usual) {
+    check_with_certificate(arguments.certificate.empty() ? usual : arguments.certificate, study,
+                           fit);
+  }
+  const std::string warning = device::check_stiffness(fit.rendered, fit.limits);
+  if (!warning.empty()) spdlog::warn("{}", warning);
+  return 0;
+}
+
+}  // namespace
+
+void add_device_fit_command(CLI::App& device, Action& action) {
+  const std::map<std::string, device::PlaneOrientation> orientations = {
+      {"horizontal", device::PlaneOrientation::horizontal},
+      {"vertical", device::PlaneOrientation::vertical}};
+  auto arguments = std::make_shared<DeviceFitArguments>();
+  CLI::App* command = device.add_subcommand(
+      "fit",
+      "Check whether a study's plane fits a device's workspace, and its stiffness the device's "
+      "limits; if the plane does not, give the crop that does");
+  add_study_argument(*command, arguments->study);
+  command
+      ->add_option("--device", arguments->device,
+                   "Driver, product or device model, as touchtrial device list and device models "
+                   "name them, or a model's file (default: the study's). A product that cannot be "
+                   "opened is that of its model")
+      ->type_name("NAME");
+  command
+      ->add_option_function<std::string>(
+          "--orientation",
+          [=](const std::string& word) { arguments->orientation = orientations.at(word); },
+          "horizontal (a table) or vertical (a wall); default: that of the device settings, else "
+          "horizontal")
+      ->check(CLI::IsMember({"horizontal", "vertical"}));
+  add_settings_option(*command, arguments->settings);
+  command->add_option("--certificate", arguments->certificate,
+                      "Certificate whose stiffest wall the study must keep to (default: "
+                      "NAME-certificate.json, if it is there)");
+  add_json_flag(*command, arguments->json);
+  command->callback([=, &action] { action = [=] { return fit(*arguments); }; });
+}
+
+}  // namespace touchtrial::app

@@ -1,0 +1,227 @@
+// extract: the texture of one image, with every stage on request.
+#include "app/commands/commands.hpp"
+#include "app/commands/given_pictures.hpp"
+#include "app/commands/method_arguments.hpp"
+#include "app/terminal/console.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/npy.hpp"
+#include "core/outputs.hpp"
+#include "engine/extraction.hpp"
+#include "engine/force_field.hpp"
+#include "engine/image_file.hpp"
+#include "engine/metrics/picture_statistics.hpp"
+#include "engine/pictures/force_arrows.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+namespace touchtrial::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The neighbourhood of the forces that the engine computes along with a texture.
+constexpr int kForceNeighbourhood = 3;
+
+struct ExtractArguments {
+  fs::path image;
+  engine::SampleScale scale;
+  MethodArguments method;
+  std::string mapping = "offset";
+  int neighbourhood = 3;
+  std::string precision = "float";
+  fs::path output;
+  fs::path arrows;
+  fs::path dump;
+};
+
+/// Writes a plane and frees it: the planes of a large picture fill most of the memory.
+template <typename Real>
+void dump_if_made(const fs::path& folder, const std::string& name, Plane<Real>& plane) {
+  if (!plane.empty()) write_npy(folder / (name + ".npy"), plane);
+  plane = {};
+}
+
+/// (H, W, 2): the force's x, then y, at each pixel.
+template <typename Real>
+void dump_force(const fs::path& folder, const engine::ForceField<Real>& force) {
+  std::vector<Real> interleaved;
+  interleaved.reserve(2 * force.x.size());
+  for (std::size_t i = 0; i < force.x.size(); ++i) {
+    interleaved.push_back(force.x.samples()[i]);
+    interleaved.push_back(force.y.samples()[i]);
+  }
+  write_npy<Real>(folder / "force_tangential.npy", interleaved,
+                  {force.x.height(), force.x.width(), 2});
+}
+
+/// Before the work: the places of all planes that a method may have.
+void require_dump_places(const fs::path& folder) {
+  for (const char* name :
+       {"image", "subband_LL", "subband_LH", "subband_HL", "subband_HH", "csgv", "order",
+        "enhanced", "cartoon", "texture", "texture_u8", "force_tangential"}) {
+    require_output_place(folder / (std::string(name) + ".npy"));
+  }
+}
+
+/// Writes all planes, and frees those except texture, picture and force.
+template <typename Real>
+void dump_all(const fs::path& folder, GreyImage& image, engine::Extraction<Real>& extraction) {
+  make_folder(folder);
+  dump_if_made(folder, "image", image);
+  dump_if_made(folder, "subband_LL", extraction.sub_band_ll);
+  dump_if_made(folder, "subband_LH", extraction.sub_band_lh);
+  dump_if_made(folder, "subband_HL", extraction.sub_band_hl);
+  dump_if_made(folder, "subband_HH", extraction.sub_band_hh);
+  dump_if_made(folder, "csgv", extraction.csgv);
+  dump_if_made(folder, "order", extraction.order);
+  dump_if_made(folder, "enhanced", extraction.enhanced);
+  dump_if_made(folder, "cartoon", extraction.cartoon);
+  write_npy(folder / "texture.npy", extraction.texture);
+  write_npy(folder / "texture_u8.npy", extraction.picture);
+  dump_force(folder, extraction.force);
+}
+
+/// \return a line about the picture
+template <typename Real>
+std::string draw_arrows(const fs::path& path, const engine::Extraction<Real>& extraction) {
+  const engine::ArrowPatch patch = engine::write_force_arrows(
+      path, extraction.picture,
+      {converted<double>(extraction.force.x), converted<double>(extraction.force.y)});
+  return fmt::format(
+      "{}: {} x {} px from ({}, {}); an arrow of one pixel's length is {:.3g} grey levels per "
+      "pixel\n",
+      path.string(), patch.width, patch.height, patch.x, patch.y, patch.force_of_unit_arrow);
+}
+
+template <typename Real>
+std::string summary(const ExtractArguments& arguments, const engine::Extraction<Real>& extraction) {
+  const GreyImage& picture = extraction.picture;
+  const auto samples = extraction.texture.samples();
+  const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
+  std::string text = fmt::format(
+      "{}: {} x {} px, {}, texture {:.3f} to {:.3f} grey levels, entropy {:.4f} nats\n",
+      arguments.image.string(), picture.width(), picture.height(), arguments.method.method,
+      static_cast<double>(*low), static_cast<double>(*high), engine::entropy(picture));
+  if (arguments.method.components == "auto" && !extraction.components.empty()) {
+    const engine::GaborComponent& strongest = extraction.components.front();
+    text += fmt::format("component: {:.4f} cycles per pixel at {:.1f} degrees\n",
+                        strongest.frequency_cycles_per_px, strongest.direction_deg);
+  }
+  return text;
+}
+
+/// \throws FileError with the image's name if it is too small for an option, for instance "auto"
+template <typename Real>
+engine::Extraction<Real> extracted(const fs::path& path, const GreyImage& image,
+                                   const engine::ExtractionOptions& options,
+                                   const engine::WantedPlanes& wanted) {
+  try {
+    return engine::extract_texture<Real>(image, options, wanted);
+  } catch (const std::invalid_argument& error) {
+    throw FileError(one_line(path.string()) + ": " + error.what() +
+                    "; list them, or give a larger image");
+  }
+}
+
+engine::WantedPlanes wanted_planes(const ExtractArguments& arguments) {
+  engine::WantedPlanes wanted =
+      arguments.dump.empty() ? engine::WantedPlanes{} : engine::WantedPlanes::all();
+  wanted.picture = arguments.mapping == engine::kMappingNames.front().name;
+  wanted.force = arguments.neighbourhood == kForceNeighbourhood &&
+                 (!arguments.dump.empty() || !arguments.arrows.empty());
+  return wanted;
+}
+
+/// Adds what the engine does not compute along with a texture: other mappings and neighbourhoods.
+template <typename Real>
+void complete(const ExtractArguments& arguments, engine::Extraction<Real>& extraction) {
+  if (extraction.picture.empty()) {
+    extraction.picture = engine::texture_picture(
+        extraction.texture, *value_in(engine::kMappingNames, arguments.mapping));
+  }
+  const bool needs_force = !arguments.dump.empty() || !arguments.arrows.empty();
+  if (needs_force && extraction.force.x.empty()) {
+    extraction.force = engine::tangential_force(extraction.texture, arguments.neighbourhood);
+  }
+}
+
+template <typename Real>
+int extract_with(const ExtractArguments& arguments, const engine::ExtractionOptions& options) {
+  GreyImage image = read_given_picture(arguments.image, arguments.scale);
+  engine::Extraction<Real> extraction =
+      extracted<Real>(arguments.image, image, options, wanted_planes(arguments));
+  if (!extraction.converged) {
+    spdlog::warn("{}: tv-gabor stopped after {} steps with a relative gap of {:.2g}",
+                 arguments.image.string(), extraction.steps, extraction.gap);
+  }
+  complete(arguments, extraction);
+  if (!arguments.output.empty()) engine::write_png(arguments.output, extraction.picture);
+  if (!arguments.dump.empty()) dump_all(arguments.dump, image, extraction);
+  std::string text = summary(arguments, extraction);
+  if (!arguments.arrows.empty()) text += draw_arrows(arguments.arrows, extraction);
+  print(text);
+  return 0;
+}
+
+/// Refuses an output that is not a PNG, that is the input, or that is in another's place.
+void check_output(const fs::path& image, const fs::path& output, const std::string& option) {
+  if (output.empty()) return;
+  std::error_code ignored;
+  if (fs::equivalent(image, output, ignored)) {
+    throw UsageError("extract: " + output.string() + " is the input picture; give another " +
+                     option);
+  }
+  if (ending_of(output) != ".png") {
+    throw UsageError("extract: " + output.string() +
+                     ": pictures are written as PNG; give a name that ends in .png");
+  }
+  require_output_place(output);
+}
+
+int extract(const ExtractArguments& arguments) {
+  check_output(arguments.image, arguments.output, "-o");
+  check_output(arguments.image, arguments.arrows, "--arrows");
+  if (!arguments.dump.empty()) require_dump_places(arguments.dump);
+  const engine::ExtractionOptions options = extraction_options(arguments.method);
+  if (!arguments.arrows.empty() &&
+      arguments.arrows.lexically_normal() == arguments.output.lexically_normal()) {
+    throw UsageError("extract: --output and --arrows name one file; give two");
+  }
+  if (arguments.neighbourhood % 2 == 0) {
+    throw UsageError("extract: --neighbourhood is a side length and must be odd, 3 or more");
+  }
+  return arguments.precision == "double" ? extract_with<double>(arguments, options)
+                                         : extract_with<float>(arguments, options);
+}
+
+}  // namespace
+
+void add_extract_command(CLI::App& program, Action& action) {
+  const auto [command, arguments] =
+      add_command(program, action, "extract", "Extract the texture of one image", extract);
+  command.add_option("IMAGE", arguments.image, "PNG, JPEG, TIFF, BMP, GIF or PGM")->required();
+  add_sample_options(command, arguments.scale);
+  add_method_options(command, arguments.method);
+  command.add_option("--mapping", arguments.mapping, "Mapping of the texture to a picture")
+      ->check(CLI::IsMember(words_of(engine::kMappingNames)))
+      ->capture_default_str();
+  add_count_option(command, "--neighbourhood", arguments.neighbourhood,
+                   "Side n of the force's neighbourhood, odd", 3, 1001);
+  command.add_option("-o,--output", arguments.output, "Write the texture as an 8-bit PNG");
+  command.add_option("--arrows", arguments.arrows,
+                     "Draw the force field over an enlarged patch, as PNG");
+  command.add_option("--dump", arguments.dump, "Write every stage as .npy files into this folder");
+  add_force_flag(command);
+  command.add_option("--precision", arguments.precision, "Precision of the extraction")
+      ->check(CLI::IsMember({"float", "double"}))
+      ->capture_default_str();
+}
+
+}  // namespace touchtrial::app

@@ -1,0 +1,48 @@
+#include "app/commands/given_pictures.hpp"
+
+#include "core/errors.hpp"
+#include "core/strict_json.hpp"
+#include "core/text.hpp"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+namespace touchtrial::app {
+namespace {
+
+/// \throws CLI::ValidationError if the text is not two finite numbers, the first below the second
+std::pair<double, double> range_in(const std::string& text) {
+  const std::size_t comma = text.find(',');
+  const auto low = number_in<double>(text.substr(0, comma));
+  const auto high =
+      comma == std::string::npos ? std::nullopt : number_in<double>(text.substr(comma + 1));
+  if (low && high && *low < *high && std::isfinite(*high - *low)) return {*low, *high};
+  throw CLI::ValidationError("--heights",
+                             "must be LOWEST,HIGHEST, two numbers, not " + in_quotes(text));
+}
+
+}  // namespace
+
+void add_sample_options(CLI::App& command, engine::SampleScale& scale) {
+  command
+      .add_option("--bits", scale.bits,
+                  "Bits that the camera or scanner of 16-bit pictures has, 9 to 16")
+      ->check(CLI::Range(9, 16));
+  command.add_option_function<std::string>(
+      "--heights", [&scale](const std::string& text) { scale.heights = range_in(text); },
+      "LOWEST,HIGHEST of floating-point pictures, which become black and white (default: each "
+      "picture's own)");
+}
+
+GreyImage read_given_picture(const std::filesystem::path& path, const engine::SampleScale& scale) {
+  engine::Picture picture = engine::read_picture(path, scale);
+  for (const std::string& remark : engine::remarks_on(picture.notes)) {
+    spdlog::warn("{}: {}", one_line(path.string()), remark);
+  }
+  return std::move(picture.grey);
+}
+
+}  // namespace touchtrial::app

@@ -1,0 +1,11 @@
+/// \file The template of the studies that `new` writes.
+#pragma once
+
+#include <string>
+
+namespace touchtrial::app {
+
+/// The text of app/commands/new_study.json.in, which is built in.
+[[nodiscard]] std::string new_study_template();
+
+}  // namespace touchtrial::app

@@ -1,0 +1,339 @@
+// Commands that record a decision about one participant: exclude, replace, withdraw and note.
+#include "app/commands/commands.hpp"
+#include "app/commands/study_inputs.hpp"
+#include "app/terminal/console.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/nearest_name.hpp"
+#include "core/text.hpp"
+#include "record/personal_data.hpp"
+#include "record/study_store.hpp"
+#include "study/deviation_codes.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace touchtrial::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct PeopleArguments {
+  fs::path database;
+  SigningFiles files;
+  std::string participant;
+  std::string reason;
+  std::string with;
+  std::string deviation;
+  std::string text;
+  bool own_code = false;
+  bool after_outcomes = false;
+  bool keep_data = false;
+  bool erase = false;
+  bool erase_safety = false;
+  bool yes = false;
+};
+
+std::string place_of(const PeopleArguments& arguments) {
+  return arguments.database.string() + ": participant " + arguments.participant;
+}
+
+/// \throws StoreError if the participant has no session
+std::vector<record::SessionRow> sessions_of(const record::StudyStore& store,
+                                            const PeopleArguments& arguments) {
+  std::vector<record::SessionRow> rows = store.sessions_of(arguments.participant);
+  if (rows.empty()) {
+    throw StoreError(one_line(place_of(arguments) + " has no session; check the participant id"));
+  }
+  return rows;
+}
+
+/// The session that counts, or the last one if all were replaced.
+int session_of(const record::StudyStore& store, const PeopleArguments& arguments) {
+  // Not simply the last one: two stations of a merged study may have used the same id.
+  if (const auto counts = store.session_of(arguments.participant)) return counts->session;
+  return sessions_of(store, arguments).back().session;
+}
+
+int exclude(const PeopleArguments& arguments) {
+  record::StudyStore store = opened_to_record(arguments.database, arguments.files);
+  // Of several visits, all that were not excluded already.
+  std::vector<int> sessions = {session_of(store, arguments)};
+  for (const record::SessionRow& row : sessions_of(store, arguments)) {
+    const bool is_other = row.session != sessions.front() && !row.excluded;
+    if (is_other && row.replaced_by.empty()) sessions.push_back(row.session);
+  }
+  const record::StudyState state = store.state();
+  const bool seen =
+      std::ranges::any_of(sessions, [&](int session) { return state.shows(session); });
+  if (seen && !arguments.after_outcomes) {
+    throw StoreError(
+        one_line(place_of(arguments) +
+                 " cannot be excluded without notice: outcomes have been seen; give "
+                 "--after-outcomes to exclude anyway, which is recorded with the reason"));
+  }
+  for (const int session : sessions) store.exclude(session, utc_now(), arguments.reason);
+  print(place_of(arguments) + ": excluded (session " +
+        listed(sessions, ", ", [](int session) { return std::to_string(session); }) + ")\n");
+  print_head(store, arguments.database);
+  return 0;
+}
+
+int replace(const PeopleArguments& arguments) {
+  record::StudyStore store = opened_to_record(arguments.database, arguments.files);
+  const record::SessionRow row = sessions_of(store, arguments).back();
+  store.replace(row.session, arguments.with, utc_now(), arguments.reason);
+  print(place_of(arguments) + ": replaced; " + arguments.with + " inherits enrolment " +
+        std::to_string(row.enrolment) + "\n");
+  print_head(store, arguments.database);
+  return 0;
+}
+
+/// A mistyped code would be missing wherever the right one is counted.
+/// \throws UsageError with the codes that there are
+void check_code(const PeopleArguments& arguments) {
+  const std::string& code = arguments.deviation;
+  if (code.empty() || arguments.own_code || study::is_deviation_code(code)) return;
+  const auto nearest = nearest_name(code, study::kDeviationCodes);
+  throw UsageError("note: --deviation " + one_line(code) + " is none of the program's codes" +
+                   (nearest ? "; did you mean " + std::string(*nearest) + "?" : ": ") +
+                   (nearest ? " There are " : "") + listed(study::kDeviationCodes) +
+                   ", no-day-sheet-NUMBER; for a code of the study's own add --own-code");
+}
+
+int note(const PeopleArguments& arguments) {
+  check_code(arguments);
+  record::StudyStore store = opened_to_record(arguments.database, arguments.files);
+  store.note(session_of(store, arguments), utc_now(), arguments.deviation, arguments.text);
+  print(place_of(arguments) + ": noted\n");
+  print_head(store, arguments.database);
+  return 0;
+}
+
+constexpr const char* kOtherCopies =
+    "destroy every other copy of the database too (backups, snapshots, files that were sent): the "
+    "participant's data can still be read in them\n"
+    "if the database was sent to a server, run `touchtrial sync` now, which names the rows that "
+    "hold "
+    "the key there: until their owner deletes them it is there, and in the server's backups\n";
+/// Goes into the withdrawal's event.
+constexpr const char* kNotErased =
+    "other copies and backups; the key on a server, until its row is deleted";
+
+/// Removes personal data even if an interrupted withdrawal destroyed the key before.
+bool remove_person(const PeopleArguments& arguments) {
+  const fs::path path = record::personal_data_path(arguments.database);
+  return is_there(path) && record::PersonalData(path).remove(arguments.participant);
+}
+
+/// The sessions of a participant that something holds for.
+std::vector<int> those_with(const record::StudyStore& store, const std::string& participant,
+                            bool (*holds)(const record::SessionRow&)) {
+  std::vector<int> sessions;
+  for (const record::SessionRow& row : store.sessions_of(participant)) {
+    if (holds(row)) sessions.push_back(row.session);
+  }
+  return sessions;
+}
+
+std::vector<int> not_erased(const record::StudyStore& store, const std::string& participant) {
+  return those_with(store, participant, [](const record::SessionRow& row) { return !row.erased; });
+}
+
+/// "session 3 with 25 answers", for each of these sessions.
+std::string with_answers(const record::StudyStore& store, const std::vector<int>& sessions) {
+  const std::vector<record::TrialRow> trials = store.trials();
+  std::vector<std::string> words;
+  for (const int session : sessions) {
+    const auto answers = std::ranges::count_if(trials, [session](const record::TrialRow& trial) {
+      return trial.session == session && trial.state == record::TrialState::answered;
+    });
+    words.push_back(fmt::format("session {} with {}", session, counted(answers, "answer")));
+  }
+  return listed(words);
+}
+
+/// Asks before an erasure that would destroy something.
+void confirm_erasure(const record::StudyStore& store, const std::vector<int>& sessions,
+                     const PeopleArguments& arguments) {
+  const fs::path path = record::personal_data_path(arguments.database);
+  std::string lost = with_answers(store, sessions);
+  if (is_there(path) && record::PersonalData(path).find(arguments.participant)) {
+    lost += std::string(lost.empty() ? "" : ", ") + "and the personal data (consent, contact)";
+  }
+  if (lost.empty()) return;
+  confirm(place_of(arguments) + ": " + lost +
+              ": nobody can ever read them again; the safety record stays",
+          arguments.yes);
+}
+
+/// Destroys the keys of these sessions, and what an earlier call left of keys in the log.
+/// \return what is left of the keys, and the remedy; empty if nothing is
+/// \throws StoreError if the withdrawal was not recorded
+std::string destroy_keys(record::StudyStore& store, const std::vector<int>& sessions,
+                         const PeopleArguments& arguments) {
+  try {
+    store.withdraw(sessions, utc_now(), arguments.reason, record::Kept::safety_record, kNotErased);
+  } catch (const StoreError& error) {
+    if (!not_erased(store, arguments.participant).empty()) throw;
+    return error.what();
+  }
+  return "";
+}
+
+int keep_data(const PeopleArguments& arguments) {
+  record::StudyStore store = opened_to_record(arguments.database, arguments.files);
+  static_cast<void>(sessions_of(store, arguments));  // throws if there are none
+  const std::vector<int> sessions = those_with(
+      store, arguments.participant, [](const record::SessionRow& row) { return !row.withdrawn; });
+  if (sessions.empty()) throw StoreError(one_line(place_of(arguments) + " has already withdrawn"));
+  confirm(
+      place_of(arguments) +
+          ": takes no further part, for good, and an open session cannot go on; the data stay (" +
+          with_answers(store, sessions) + ")",
+      arguments.yes);
+  store.withdraw(sessions, utc_now(), arguments.reason, record::Kept::data);
+  print(place_of(arguments) +
+        ": withdrawn; takes no further part, and the data stay: they are analysed as the study "
+        "says, and reports say how many let them be used\n"
+        "to erase them later, run the same command with --erase\n");
+  print_head(store, arguments.database);
+  return 0;
+}
+
+int erase_safety(const PeopleArguments& arguments) {
+  record::StudyStore store = opened_to_record(arguments.database, arguments.files);
+  std::vector<int> sessions;
+  for (const record::SessionRow& row : sessions_of(store, arguments)) {
+    if (store.wrapped_keys(row.session).safety) sessions.push_back(row.session);
+  }
+  if (sessions.empty()) {
+    throw StoreError(one_line(place_of(arguments) + ": the safety record is already erased"));
+  }
+  confirm(place_of(arguments) +
+              ": nobody can ever read the texts of the safety record again (stops, faults, largest "
+              "forces, reasons of deviations)",
+          arguments.yes);
+  store.withdraw(sessions, utc_now(), "", record::Kept::nothing, kNotErased);
+  print(place_of(arguments) + ": the texts of the safety record cannot be read again by anybody\n" +
+        kOtherCopies);
+  print_head(store, arguments.database);
+  return 0;
+}
+
+int erase(const PeopleArguments& arguments) {
+  std::error_code none;
+  const auto log_size = fs::file_size(arguments.database.string() + "-wal", none);
+  const bool had_log = !none && log_size > 0;  // an earlier withdrawal may have left its key there
+  record::StudyStore store = opened_to_record(arguments.database, arguments.files);
+  const bool has_session = !store.sessions_of(arguments.participant).empty();
+  const std::vector<int> sessions = not_erased(store, arguments.participant);
+  confirm_erasure(store, sessions, arguments);
+  // The key first: a fault of the file of personal data must not prevent a withdrawal.
+  std::string left = has_session ? destroy_keys(store, sessions, arguments) : "";
+  bool removed = false;
+  try {
+    removed = remove_person(arguments);
+  } catch (const Error& error) {
+    left += (left.empty() ? "" : "; ") + std::string("the personal data are not removed yet: ") +
+            error.what();
+  }
+  if (!left.empty()) {
+    throw StoreError(one_line(place_of(arguments) + ": not everything is erased yet: " + left +
+                              "; then run the same command again"));
+  }
+  if (!has_session && removed) {
+    print(place_of(arguments) + ": had no session; the personal data are removed\n");
+    return 0;
+  }
+  if (!has_session) static_cast<void>(sessions_of(store, arguments));  // throws
+  if (sessions.empty() && !removed && !had_log) {
+    throw StoreError(
+        one_line(place_of(arguments) + " has already withdrawn, and the data are erased"));
+  }
+  print(place_of(arguments) +
+        ": withdrawn; this person's sealed data cannot be read again by anybody, but for the "
+        "safety record" +
+        (removed ? ", and the personal data are removed\n" : "\n") +
+        (store.stations() > 0 ? "this is a merged database: withdraw at the station too\n" : "") +
+        kOtherCopies);
+  if (!sessions.empty()) print_head(store, arguments.database);
+  return 0;
+}
+
+int withdraw(const PeopleArguments& arguments) {
+  if (int{arguments.keep_data} + int{arguments.erase} + int{arguments.erase_safety} != 1) {
+    throw UsageError(
+        "withdraw: give --reason, and --keep-data (the person takes no further part, the data "
+        "stay), --erase (the data are destroyed, the safety record stays) or --erase-safety (when "
+        "its years have passed); ask the person which");
+  }
+  if (arguments.erase_safety) return erase_safety(arguments);
+  if (arguments.reason.empty()) {
+    throw StoreError(place_of(arguments) +
+                     ": a withdrawal needs a reason, which is recorded; give one with --reason");
+  }
+  return arguments.erase ? erase(arguments) : keep_data(arguments);
+}
+
+using PeopleCommand = Command<PeopleArguments>;
+
+PeopleCommand people_command(CLI::App& program, Action& action, const char* name,
+                             const char* meaning, int (*work)(const PeopleArguments&)) {
+  const auto [command, arguments] = add_command(program, action, name, meaning, work);
+  add_database_argument(command, arguments.database);
+  add_signing_options(command, arguments.files);
+  command.add_option("--participant", arguments.participant, "Participant id")->required();
+  return {command, arguments};
+}
+
+void add_reason(CLI::App& command, std::string& reason) {
+  command.add_option("--reason", reason, "Why; recorded")->required();
+}
+
+}  // namespace
+
+void add_people_commands(CLI::App& program, Action& action) {
+  const PeopleCommand excluded = people_command(program, action, "exclude",
+                                                "Leave a participant out of the outcomes", exclude);
+  add_reason(excluded.command, excluded.arguments.reason);
+  excluded.command.add_flag("--after-outcomes", excluded.arguments.after_outcomes,
+                            "Although this participant's outcomes have been seen; recorded");
+  const PeopleCommand replaced = people_command(
+      program, action, "replace", "Give a participant's place to somebody new", replace);
+  replaced.command.add_option("--with", replaced.arguments.with, "Who takes the place")->required();
+  add_reason(replaced.command, replaced.arguments.reason);
+  const PeopleCommand withdrawn =
+      people_command(program, action, "withdraw",
+                     "A participant takes no further part; keep the data or erase them", withdraw);
+  CLI::Option* reason =
+      withdrawn.command.add_option("--reason", withdrawn.arguments.reason, "Why; recorded");
+  withdrawn.command
+      .add_flag("--keep-data", withdrawn.arguments.keep_data,
+                "The data stay, and are analysed as the study says")
+      ->needs(reason);
+  withdrawn.command
+      .add_flag("--erase", withdrawn.arguments.erase,
+                "Make the sealed data unreadable for ever, and remove the personal data; the "
+                "safety record stays")
+      ->needs(reason);
+  withdrawn.command.add_flag("--erase-safety", withdrawn.arguments.erase_safety,
+                             "Make the safety record of an erased person unreadable too, when the "
+                             "study's years have passed");
+  add_yes_flag(withdrawn.command, withdrawn.arguments.yes);
+  const PeopleCommand noted = people_command(
+      program, action, "note", "Record a remark or a deviation from the protocol", note);
+  noted.command.add_option(
+      "--deviation", noted.arguments.deviation,
+      "Code of the deviation: " + listed(study::kDeviationCodes) + ", no-day-sheet-NUMBER");
+  noted.command.add_flag("--own-code", noted.arguments.own_code,
+                         "The deviation's code is the study's own");
+  noted.command.add_option("TEXT", noted.arguments.text, "What happened")->required();
+}
+
+}  // namespace touchtrial::app

@@ -1,0 +1,157 @@
+#include "app/commands/pilot_thresholds.hpp"
+
+#include "analysis/report/results.hpp"
+#include "app/commands/study_inputs.hpp"
+#include "core/errors.hpp"
+#include "device/drivers/registry.hpp"
+#include "device/drivers/simulated/simulated_hand.hpp"
+#include "engine/pack/pack.hpp"
+#include "protocols/session/stimulus_source.hpp"
+#include "protocols/simulation/stimulus_levels.hpp"
+#include "record/study_store.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace touchtrial::app {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kMinPilots = 3;
+/// Right answers at the threshold that levels count from (d' = 1.62) among two and three intervals.
+constexpr double kRightOfTwo = 0.8744;
+constexpr double kRightOfThree = 0.794;
+
+[[noreturn]] void refuse(const study::Study& study, const std::string& what) {
+  throw StudyError(
+      one_line(study.source + ": /rendering/gains/curve: " + study.level->curve + ": " + what));
+}
+
+/// The report of the pilots' study, as `report --json` prints it.
+json report_of(const study::Study& study, const record::StudyStore& store,
+               const study::StudyKey& key) {
+  if (!store.state().unblinded) refuse(study, "is not unblinded; close and unblind it");
+  const analysis::Outcomes outcomes = outcomes_of(store, key);
+  json report = json::parse(analysis::analysis_of(outcomes.design).results(outcomes, {})->json());
+  if (report.value("task", "") != "detection" || report.value("along", "") != "gain" ||
+      report.value("question", "") != "which-interval") {
+    refuse(study, "is no detection study along gain that asks which interval");
+  }
+  return report;
+}
+
+/// The threshold of a track, at the share of right answers that levels count from, dB.
+double threshold_db(const json& track, double guess) {
+  const json& found = track.at("posterior");
+  const double right = guess > 0.4 ? kRightOfTwo : kRightOfThree;
+  // Along the track's Weibull function.
+  const double more = std::log10(-std::log((1.0 - right) / (1.0 - guess)));
+  return found.at("threshold").get<double>() + 20.0 * more / found.at("slope").get<double>();
+}
+
+/// The mean threshold of each stimulus that has one.
+std::vector<std::pair<std::string, double>> means_by_standard(const study::Study& study,
+                                                              const json& report) {
+  std::vector<std::pair<std::string, double>> means;
+  for (const json& standard : report.at("standards")) {
+    double sum = 0.0;
+    std::size_t found = 0;
+    std::size_t censored = 0;
+    for (const json& track : report.at("tracks")) {
+      if (track.at("standard") != standard.at("standard")) continue;
+      if (track.at("posterior").at("threshold").is_null()) {
+        ++censored;
+        continue;
+      }
+      sum += threshold_db(track, report.at("guess").get<double>());
+      ++found;
+    }
+    if (found < kMinPilots || censored > found) {
+      refuse(study,
+             fmt::format("has {} thresholds of {} and {} that lie beyond its levels; it "
+                         "needs {} or more, and fewer beyond",
+                         found, standard.at("standard").get<std::string>(), censored, kMinPilots));
+    }
+    means.emplace_back(standard.at("class").get<std::string>(), sum / static_cast<double>(found));
+  }
+  if (means.empty()) refuse(study, "has no threshold yet");
+  return means;
+}
+
+/// Thresholds hold for the device on which they were measured.
+void require_device(const study::Study& study, const record::StudyStore& store,
+                    const study::Study& pilots, const device::DeviceModel& device) {
+  const device::DeviceDriver* const driver = device::driver_of_model(device.name);
+  std::string other;
+  for (const record::SessionRow& session : store.sessions()) {
+    if (session.erased || session.excluded || !session.replaced_by.empty()) continue;
+    const bool is_same = session.simulated ? session.device == device::words_of_simulated(device)
+                                           : driver == nullptr || session.device == driver->name;
+    if (!is_same) other = session.device;
+  }
+  if (other.empty() && !pilots.device.empty()) {
+    const std::string stated = simulation::device_of(pilots).name;
+    if (stated != device.name) other = stated;
+  }
+  if (other.empty()) return;
+  refuse(study, fmt::format("its thresholds were measured on '{}', and this study is for {}; "
+                            "measure them on that device, or change /rendering/device",
+                            other, device.name));
+}
+
+simulation::LevelCurve pilots_curve(const study::Study& study, const device::DeviceModel& device) {
+  const std::filesystem::path database = study.folder / study.level->curve;
+  const record::StudyStore store =
+      record::StudyStore::open(database, record::StudyStore::Access::read_only);
+  if (!is_there(key_in_use(database, {}))) {
+    refuse(study, "has no key beside it; put the key of its study there as " +
+                      key_path_for(database, {}).string());
+  }
+  if (const auto fault = store.first_fault(record::TraceCheck::skip)) {
+    refuse(study, "is damaged or was altered; `touchtrial verify` says where");
+  }
+  const study::StudyKey key = key_of_database(store, database, {});
+  require_device(study, store, key.study, device);
+  const auto means = means_by_standard(study, report_of(study, store, key));
+  const engine::Pack pack(key.pack_folder);
+  const session::StimulusSource source(pack, key.study.rendering);
+  const simulation::StimulusLevels levels = simulation::levels_of(key, source, {device}, cores());
+  double sum = 0.0;
+  for (const auto& [label, measured_db] : means) {
+    const auto stimulus = std::ranges::find(levels.stimuli, label, [&](const auto& index) {
+      return key.study.classes[static_cast<std::size_t>(index.class_index)].label;
+    });
+    if (stimulus == levels.stimuli.end()) refuse(study, "has no field of " + label);
+    const auto place = static_cast<std::size_t>(stimulus - levels.stimuli.begin());
+    // The level of the whole gain is what the threshold lies below it.
+    sum += measured_db + levels.levels[place].front().db;
+  }
+  return {.curve = engine::ThresholdCurve::israr_2006,
+          .pilots_db = sum / static_cast<double>(means.size()),
+          .simulated_pilots = store.commitment().simulated};
+}
+
+}  // namespace
+
+simulation::LevelCurve curve_of(const study::Study& study, const device::DeviceModel& device) {
+  for (const engine::ThresholdCurve curve : engine::kThresholdCurves) {
+    if (study.level.value().curve == engine::name_of(curve)) return {curve, {}};
+  }
+  try {
+    return pilots_curve(study, device);
+  } catch (const StudyError&) {
+    throw;
+  } catch (const Error& error) {
+    throw StudyError(one_line(study.source + ": /rendering/gains/curve: " + error.what()));
+  }
+}
+
+}  // namespace touchtrial::app

@@ -1,0 +1,20 @@
+/// \file Thresholds that a laboratory measured, in place of a published curve.
+#pragma once
+
+#include "device/model/device_model.hpp"
+#include "protocols/simulation/level_gains.hpp"
+#include "study/study.hpp"
+
+namespace touchtrial::app {
+
+/// The curve that a study's level is meant by. For the database of a detection study of pilots it
+/// is israr_2006 with how much less sensitive they were, in the mean over people and stimuli, than
+/// the median simulated person on this device. Source: docs/perception.md, "Pilots".
+/// \param device  the study's
+/// \pre the study has a level
+/// \throws StudyError naming /rendering/gains/curve if the database is no unblinded detection study
+///   along gain with key and pack, or fewer than three people have a threshold in it
+[[nodiscard]] simulation::LevelCurve curve_of(const study::Study& study,
+                                              const device::DeviceModel& device);
+
+}  // namespace touchtrial::app

@@ -1,0 +1,65 @@
+// procedure: what a track of a threshold study would present after a list of answers.
+#include "analysis/planning/track_walk.hpp"
+#include "app/commands/commands.hpp"
+#include "app/terminal/console.hpp"
+#include "core/errors.hpp"
+#include "core/strict_json.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace touchtrial::app {
+namespace {
+
+struct ProcedureArguments {
+  std::filesystem::path study;
+  std::string answers;
+  int track = 1;
+  bool json = true;
+};
+
+/// Answers as they are typed: "1,0,1"; empty: none.
+/// \throws UsageError if a part is neither 0 nor 1
+std::vector<bool> answers_named(std::string_view text) {
+  std::vector<bool> answers;
+  for (std::size_t begin = 0; !text.empty() && begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string_view part = text.substr(begin, end - begin);
+    if (part != "0" && part != "1") {
+      throw UsageError("--answers: " + in_quotes(part) +
+                       " is not an answer; give 1 for right and 0 for wrong, as 1,0,1");
+    }
+    answers.push_back(part == "1");
+    begin = end + 1;
+  }
+  return answers;
+}
+
+int show_procedure(const ProcedureArguments& arguments) {
+  const std::vector<bool> answers = answers_named(arguments.answers);
+  const study::Study study = study::load_study(arguments.study);
+  print(planning::track_walk_json(planning::walked(study, arguments.track, answers)));
+  return 0;
+}
+
+}  // namespace
+
+void add_procedure_command(CLI::App& program, Action& action) {
+  const auto [command, arguments] = add_command(
+      program, action, "procedure",
+      "Replay answers through one adaptive track; print its levels and posterior as JSON",
+      show_procedure);
+  add_study_argument(command, arguments.study);
+  command
+      .add_option("--answers", arguments.answers,
+                  "1 for right, 0 for wrong; empty: the first level alone")
+      ->type_name("1,0,1..")
+      ->required();
+  command.add_option("--track", arguments.track, "Number of the track")->capture_default_str();
+  command.add_flag("--json", arguments.json, "Implied");
+}
+
+}  // namespace touchtrial::app

@@ -1,0 +1,125 @@
+#include "app/commands/commands.hpp"
+#include "app/run/run_session.hpp"
+#include "app/terminal/console.hpp"
+#include "core/errors.hpp"
+#include "study/station.hpp"
+
+#include <string>
+
+namespace touchtrial::app {
+namespace {
+
+OnExisting policy_of(const std::string& text) {
+  if (text == "refuse") return OnExisting::refuse;
+  if (text == "resume") return OnExisting::resume;
+  if (text == "restart") return OnExisting::restart;
+  throw CLI::ValidationError("--on-existing",
+                             "'" + text + "' is unknown; give refuse, resume or restart");
+}
+
+int run(const RunOptions& options) {
+  if (options.database.empty()) throw UsageError("run: --db is empty; give it a file name");
+  if (options.is_simulated() && !options.device.empty()) {
+    throw UsageError("run: --device is for people; omit it with --subject");
+  }
+  if (!options.on.empty() && !options.is_simulated() && options.device != "simulated") {
+    throw UsageError(
+        "run: --on is for simulated hands; add --subject or --device simulated, or omit --on");
+  }
+  if (options.is_simulated() && options.participant.empty()) {
+    throw UsageError(
+        "run: nobody can be asked for a simulated participant's id; give --participant, for "
+        "instance S01");
+  }
+  return run_study_session(options);
+}
+
+void add_session_options(CLI::App& command, RunOptions& options) {
+  add_study_argument(command, options.study);
+  command.add_option("--participant", options.participant,
+                     "Id, for instance P07; not a name (default: asked for in a window, with the "
+                     "consent)");
+  command.add_option("--db", options.database, "Database; made if it does not exist")
+      ->check(place_validator())
+      ->required();
+  add_pack_option(command, options.pack);
+  auto* file =
+      command.add_option("--station-file", options.station_file,
+                         "File of this station (default: <study>.station beside the pack)");
+  command.add_option_function<std::string>(
+      "--heads", [&options](const std::string& folder) { options.heads.folder = folder; },
+      "Folder of the second head file, on another disk (default: that of the last time)");
+  add_accept_loss_option(command, options.heads.accept_loss);
+  add_passphrase_option(command);
+  command.add_flag("--pilot", options.pilot,
+                   "A pilot session, never pooled; needs a database of its own");
+  command
+      .add_option_function<std::string>(
+          "--on-existing",
+          [&options](const std::string& text) { options.on_existing = policy_of(text); },
+          "What to do if the participant has a session: refuse, resume or restart")
+      ->type_name("refuse|resume|restart");
+  command
+      .add_option("--enrolment", options.enrolment,
+                  "Enrolment number, one of this station's (default: its next)")
+      ->check(CLI::Range(1, study::kMostEnrolments));
+  add_count_option(command, "--visit", options.visit,
+                   "Which visit of the participant this is, in a study with several", 1, 100);
+  command
+      .add_option("--station", options.station,
+                  "Name of this station, whose file is <study>.NAME.station")
+      ->excludes(file);
+  command.add_option("--accept-clock", options.accept_clock,
+                     "Go on after a visit that a wrong clock put into the future; the reason is "
+                     "recorded");
+  add_yes_flag(command, options.yes);
+}
+
+void add_device_options(CLI::App& command, RunOptions& options) {
+  add_driver_argument(command, "--device", options.device);
+  add_settings_option(command, options.settings);
+  command.add_option("--certificate", options.certificate,
+                     "Certificate of the device's acceptance (default: NAME-certificate.json)");
+  command.add_flag(
+      "--allow-unverified", options.allow_unverified,
+      "Run a device with force without a valid certificate; everything is then stamped "
+      "UNVERIFIED DEVICE");
+  command.add_flag("--allow-late", options.allow_late,
+                   "Run a device with force although the system refuses real-time scheduling; "
+                   "recorded");
+  command.add_flag("--console", options.console, "Open a window for the experimenter too");
+  command
+      .add_option("--console-monitor", options.console_monitor,
+                  "Monitor of the experimenter's window")
+      ->check(CLI::Range(1, 16));
+  command.add_flag("!--no-sound", options.sound, "Play neither masking noise nor tones");
+  add_window_options(command, options.monitor, options.window_px);
+  command
+      .add_option("--text-scale", options.text_scale,
+                  "Size of this participant's letters, in place of the study's; recorded")
+      ->check(finite_range(1.0, study::kLargestTextScale));
+  command.add_flag("--high-contrast", options.high_contrast,
+                   "Black on white for this participant; recorded");
+}
+
+void add_simulation_options(CLI::App& command, RunOptions& options) {
+  command.add_option(
+      "--subject", options.subject,
+      "Simulate the participant by this subject model, or by the built-in one if empty; without a "
+      "window");
+  add_on_option(command, options.on);
+  add_seed_option(command, options.seed, "Seed of the simulated participant");
+  command.add_flag("--real-time", options.real_time, "Simulate the participant in real time");
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& program, Action& action) {
+  const auto [command, options] =
+      add_command(program, action, "run", "Run one session with one participant", run);
+  add_session_options(command, options);
+  add_device_options(command, options);
+  add_simulation_options(command, options);
+}
+
+}  // namespace touchtrial::app

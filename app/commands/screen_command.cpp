@@ -1,0 +1,49 @@
+// screen: the size of what a monitor shows.
+#include "app/commands/commands.hpp"
+#include "app/terminal/console.hpp"
+#include "app/windows/participant/card_screen.hpp"
+#include "app/windows/participant/participant_window.hpp"
+#include "core/errors.hpp"
+
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+namespace touchtrial::app {
+namespace {
+
+int calibrate_screen(const ParticipantWindowOptions& options) {
+  const std::filesystem::path file = measured_screens_path();
+  if (file.empty()) {
+    throw UsageError(
+        "screen calibrate: there is no configuration folder to keep the scale in; set HOME or "
+        "XDG_CONFIG_HOME");
+  }
+  ParticipantWindow window(options);
+  const ScreenScale before = window.screen();
+  const auto card = std::make_shared<CardScreen>(before.mm_per_unit);
+  bool is_measured = false;
+  run_beside(window, [&] {
+    while (!is_measured && !window.gone()) is_measured = window.attend(card).has_value();
+  });
+  if (!is_measured) throw UsageError("screen calibrate: was left before Enter; nothing is kept");
+  keep_measured_screen(before.monitor, card->mm_per_unit());
+  print(fmt::format("{}\n{:.5f} mm a pixel, {:.1f} pixels an inch; kept in {}\n", before.monitor,
+                    card->mm_per_unit(), 25.4 / card->mm_per_unit(), file.string()));
+  return 0;
+}
+
+}  // namespace
+
+void add_screen_command(CLI::App& program, Action& action) {
+  CLI::App* screen = program.add_subcommand("screen", "The size of what a monitor shows");
+  screen->require_subcommand(1);
+  const auto [command, options] =
+      add_command(*screen, action, "calibrate",
+                  "Measure a monitor with a bank card, so that pictures have their true size",
+                  calibrate_screen);
+  add_window_options(command, options.monitor, options.size_px);
+}
+
+}  // namespace touchtrial::app

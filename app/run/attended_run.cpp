@@ -1,0 +1,221 @@
+#include "app/run/attended_run.hpp"
+
+#include "app/commands/device_words.hpp"
+#include "core/errors.hpp"
+#include "device/servo/servo_clock.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <thread>
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <termios.h>
+#include <unistd.h>
+
+namespace touchtrial::app {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Time between two live lines. A line that stays in place is easier to read than one that scrolls.
+constexpr std::chrono::nanoseconds kOnTerminal = 250ms;
+constexpr std::chrono::nanoseconds kOnPipe = 1s;
+
+/// Time between two looks at keys, signals and the servo.
+constexpr auto kBetweenLooks = 16ms;
+
+/// How long a signal waits at most for an answer that is being typed.
+constexpr int kAnswerPollMs = 100;
+
+/// A key that is held repeats sooner than this, even for the first time (660 ms by default in X).
+constexpr std::chrono::nanoseconds kFreshPress = 1s;
+
+device::ServoOptions options_for(const device::SafetyLimits& limits, double rate_hz) {
+  device::ServoOptions options;
+  options.limits = limits;
+  options.rate_hz = rate_hz;
+  options.fade_ticks = std::llround(0.1 * rate_hz);
+  return options;
+}
+
+/// \return nothing if a signal asked the program to end
+/// \throws UsageError at the end of the input
+std::optional<std::string> line_of_input() {
+  std::string line;
+  while (!device::StopOnSignals::asked()) {
+    pollfd input{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
+    if (::poll(&input, 1, kAnswerPollMs) <= 0) continue;
+    // One letter at a time, so that the next line stays for the next question.
+    char letter = 0;
+    const ssize_t got = ::read(STDIN_FILENO, &letter, 1);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) {
+      throw UsageError("standard input ended; answer every prompt");
+    }
+    if (letter == '\n') return line;
+    line += letter;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> attended_answer(const std::string& question) {
+  const bool has_keys = ::isatty(STDIN_FILENO) != 0;
+  if (has_keys) ::tcflush(STDIN_FILENO, TCIFLUSH);
+  std::fputs(question.c_str(), stderr);
+  std::fflush(stderr);
+  std::chrono::nanoseconds quiet_since = device::monotonic_now();
+  bool told = false;
+  while (const std::optional<std::string> line = line_of_input()) {
+    const std::chrono::nanoseconds now = device::monotonic_now();
+    if (!has_keys || !line->empty() || now - quiet_since >= kFreshPress) return line;
+    quiet_since = now;
+    if (!told) std::fputs("let go of Enter, read, and press it anew after a second\n", stderr);
+    told = true;
+  }
+  return std::nullopt;
+}
+
+AttendedRun::AttendedRun(device::HapticDevice& device, const device::SafetyLimits& limits,
+                         double rate_hz, bool keys)
+    : device_(device),
+      options_(options_for(limits, rate_hz)),
+      max_force_n_(limits.max_force_n),
+      recorder_(kRecordedS, rate_hz),
+      watchdog_(device, control_, heartbeat_, device::Watchdog::silence_for(device.info())),
+      signals_(device, control_),
+      on_terminal_(::isatty(STDERR_FILENO) != 0) {
+  if (!keys) return;
+  device::StopOnSignals::before_dying(TerminalKeys::restore);
+  keys_.emplace();
+}
+
+AttendedRun::~AttendedRun() {
+  keys_.reset();
+  device::StopOnSignals::before_dying(nullptr);
+}
+
+std::optional<device::ServoReport> AttendedRun::run(const PhaseName& phase,
+                                                    device::ForceSource& force,
+                                                    device::SampleSink& sink, double seconds,
+                                                    const std::function<bool()>& is_done) {
+  if (device::StopOnSignals::asked()) stop_ = AttendedStop::signal;
+  if (stop_ != AttendedStop::none) return std::nullopt;
+  options_.limit_ticks = std::llround(seconds * options_.rate_hz);
+  recorder_.clear();
+  shown_tick_ = 0;
+  shown_at_ = device::monotonic_now();
+  device::ServoReport report;
+  const device::WatchdogGuard guard(watchdog_);
+  const device::ServoHooks hooks{.control = &control_,
+                                 .state = &state_,
+                                 .heartbeat = &heartbeat_,
+                                 .recorder = &recorder_,
+                                 .heat = &heat_,
+                                 .parameters = &parameters_};
+  device::RunningServo running(thread_, control_, [&] {
+    device::PacedClock clock(device::PacedClock::usual_spin(thread_.scheduling().policy));
+    report = device::run_servo(device_, force, sink, options_, clock, hooks);
+  });
+  while (running.runs()) {
+    std::this_thread::sleep_for(kBetweenLooks);
+    take_keys();
+    if (is_done && is_done()) control_.finish();
+    show(phase);
+  }
+  running.finish();
+  end_line();
+  // A stop applies to all later runs, but the end of this run must not end the next one.
+  if (stop_ == AttendedStop::none) control_.reset();
+  return report;
+}
+
+void AttendedRun::wait_until_ready(double limit_s) {
+  const device::DeviceReadiness readiness = device_.readiness();
+  if (readiness == device::DeviceReadiness::ready) return;
+  const std::string name = device_.info().name;
+  const std::string advice = readiness_in_words(readiness);
+  const bool asks = readiness == device::DeviceReadiness::needs_reset;
+  if (asks && !keys_) {
+    if (attended_answer(name + ": " + advice + "; then press Enter\n")) device_.calibrate();
+  } else {
+    std::fprintf(stderr, "%s: %s%s\n", name.c_str(), advice.c_str(), asks ? "; then press h" : "");
+  }
+  NoForce nothing;
+  const auto report = run([](std::int64_t) { return "homing"; }, nothing, nothing, limit_s,
+                          [&] { return device_.readiness() == device::DeviceReadiness::ready; });
+  if (stop_ != AttendedStop::none) return;
+  if (report && report->end == device::ServoEnd::fault) {
+    throw DeviceError(name + ": fault while homing: " + fault_names(*report) +
+                      "; check cable and power, then try again");
+  }
+  if (device_.readiness() != device::DeviceReadiness::ready) {
+    throw DeviceError(fmt::format("{}: is not ready after {:.0f} s; {}", name, limit_s, advice));
+  }
+}
+
+void AttendedRun::limit_force(double most_n) noexcept {
+  options_.limits.max_force_n = std::min(max_force_n_, most_n);
+}
+
+std::string AttendedRun::flight_record() const {
+  return device::flight_csv(recorder_.ticks());
+}
+
+void AttendedRun::take_keys() {
+  if (device::StopOnSignals::asked()) stop_ = AttendedStop::signal;
+  if (!keys_) return;
+  for (auto key = keys_->next(); key; key = keys_->next()) {
+    if (stop_ != AttendedStop::none) continue;
+    if (*key == 'q' || *key == 'Q') {
+      stop_ = AttendedStop::quit;
+      control_.finish();
+    } else if (*key == ' ') {
+      stop_ = AttendedStop::comfort;
+      control_.comfort_stop();
+    } else if (*key == 'h') {
+      device_.calibrate();
+    } else if (chooses_strength_) {
+      take_strength(*key);
+    }
+  }
+}
+
+void AttendedRun::take_strength(char key) {
+  if (key != '+' && key != '-') return;
+  strength_tenths_ = std::clamp(strength_tenths_ + (key == '+' ? 1 : -1), 1, 10);
+  parameters_.set({.force_share = 0.1 * strength_tenths_});
+  end_line();
+  std::fprintf(stderr, "strength %d %%\n", 10 * strength_tenths_);
+}
+
+void AttendedRun::show(const PhaseName& phase) {
+  const std::chrono::nanoseconds now = device::monotonic_now();
+  if (now - shown_at_ < (on_terminal_ ? kOnTerminal : kOnPipe)) return;
+  const device::ServoState newest = state_.get();
+  const double passed_s = 1e-9 * static_cast<double>((now - shown_at_).count());
+  const double rate_hz = static_cast<double>(newest.tick - shown_tick_) / passed_s;
+  const Vec3 p = newest.sample.position_mm;
+  const Vec3 f = newest.force_n;
+  // Shorter than 80 columns, because a wrapped line cannot be overwritten.
+  const std::string line = fmt::format(
+      "{:<7} {:3.0f} s {:6.1f} {:6.1f} {:6.1f} mm {:5.2f} {:5.2f} {:5.2f} N {:5.0f}/s {:3.0f} us "
+      "late",
+      phase(newest.tick), static_cast<double>(newest.tick) / options_.rate_hz, p.x, p.y, p.z, f.x,
+      f.y, f.z, rate_hz, std::min(newest.lateness_us, 9999.0));
+  std::fprintf(stderr, on_terminal_ ? "\r%s\x1b[K" : "%s\n", line.c_str());
+  std::fflush(stderr);
+  shown_at_ = now;
+  shown_tick_ = newest.tick;
+}
+
+void AttendedRun::end_line() {
+  if (on_terminal_) std::fputs("\r\x1b[K", stderr);
+}
+
+}  // namespace touchtrial::app

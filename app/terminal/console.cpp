@@ -1,0 +1,95 @@
+#include "app/terminal/console.hpp"
+
+#include "analysis/report/text_table.hpp"
+#include "core/printable.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <iostream>
+#include <string_view>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+namespace touchtrial::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr int kBarWidth = 30;
+
+void draw_bar(const std::string& what, int done, int of) {
+  const int filled = of > 0 ? kBarWidth * done / of : kBarWidth;
+  const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
+                          std::string(static_cast<std::size_t>(kBarWidth - filled), '.');
+  const std::string line = fmt::format("\r{} [{}] {}/{}", what, bar, done, of);
+  std::fputs(line.c_str(), stderr);
+  if (done >= of) std::fputs("\r\x1b[K", stderr);
+  std::fflush(stderr);
+}
+
+}  // namespace
+
+void print(const std::string& given) {
+  const std::string text = printable(given);
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  if (written && std::fflush(stdout) == 0) return;
+  const int why = errno;
+  if (why == EPIPE) throw ClosedPipe("standard output: nobody reads it any more");
+  throw FileError("standard output: cannot be written (" + std::generic_category().message(why) +
+                  "); make room, or name another file");
+}
+
+void confirm(const std::string& about, bool yes) {
+  if (yes) return;
+  if (::isatty(STDIN_FILENO) == 0) {
+    throw UsageError(one_line(about) +
+                     "; nothing was done: standard input is no terminal to ask at, and only with "
+                     "--yes does this go on without asking");
+  }
+  const std::string question = one_line(about) + "\ntype yes to go on: ";
+  std::fputs(question.c_str(), stderr);
+  std::string answer;
+  std::getline(std::cin, answer);
+  if (answer != "yes") throw UsageError("not confirmed; nothing was done");
+}
+
+std::size_t columns_of_output() {
+  winsize size{};
+  if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0) return analysis::kTextWidth;
+  return std::clamp<std::size_t>(size.ws_col, 80, analysis::kTextWidth);
+}
+
+std::string shell_word(const std::string& text) {
+  constexpr std::string_view kPlain =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./-+=:,@%";
+  if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
+}
+
+std::function<void(int, int)> progress_bar(const std::string& what) {
+  if (::isatty(STDERR_FILENO) == 0) return [](int, int) {};
+  const auto shown_from = Clock::now() + std::chrono::seconds(1);
+  return [what, shown_from](int done, int of) {
+    if (Clock::now() >= shown_from) draw_bar(what, done, of);
+  };
+}
+
+std::chrono::nanoseconds utc_now() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+      std::chrono::system_clock::now().time_since_epoch());
+}
+
+std::string ending_of(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  for (char& letter : ending) {
+    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+  }
+  return ending;
+}
+
+}  // namespace touchtrial::app

@@ -1,0 +1,147 @@
+#include "app/terminal/passphrases.hpp"
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "study/key_protection.hpp"
+
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <system_error>
+
+#include <termios.h>
+#include <unistd.h>
+
+namespace touchtrial::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kQuestions = 3;
+constexpr std::size_t kLongestPassphrase = 4096;
+
+/// The terminal gives every key at once, shows none, and leaves Ctrl-C to this program, which
+/// therefore always restores it.
+class HiddenTyping {
+ public:
+  HiddenTyping() {
+    if (::tcgetattr(STDIN_FILENO, &before_) != 0) {
+      throw UsageError("the terminal cannot hide what is typed; give --passphrase-file");
+    }
+    termios hidden = before_;
+    hidden.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO | ISIG);
+    hidden.c_cc[VMIN] = 1;
+    hidden.c_cc[VTIME] = 0;
+    ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &hidden);
+  }
+  ~HiddenTyping() { ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &before_); }
+  HiddenTyping(const HiddenTyping&) = delete;
+  HiddenTyping& operator=(const HiddenTyping&) = delete;
+
+ private:
+  termios before_{};
+};
+
+/// One line as it is typed while a HiddenTyping lives, with backspace and Ctrl-U.
+/// \throws UsageError after Ctrl-C, Ctrl-D, or the end of the input
+std::string typed_line() {
+  constexpr char kBackspace = '\x08';
+  constexpr char kDelete = '\x7f';
+  constexpr char kErase = '\x15';
+  constexpr char kInterrupt = '\x03';
+  constexpr char kEnd = '\x04';
+  std::string line;
+  for (char key = 0; ::read(STDIN_FILENO, &key, 1) == 1;) {
+    if (key == '\n' || key == '\r') return line;
+    if (key == kInterrupt || key == kEnd) break;
+    if (key == kErase) line.clear();
+    if (key == kBackspace || key == kDelete) {
+      while (!line.empty() && (static_cast<unsigned char>(line.back()) & 0xc0U) == 0x80U) {
+        line.pop_back();  // the rest of a character of several bytes
+      }
+      if (!line.empty()) line.pop_back();
+    } else if (static_cast<unsigned char>(key) >= ' ' && line.size() < kLongestPassphrase) {
+      line += key;
+    }
+  }
+  throw UsageError("no passphrase was given; nothing was changed");
+}
+
+std::string asked(const std::string& question) {
+  const HiddenTyping hidden;  // before the question: an answer may come at once
+  std::fputs(question.c_str(), stderr);
+  std::fflush(stderr);
+  const auto end_line = [] { std::fputs("\n", stderr); };
+  try {
+    std::string line = typed_line();
+    end_line();
+    return line;
+  } catch (const UsageError&) {
+    end_line();
+    throw;
+  }
+}
+
+std::string first_line_of(const fs::path& source) {
+  std::error_code error;
+  if (fs::is_regular_file(source, error)) require_owner_only(source);
+  std::ifstream file(source);
+  std::string line;
+  char letter = 0;
+  while (line.size() < kLongestPassphrase && file.get(letter) && letter != '\n') line += letter;
+  if (!line.empty() && line.back() == '\r') line.pop_back();
+  if (line.empty()) {
+    throw FileError(one_line(source.string()) +
+                    ": has no passphrase in its first line, or cannot be read");
+  }
+  return line;
+}
+
+/// A descriptor can be read once.
+const std::string& passphrase_in(const fs::path& source) {
+  static std::map<fs::path, std::string> read;
+  const auto known = read.find(source);
+  return known != read.end() ? known->second
+                             : read.emplace(source, first_line_of(source)).first->second;
+}
+
+std::optional<std::string> passphrase_for(const fs::path& file, int attempt) {
+  const auto& sources = passphrase_files();
+  if (!sources.empty()) {
+    const auto index = static_cast<std::size_t>(attempt - 1);
+    if (index >= sources.size()) return std::nullopt;
+    return passphrase_in(sources[index]);
+  }
+  if (::isatty(STDIN_FILENO) == 0 || attempt > kQuestions) return std::nullopt;
+  return asked((attempt > 1 ? "that is not it; " : "") + std::string("passphrase of ") +
+               one_line(file.string()) + ": ");
+}
+
+}  // namespace
+
+std::vector<fs::path>& passphrase_files() {
+  static std::vector<fs::path> files;
+  return files;
+}
+
+void answer_for_passphrases() {
+  study::ask_passphrases_with(passphrase_for);
+}
+
+std::string new_passphrase(const fs::path& file, const std::vector<fs::path>& sources) {
+  if (!sources.empty()) return passphrase_in(sources.front());
+  const std::string name = one_line(file.string());
+  if (::isatty(STDIN_FILENO) == 0) {
+    throw UsageError(name +
+                     ": a new passphrase is asked for at a terminal, and standard input is none; "
+                     "name a file whose first line it is");
+  }
+  std::string passphrase = asked("new passphrase of " + name + ": ");
+  if (asked("the same again: ") != passphrase) {
+    throw UsageError(name + ": the two passphrases differ; nothing was changed");
+  }
+  return passphrase;
+}
+
+}  // namespace touchtrial::app

@@ -1,0 +1,70 @@
+/// \file The experimenter's window. Its owner has started GLFW.
+#pragma once
+
+#include "app/windows/experimenter/experimenter_desk.hpp"
+#include "engine/pictures/colour_image.hpp"
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+
+namespace touchtrial::app {
+
+/// A part of the screen, in screen coordinates.
+struct ScreenArea {
+  int x = 0;
+  int y = 0;
+  int width = 0;
+  int height = 0;
+};
+
+struct ConsoleWindowOptions {
+  /// From 1, as the system counts monitors; nothing: `area`.
+  std::optional<int> monitor;
+  /// The window lies in its corner, and is no larger; nothing: the system chooses the place.
+  std::optional<ScreenArea> area;
+  /// Whether the participant is under force; then every key is the participant's. Called on both
+  /// threads.
+  std::function<bool()> keyboard_is_participants;
+  /// Takes the arguments of GLFW's key callback for every key that is not text of this window.
+  /// Called on the main thread.
+  std::function<void(int key, int action, int modifiers)> key;
+  /// Makes the drawing thread check whether this window needs a picture. Called on any thread.
+  std::function<void()> stir;
+};
+
+/// Takes no focus when it opens, and the window manager cannot close it: only the participant's
+/// window or Abort ends a session.
+class ConsoleWindow {
+ public:
+  /// Call it on the main thread while GLFW is running.
+  /// \param desk  must outlive this
+  /// \throws DeviceError with the remedy if there is no such monitor, or no OpenGL 3.2
+  ConsoleWindow(ExperimenterDesk& desk, const ConsoleWindowOptions& options);
+  /// Runs on the main thread, after drawing has ended.
+  ~ConsoleWindow();
+  ConsoleWindow(const ConsoleWindow&) = delete;
+  ConsoleWindow& operator=(const ConsoleWindow&) = delete;
+
+  /// Whether keys come to this window. Runs on the main thread.
+  [[nodiscard]] bool has_focus() const;
+
+  /// \name Drawing thread. These functions change the current OpenGL context.
+  ///@{
+  void begin_drawing();
+  [[nodiscard]] bool wants_picture() const;
+  void draw();
+  void end_drawing();
+  ///@}
+
+  /// Waits for the next picture. May be called from any thread except the drawing thread.
+  /// \return nothing if no picture comes in time
+  [[nodiscard]] std::optional<engine::ColourImage> picture(std::chrono::milliseconds longest);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace touchtrial::app

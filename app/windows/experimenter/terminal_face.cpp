@@ -1,0 +1,222 @@
+#include "app/windows/experimenter/terminal_face.hpp"
+
+#include "app/terminal/terminal_keys.hpp"
+#include "app/windows/experimenter/status_words.hpp"
+#include "core/text.hpp"
+#include "device/platform/stop_signals.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <thread>
+#include <utility>
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+namespace touchtrial::app {
+namespace {
+
+using Question = ExperimenterQuestion;
+
+constexpr char kEscape = '\x1b';
+constexpr char kTab = '\t';
+constexpr std::size_t kMaxLineBytes = 500;
+constexpr const char* kClearLine = "\r\x1b[K";
+
+int columns_of_terminal() {
+  winsize size{};
+  if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col < 20) return 80;
+  return size.ws_col;
+}
+
+bool ends_line(char key) {
+  return key == '\n' || key == '\r';
+}
+
+bool deletes(char key) {
+  return key == '\x7f' || key == '\b';
+}
+
+bool continues_character(char byte) {
+  return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U;
+}
+
+std::string keys_help() {
+  return "keys: " + listed(kExperimenterActions, ", ", [](const ExperimenterAction& action) {
+           return std::string(1, action.key) + " " + action.label;
+         });
+}
+
+std::string words_of(const Question::Choice& choice, Question::Kind kind) {
+  const std::string key = kind == Question::Kind::number ? choice.answer
+                          : ends_line(choice.key)        ? ""
+                                                         : std::string(1, choice.key);
+  return (key.empty() ? "Enter" : key) + (choice.label.empty() ? "" : " " + choice.label);
+}
+
+}  // namespace
+
+ExperimenterTerminal standard_terminal() {
+  ExperimenterTerminal terminal;
+  if (::isatty(STDIN_FILENO) != 0) {
+    terminal.key = [keys = std::make_shared<TerminalKeys>()] { return keys->next(); };
+  }
+  device::StopOnSignals::before_dying(TerminalKeys::restore);
+  terminal.write = [](const std::string& text) {
+    std::fputs(text.c_str(), stderr);
+    std::fflush(stderr);
+  };
+  terminal.rewrites = ::isatty(STDERR_FILENO) != 0;
+  terminal.columns = columns_of_terminal();
+  terminal.pause = [] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); };
+  return terminal;
+}
+
+bool TypedLine::take(char key) {
+  if (ends_line(key)) return true;
+  if (deletes(key)) {
+    while (!text_.empty() && continues_character(text_.back())) text_.pop_back();
+    if (!text_.empty()) text_.pop_back();
+    return false;
+  }
+  const bool is_control = static_cast<unsigned char>(key) < 0x20U;
+  // Only the first byte of a character is refused for length, so that no character is cut in two.
+  if (is_control || (text_.size() >= kMaxLineBytes && !continues_character(key))) return false;
+  text_ += key;
+  return false;
+}
+
+TerminalFace::TerminalFace(ExperimenterDesk& desk, ExperimenterTerminal terminal)
+    : desk_(desk), terminal_(std::move(terminal)) {
+  if (terminal_.key) write_above(keys_help());
+  desk_.add_face(*this);
+}
+
+TerminalFace::~TerminalFace() {
+  desk_.remove_face(*this);
+  end_line();
+}
+
+void TerminalFace::end_line() {
+  if (terminal_.rewrites && !shown_.empty()) terminal_.write("\n");
+  shown_.clear();
+}
+
+void TerminalFace::make_room() {
+  if (terminal_.rewrites && !shown_.empty()) terminal_.write(kClearLine);
+  shown_.clear();
+}
+
+void TerminalFace::rest() {
+  if (terminal_.pause) terminal_.pause();
+}
+
+void TerminalFace::take_input() {
+  if (!terminal_.key) return;
+  while (const auto key = terminal_.key()) take(*key);
+}
+
+void TerminalFace::take(char key) {
+  const ExperimenterView view = desk_.view();
+  if (std::exchange(questions_, view.questions) != view.questions) line_.set("");
+  if (take_for(view.question, key)) return;
+  const auto action = std::ranges::find(kExperimenterActions, key, &ExperimenterAction::key);
+  if (action != kExperimenterActions.end()) desk_.act(action->what);
+}
+
+bool TerminalFace::take_for(const ExperimenterQuestion& question, char key) {
+  switch (question.kind) {
+    case Question::Kind::none:
+      return false;
+    case Question::Kind::keys: {
+      const char pressed = key == 'y' || key == '\r' ? '\n' : key;
+      const auto choice = std::ranges::find(question.choices, pressed, &Question::Choice::key);
+      if (choice == question.choices.end()) return false;
+      desk_.answer(choice->answer);
+      return true;
+    }
+    case Question::Kind::number:
+      if (!ends_line(key) && !deletes(key) && (key < '0' || key > '9')) return false;
+      break;
+    case Question::Kind::text:
+    case Question::Kind::sure:
+      if (key == kEscape) line_.set("");
+      if (key == kEscape) desk_.discard();
+      if (key == kTab) complete(question);
+      if (key == kEscape || key == kTab) return true;
+      break;
+  }
+  if (!line_.take(key)) return true;
+  const std::string text = line_.text();
+  line_.set("");
+  desk_.answer(text);
+  return true;
+}
+
+/// The next choice that begins with what was typed before Tab, in a circle.
+void TerminalFace::complete(const ExperimenterQuestion& question) {
+  const auto& choices = question.choices;
+  const auto now = std::ranges::find(choices, line_.text(), &Question::Choice::answer);
+  if (now == choices.end() || !now->answer.starts_with(completed_)) completed_ = line_.text();
+  const std::size_t from =
+      now == choices.end() ? 0 : 1 + static_cast<std::size_t>(now - choices.begin());
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    const std::string& answer = choices[(from + i) % choices.size()].answer;
+    if (answer.starts_with(completed_)) return line_.set(answer);
+  }
+}
+
+std::string TerminalFace::prompt(const ExperimenterQuestion& question) const {
+  switch (question.kind) {
+    case Question::Kind::sure:
+      return question.text + "; type " + question.choices.front().answer + ": " + line_.text();
+    case Question::Kind::text:
+      return question.text + (question.choices.empty() ? "" : " (Tab: the next of the program's)") +
+             ": " + line_.text();
+    case Question::Kind::number:
+    case Question::Kind::keys:
+      break;
+    case Question::Kind::none:
+      return "";
+  }
+  const bool by_keys = question.kind == Question::Kind::keys;
+  return (by_keys ? "" : question.text + " ") +
+         listed(question.choices, ", ",
+                [&](const Question::Choice& one) { return words_of(one, question.kind); }) +
+         ": " + line_.text();
+}
+
+void TerminalFace::write_above(const std::string& line) {
+  make_room();
+  terminal_.write(line + "\n");
+}
+
+void TerminalFace::rewrite(const std::string& line) {
+  // A wrapped line cannot be overwritten; of a typed line, the end is what matters.
+  const std::string cut = last_of(line, terminal_.columns - 1);
+  if (cut == shown_) return;
+  shown_ = cut;
+  terminal_.write(terminal_.rewrites ? "\r" + cut + "\x1b[K" : line + "\n");
+}
+
+void TerminalFace::show(const ExperimenterView& view) {
+  const session::SessionStatus& status = view.status;
+  if (status.participant_stopped && !is_stop_told_) {
+    if (terminal_.rewrites) terminal_.write("\a");
+    write_above("The participant has stopped the force. " + stop_advice(status));
+  }
+  is_stop_told_ = status.participant_stopped;
+  const bool is_item = view.question.kind == Question::Kind::keys;
+  if (is_item && view.question.text != item_) write_above(view.question.text);
+  item_ = is_item ? view.question.text : "";
+  if (std::exchange(questions_, view.questions) != view.questions) line_.set("");
+  if (view.question.kind != Question::Kind::none) return rewrite(prompt(view.question));
+  if (!view.need.empty()) return rewrite(view.need);
+  if (terminal_.rewrites) return rewrite(first_of(status_line(status), terminal_.columns - 1));
+  const std::string progress = progress_words(status);
+  if (std::exchange(progress_, progress) != progress) write_above(status_line(status));
+}
+
+}  // namespace touchtrial::app

@@ -1,0 +1,78 @@
+/// \file The experimenter at a terminal: a line that is overwritten, and keys.
+#pragma once
+
+#include "app/windows/experimenter/experimenter_desk.hpp"
+
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace touchtrial::app {
+
+/// The terminal of an experimenter.
+struct ExperimenterTerminal {
+  /// The next key, if one was pressed; never waits. Null if nobody types.
+  std::function<std::optional<char>()> key;
+  std::function<void(const std::string&)> write;
+  /// Whether a line can be overwritten; else every change is a line of its own.
+  bool rewrites = false;
+  int columns = 80;
+  /// Pauses between two calls that wait for a person. Null, as in tests: no pause.
+  std::function<void()> pause;
+};
+
+/// Standard input and standard error. Keys are read one by one while a copy of it lives.
+[[nodiscard]] ExperimenterTerminal standard_terminal();
+
+/// A line of UTF-8 that keys extend; backspace deletes the last character.
+class TypedLine {
+ public:
+  /// \return whether the key ended the line
+  bool take(char key);
+  [[nodiscard]] const std::string& text() const noexcept { return text_; }
+  void set(std::string text) { text_ = std::move(text); }
+
+ private:
+  std::string text_;
+};
+
+/// A question takes the keys that can answer it; every other key is that of an action. In a line,
+/// Tab completes to the next of the question's choices, and Escape discards it.
+class TerminalFace final : public ExperimenterFace {
+ public:
+  /// \param desk  must outlive this
+  TerminalFace(ExperimenterDesk& desk, ExperimenterTerminal terminal);
+  /// Ends the line.
+  ~TerminalFace() override;
+  TerminalFace(const TerminalFace&) = delete;
+  TerminalFace& operator=(const TerminalFace&) = delete;
+
+  void take_input() override;
+  void show(const ExperimenterView& view) override;
+  void make_room() override;
+  void rest() override;
+  /// Ends the line that is overwritten, before other output follows.
+  void end_line();
+
+ private:
+  void take(char key);
+  /// \return whether the key belongs to the question
+  [[nodiscard]] bool take_for(const ExperimenterQuestion& question, char key);
+  void complete(const ExperimenterQuestion& question);
+  [[nodiscard]] std::string prompt(const ExperimenterQuestion& question) const;
+  void rewrite(const std::string& line);
+  /// Writes a line above the one that is overwritten.
+  void write_above(const std::string& line);
+
+  ExperimenterDesk& desk_;
+  ExperimenterTerminal terminal_;
+  TypedLine line_;
+  std::string completed_;      ///< what was typed before Tab
+  std::size_t questions_ = 0;  ///< as of the view, when line_ was begun
+  std::string item_;           ///< the question by keys that was shown last
+  std::string shown_;
+  std::string progress_;
+  bool is_stop_told_ = false;
+};
+
+}  // namespace touchtrial::app

@@ -1,0 +1,105 @@
+/// \file The screens on which the participant answers: the choice after exploring, how sure the
+/// participant is of it, in practice whether it was right, and a questionnaire.
+#pragma once
+
+#include "app/windows/participant/screen.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial::app {
+
+/// Shows pictures of the originals in the participant's layout, or their names if answers are
+/// spoken; large buttons if the step has a question, whose choices are words. A choice may be
+/// changed once; after that, only Next remains.
+class AnswerScreen final : public Screen {
+ public:
+  AnswerScreen(const session::AnswerStep& step, const ScreenContext& context,
+               std::vector<std::string> labels);
+
+ private:
+  void paint(Canvas& canvas) override;
+  [[nodiscard]] std::optional<session::StepReply> activate(int id, Time at) override;
+  [[nodiscard]] int default_target() const noexcept override;
+  bool takes_key(const InputEvent& event) override;
+
+  void paint_pictures(Canvas& canvas, const Box& area);
+  void paint_picture(Canvas& canvas, int position, const Box& picture);
+  void paint_words(Canvas& canvas, const Box& area);
+  /// The number of a choice, below it.
+  void paint_number(Canvas& canvas, int position, const Box& badge) const;
+  void paint_names(Canvas& canvas, const Box& area);
+  void paint_confidence(Canvas& canvas);
+  void choose(int position);
+  [[nodiscard]] bool is_fixed() const noexcept { return first_.has_value(); }
+  [[nodiscard]] int count() const noexcept { return static_cast<int>(labels_.size()); }
+  [[nodiscard]] std::string hint() const;
+  [[nodiscard]] bool has_words() const noexcept { return !step_.question.empty(); }
+  [[nodiscard]] std::string name_of(int position) const;
+
+  session::AnswerStep step_;
+  ScreenContext context_;
+  std::vector<std::string> labels_;
+  int chosen_ = -1;
+  std::optional<int> first_;
+  std::optional<Time> answered_at_;  ///< set while the confidence is asked
+  int confidence_ = 0;
+};
+
+/// What a practice answer was, and what it should have been.
+class FeedbackScreen final : public Screen {
+ public:
+  FeedbackScreen(const session::FeedbackStep& step, const ScreenContext& context,
+                 std::vector<std::string> labels);
+
+ private:
+  void paint(Canvas& canvas) override;
+  [[nodiscard]] std::optional<session::StepReply> activate(int id, Time at) override;
+  [[nodiscard]] int default_target() const noexcept override { return kNextTarget; }
+
+  [[nodiscard]] std::string name_of(int position) const;
+  void paint_pictures(Canvas& canvas, const Box& area, const std::vector<int>& positions);
+
+  session::FeedbackStep step_;
+  ScreenContext context_;
+  std::vector<std::string> labels_;
+};
+
+/// A questionnaire, one question at a time.
+class QuestionScreen final : public Screen {
+ public:
+  QuestionScreen(const session::QuestionStep& step, const ScreenContext& context);
+
+ private:
+  void paint(Canvas& canvas) override;
+  [[nodiscard]] std::optional<session::StepReply> activate(int id, Time at) override;
+  [[nodiscard]] int default_target() const noexcept override { return kNextTarget; }
+  bool takes_key(const InputEvent& event) override;
+
+  void paint_options(Canvas& canvas, const Box& area);
+  void paint_field(Canvas& canvas, const Box& area);
+  void choose(int option);
+  void write(char32_t letter);
+  bool edit(Key key);
+  [[nodiscard]] const study::Question& question() const { return questionnaire_.questions[page_]; }
+  [[nodiscard]] std::u32string& typed() { return typed_[page_]; }
+  [[nodiscard]] bool is_answered() const;
+  /// Whether what was typed is no number, or none that the question accepts.
+  [[nodiscard]] bool is_misfit() const;
+  [[nodiscard]] bool may_go_on() const {
+    return (is_answered() || !question().required) && !is_misfit();
+  }
+  [[nodiscard]] std::string range_text() const;
+  [[nodiscard]] std::string in_language(const study::Translated& text) const;
+  [[nodiscard]] std::vector<std::string> answers() const;
+
+  study::Questionnaire questionnaire_;  ///< a copy: the screen may be seen for longer than the step
+  ScreenContext context_;
+  std::size_t page_ = 0;
+  std::vector<int> chosen_;            ///< by question, the option; -1: none
+  std::vector<std::u32string> typed_;  ///< by question
+  std::size_t caret_ = 0;
+};
+
+}  // namespace touchtrial::app

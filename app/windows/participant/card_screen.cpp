@@ -1,0 +1,59 @@
+#include "app/windows/participant/card_screen.hpp"
+
+#include "app/windows/participant/page_layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace touchtrial::app {
+namespace {
+
+// Every bank card. Source: ISO/IEC 7810, ID-1.
+constexpr double kCardWidthMm = 85.60;
+constexpr double kCardHeightMm = 53.98;
+constexpr double kCardCornerMm = 3.18;
+constexpr double kMmPerInch = 25.4;
+// At 40 and 400 window units per inch.
+constexpr double kNarrowest = 135.0;
+constexpr double kWidest = 1348.0;
+constexpr double kLargeStep = 10.0;  ///< of the arrows up and down, window units
+
+}  // namespace
+
+CardScreen::CardScreen(double mm_per_unit)
+    : width_(std::clamp(std::round(kCardWidthMm / mm_per_unit), kNarrowest, kWidest)) {}
+
+double CardScreen::mm_per_unit() const noexcept {
+  return kCardWidthMm / width_;
+}
+
+void CardScreen::paint(Canvas& canvas) {
+  const double unit = canvas.unit();
+  const Box area = draw_heading(
+      canvas, "Hold a bank card against the frame",
+      "Left and right change the frame a little, down and up more. Enter: frame and card are "
+      "equally large.");
+  const double height = width_ * kCardHeightMm / kCardWidthMm;
+  const Box card = {std::round(area.x + (area.width - width_) / 2.0),
+                    std::round(area.y + (area.height - height) / 2.0), width_, height};
+  const double corner = kCardCornerMm / mm_per_unit();
+  canvas.fill(card, tone::kCard, corner);
+  canvas.outline(card, tone::kText, std::max(1.0, std::round(unit)), corner);
+  canvas.label(card, Letters::small, tone::kQuiet,
+               fmt::format("{:.1f} pixels an inch", kMmPerInch / mm_per_unit()));
+  draw_footer(canvas, {{kNextTarget, "Equally large"}});
+}
+
+bool CardScreen::takes_key(const InputEvent& event) {
+  double step = 0.0;
+  if (event.key == Key::left) step = -1.0;
+  if (event.key == Key::right) step = 1.0;
+  if (event.key == Key::down) step = -kLargeStep;
+  if (event.key == Key::up) step = kLargeStep;
+  width_ = std::clamp(width_ + step, kNarrowest, kWidest);
+  return step != 0.0;
+}
+
+}  // namespace touchtrial::app

@@ -1,0 +1,31 @@
+/// \file The screen of `screen calibrate`: a frame that becomes as large as a bank card.
+#pragma once
+
+#include "app/windows/participant/screen.hpp"
+
+#include <optional>
+
+namespace touchtrial::app {
+
+/// Somebody holds a card against the frame, and changes the frame with the arrow keys until both
+/// are equally large; Enter replies. Texts are English, as in all windows for experimenters.
+class CardScreen final : public Screen {
+ public:
+  /// \param mm_per_unit  as far as it is known
+  explicit CardScreen(double mm_per_unit);
+
+  /// The scale at which frame and card are equally large: 25.4 / 400 to 25.4 / 40.
+  [[nodiscard]] double mm_per_unit() const noexcept;
+
+ private:
+  void paint(Canvas& canvas) override;
+  [[nodiscard]] std::optional<session::StepReply> activate(int /*id*/, Time /*at*/) override {
+    return session::StepReply{};
+  }
+  [[nodiscard]] int default_target() const noexcept override { return kNextTarget; }
+  bool takes_key(const InputEvent& event) override;
+
+  double width_;  ///< of the frame, window units
+};
+
+}  // namespace touchtrial::app

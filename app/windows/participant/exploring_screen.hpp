@@ -1,0 +1,70 @@
+/// \file The screen while a plane is on. Nothing on it depends on the stimulus.
+#pragma once
+
+#include "app/windows/participant/screen.hpp"
+#include "core/plane_geometry.hpp"
+#include "device/drivers/mouse/pointer_exchange.hpp"
+
+#include <atomic>
+#include <optional>
+#include <string>
+
+namespace touchtrial::app {
+
+/// Values of the bars in practice. Written by the servo's listener, read by the drawing thread.
+struct FeltNow {
+  std::atomic<float> force_n{0.0F};
+  std::atomic<float> speed_mm_s{0.0F};
+};
+
+/// The place of the mouse device's plane in the window.
+struct PlaneOnScreen {
+  Vec2 corner;
+  double mm_per_unit = 1.0;
+};
+[[nodiscard]] PlaneOnScreen place_plane(Vec2 window, Vec2 plane_mm, double mm_per_unit);
+
+/// An interval's bar grows in steps, so that the screen is seldom drawn.
+inline constexpr int kExploredSteps = 40;
+
+/// What the exploring screen shows.
+struct ExploringView {
+  const FeltNow* bars = nullptr;               ///< in practice; null: no bars
+  device::PointerExchange* pointer = nullptr;  ///< of the mouse device; null: no plane or stylus
+  const std::atomic<bool>* pressed = nullptr;  ///< the mouse button; set if `pointer` is
+  const std::atomic<bool>* asks_for_touch = nullptr;  ///< says that feeling comes before answering
+  PlaneGeometry plane;
+  std::optional<session::IntervalStep> interval{};  ///< the plane is one of several
+  /// How much of the interval was explored as asked for, of kExploredSteps; set if `interval` is.
+  const std::atomic<int>* explored = nullptr;
+  const std::atomic<bool>* has_lifted = nullptr;  ///< the plane is on; set if `interval` is
+};
+
+class ExploringScreen final : public Screen {
+ public:
+  ExploringScreen(const ExploringView& view, const ScreenContext& context)
+      : view_(view), context_(context) {}
+
+  [[nodiscard]] bool is_alive() const noexcept override {
+    return view_.bars != nullptr || view_.pointer != nullptr;
+  }
+
+ private:
+  void paint(Canvas& canvas) override;
+  [[nodiscard]] std::optional<session::StepReply> activate(int /*id*/, Time /*at*/) override {
+    return std::nullopt;
+  }
+  void paint_plane(Canvas& canvas);
+  void paint_bars(Canvas& canvas);
+  void paint_interval(Canvas& canvas);
+  [[nodiscard]] bool is_to_lift() const noexcept {
+    return view_.interval && !view_.interval->hand_off && !view_.has_lifted->load();
+  }
+  void paint_explored(Canvas& canvas, const Box& track);
+  [[nodiscard]] const std::string& below_plane() const;
+
+  ExploringView view_;
+  ScreenContext context_;
+};
+
+}  // namespace touchtrial::app

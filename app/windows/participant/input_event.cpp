@@ -1,0 +1,74 @@
+#include "app/windows/participant/input_event.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <GLFW/glfw3.h>
+
+namespace touchtrial::app {
+namespace {
+
+constexpr std::array<std::pair<int, Key>, 11> kKeys = {{
+    {GLFW_KEY_ENTER, Key::enter},
+    {GLFW_KEY_KP_ENTER, Key::enter},
+    {GLFW_KEY_SPACE, Key::space},
+    {GLFW_KEY_LEFT, Key::left},
+    {GLFW_KEY_RIGHT, Key::right},
+    {GLFW_KEY_UP, Key::up},
+    {GLFW_KEY_DOWN, Key::down},
+    {GLFW_KEY_BACKSPACE, Key::backspace},
+    {GLFW_KEY_DELETE, Key::remove},
+    {GLFW_KEY_HOME, Key::home},
+    {GLFW_KEY_END, Key::end},
+}};
+
+Key key_of(int key, bool shift) {
+  if (key == GLFW_KEY_TAB) return shift ? Key::back_tab : Key::tab;
+  const auto found = std::ranges::find(kKeys, key, &std::pair<int, Key>::first);
+  return found == kKeys.end() ? Key::none : found->second;
+}
+
+constexpr std::array<std::pair<int, Key>, 6> kPadKeys = {{
+    {GLFW_GAMEPAD_BUTTON_DPAD_LEFT, Key::left},
+    {GLFW_GAMEPAD_BUTTON_DPAD_RIGHT, Key::right},
+    {GLFW_GAMEPAD_BUTTON_DPAD_UP, Key::up},
+    {GLFW_GAMEPAD_BUTTON_DPAD_DOWN, Key::down},
+    {GLFW_GAMEPAD_BUTTON_A, Key::enter},
+    {GLFW_GAMEPAD_BUTTON_B, Key::space},
+}};
+
+}  // namespace
+
+InputEvent event_of_key(int key, int action, int modifiers) {
+  InputEvent event;
+  event.at = std::chrono::steady_clock::now();
+  if (action == GLFW_RELEASE) return event;
+  event.kind = action == GLFW_REPEAT ? InputEvent::Kind::repeat : InputEvent::Kind::key;
+  event.key = key_of(key, (modifiers & GLFW_MOD_SHIFT) != 0);
+  if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) {
+    event.key = Key::digit;
+    event.digit = key - GLFW_KEY_0;
+  } else if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9) {
+    event.key = Key::digit;
+    event.digit = key - GLFW_KEY_KP_0;
+  }
+  return event;
+}
+
+void Gamepads::poll(const std::function<void(Key)>& tell) {
+  for (int pad = 0; pad < kPads; ++pad) {
+    GLFWgamepadstate state;
+    if (glfwJoystickIsGamepad(pad) == GLFW_FALSE ||
+        glfwGetGamepadState(pad, &state) == GLFW_FALSE) {
+      held_[pad].fill(false);
+      continue;
+    }
+    for (std::size_t i = 0; i < kPadKeys.size(); ++i) {
+      const bool held = state.buttons[kPadKeys[i].first] == GLFW_PRESS;
+      if (held && !held_[pad][i]) tell(kPadKeys[i].second);
+      held_[pad][i] = held;
+    }
+  }
+}
+
+}  // namespace touchtrial::app

@@ -1,0 +1,167 @@
+/// \file The participant's window.
+#pragma once
+
+#include "app/windows/glfw_support.hpp"
+#include "app/windows/participant/cues.hpp"
+#include "app/windows/participant/input_event.hpp"
+#include "core/plane.hpp"
+#include "device/drivers/mouse/pointer_exchange.hpp"
+#include "engine/pictures/colour_image.hpp"
+#include "protocols/session/participant.hpp"
+#include "study/interval_plan.hpp"
+#include "study/study.hpp"
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace touchtrial::app {
+
+class ExperimenterDesk;
+class Screen;
+
+struct ParticipantWindowOptions {
+  /// Number of the monitor for full screen, from 1 as the system counts; ignored with `size_px`.
+  int monitor = 1;
+  /// Size of a window, instead of full screen.
+  std::optional<std::pair<int, int>> size_px;
+  /// The study's: language, texts, size of the letters, contrast, sight.
+  study::SessionPlan session;
+  /// Pictures of the originals by label, including those of practice, and the files that pages of
+  /// instructions show, by page_picture of their names.
+  std::map<std::string, GreyImage> pictures;
+  double pitch_mm = 0.2;    ///< of the study; gives the pictures' true size
+  double rate_hz = 1000.0;  ///< of the servo
+  /// Textures are made by several methods: the participant is asked which picture fits best.
+  bool has_several_methods = false;
+  /// What must be felt before Enter ends an exploration: over all explorations of a presentation.
+  study::LeastTouch least_touch{0.0, 0.0};
+  /// Of trials with several planes, each of which ends by itself; empty: a trial has one, and the
+  /// choices are pictures.
+  std::optional<study::IntervalPlan> intervals;
+  double stiffness_n_per_mm = 0.0;  ///< of the planes' wall; only needed with `intervals`
+  /// For how long it is said which of a trial's planes comes next.
+  std::chrono::milliseconds interval_pause{1000};
+  /// Returns the explored device; called when each plane comes on.
+  std::function<device::HapticDevice&()> device;
+  /// Null: silent. Must outlive the window.
+  Cues* cues = nullptr;
+  /// Of the mouse device, for which the window shows plane and stylus; null: another device. Must
+  /// outlive the window.
+  device::PointerExchange* pointer = nullptr;
+  /// Called on the main thread with 1 for Page Down, -1 for Page Up and 0 for Escape, so that
+  /// whoever designs a study can leaf through its screens. Null, as in every session: these keys do
+  /// nothing.
+  std::function<void(int pages)> turn;
+  /// Shows a second window for the experimenter; null: none. Must outlive the window.
+  ExperimenterDesk* console = nullptr;
+  /// Number of that window's monitor, from 1; none: another one than this window fills, or beside
+  /// this window on one monitor.
+  std::optional<int> console_monitor;
+};
+
+/// Why the window is gone.
+enum class WindowGone {
+  closed,        ///< by the window manager
+  monitor_lost,  ///< unplugged
+  signal,        ///< the program was asked to end
+};
+
+/// Three threads use the window. The main thread constructs it, calls `pump` and destroys it; it
+/// takes events and stamps them on arrival with steady_clock, which is the servo's clock. A thread
+/// of the window's own draws. The session's thread calls the functions of Participant and does not
+/// wait for pictures.
+///
+/// While a plane is on, the space bar is a comfort stop and Enter ends the exploration; neither
+/// needs the drawing thread. Enter before the least touch shows what is missing. Escape does
+/// nothing.
+///
+/// In a trial with several planes, Enter ends none of them. The space bar also stops while it is
+/// said which plane comes next: that plane is stopped as soon as it is on. The screen shows which
+/// plane it is and how much of its clock has run, as far as positions tell; neither this nor the
+/// tone for too much force depends on the force of a texture.
+///
+/// The experimenter's window, if there is one, uses the same threads. Whichever window has the
+/// focus, keys belong to the participant unless they are text typed into the experimenter's window;
+/// while a plane is on, all keys do.
+class ParticipantWindow final : public session::Participant {
+ public:
+  /// \throws DeviceError with the remedy if there is no display, no OpenGL 3.2, no such monitor, or
+  ///   no font for the participant's texts
+  explicit ParticipantWindow(const ParticipantWindowOptions& options);
+  ~ParticipantWindow() override;
+  ParticipantWindow(const ParticipantWindow&) = delete;
+  ParticipantWindow& operator=(const ParticipantWindow&) = delete;
+
+  /// \name Main thread
+  ///@{
+  /// Takes events until `longest` has passed or something came.
+  void pump(std::chrono::milliseconds longest);
+  /// \throws what the drawing thread threw
+  void check() const;
+  /// The scale of the monitor that shows the window.
+  [[nodiscard]] ScreenScale screen() const;
+  ///@}
+
+  /// \name The session's thread
+  ///@{
+  void see_pictures(const std::vector<std::string>& labels) override;
+  /// Blocks for up to 10 ms. A step that a pause interrupts later continues in its previous state.
+  /// \return nothing yet; always so during a pause and once the window is gone
+  [[nodiscard]] std::optional<session::StepReply> attend(const session::Step& step) override;
+  /// Shows a screen that belongs to no session. Blocks for up to 10 ms.
+  /// \return its reply, once; always nothing once the window is gone
+  [[nodiscard]] std::optional<session::StepReply> attend(const std::shared_ptr<Screen>& screen);
+  /// \throws std::logic_error if the options have no device
+  [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override;
+  /// Shows the screen for a plane, for a device that the caller provides.
+  void show_exploring(const PlaneGeometry& plane);
+  /// Passes on the participant's requests; an emergency stop once the window is gone.
+  void exploring(device::ServoControl& servo) override;
+  ///@}
+  void feel(const device::ServoSample& sample) noexcept override;
+
+  /// \name Any thread
+  ///@{
+  [[nodiscard]] std::optional<WindowGone> gone() const noexcept;
+  /// How long no key has reached the session, because a window of another program has the focus; 0
+  /// while keys do, and before they first did. While a plane is on, the window takes the focus
+  /// back.
+  [[nodiscard]] std::chrono::milliseconds out_of_reach() const noexcept;
+  /// Whether that happened while a plane was on, once.
+  [[nodiscard]] bool take_out_of_reach() noexcept;
+  /// Whether a plane is on.
+  [[nodiscard]] bool is_exploring() const noexcept;
+  /// Whether the participant chooses an answer. On the thread of `attend`.
+  [[nodiscard]] bool is_answering() const noexcept;
+  /// Acts as if the window manager had closed the window.
+  void close() noexcept;
+  /// Acts as if the event had just arrived.
+  void inject(const InputEvent& event);
+  /// Waits until the newest step is visible.
+  /// \return false if that does not happen in time, or if the window is gone
+  [[nodiscard]] bool wait_until_shown(std::chrono::milliseconds longest);
+  /// Waits for the next picture of the window.
+  /// \throws DeviceError if none comes within 5 min
+  [[nodiscard]] engine::ColourImage picture();
+  /// The same for the experimenter's window.
+  /// \throws std::logic_error if there is none
+  [[nodiscard]] engine::ColourImage console_picture();
+  ///@}
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Runs a session on a new thread. Meanwhile the calling thread, the main one, takes the window's
+/// events.
+/// \throws what the session or the drawing thread threw
+void run_beside(ParticipantWindow& window, const std::function<void()>& session);
+
+}  // namespace touchtrial::app

@@ -1,0 +1,90 @@
+/// \file One screen of the participant's window: what it shows, and how it handles keys and clicks.
+/// A screen knows neither window nor threads; one thread at a time uses it.
+#pragma once
+
+#include "app/windows/participant/canvas.hpp"
+#include "app/windows/participant/input_event.hpp"
+#include "app/windows/participant/words.hpp"
+#include "protocols/session/participant.hpp"
+#include "study/interval_plan.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial::app {
+
+/// The physical scale of the screen.
+struct Glass {
+  double mm_per_unit = 25.4 / 96.0;
+  bool is_known = false;  ///< false: the scale is a guess
+};
+
+/// What all screens of a session share. The objects it points to must outlive the screens.
+struct ScreenContext {
+  const Words* words = nullptr;
+  std::string language = "en";
+  study::Sight sight = study::Sight::curtain;
+  bool mouse = false;  ///< the device is a mouse
+  PictureShelf* shelf = nullptr;
+  const Glass* glass = nullptr;
+  /// Of trials with several planes, whose choices are words; null: a trial has one plane.
+  const study::IntervalPlan* intervals = nullptr;
+};
+
+class Screen {
+ public:
+  using Time = InputEvent::Time;
+
+  virtual ~Screen() = default;
+
+  /// Draws the screen and remembers the places of its targets.
+  void draw(Canvas& canvas);
+  /// What the canvas for `draw` must show as focused, hovered and held.
+  [[nodiscard]] const Attention& attention() const noexcept { return attention_; }
+  /// Handles an event. Events after the reply are ignored.
+  /// \return the reply, once
+  [[nodiscard]] std::optional<session::StepReply> take(const InputEvent& event);
+  /// Whether the screen changes without events.
+  [[nodiscard]] virtual bool is_alive() const noexcept { return false; }
+  [[nodiscard]] bool is_done() const noexcept { return done_; }
+
+ protected:
+  virtual void paint(Canvas& canvas) = 0;
+  /// Called when a target is clicked or chosen by keys.
+  [[nodiscard]] virtual std::optional<session::StepReply> activate(int id, Time at) = 0;
+  /// \return the target that Enter activates if no target has the focus; -1: none
+  [[nodiscard]] virtual int default_target() const noexcept { return -1; }
+  /// Handles keys that have a special meaning on this screen.
+  /// \return whether the event was such a key
+  virtual bool takes_key(const InputEvent& /*event*/) { return false; }
+
+  void focus(int id) noexcept { attention_.focus = id; }
+  [[nodiscard]] bool has_target(int id) const noexcept;
+
+ private:
+  [[nodiscard]] std::optional<session::StepReply> take_key(const InputEvent& event);
+  [[nodiscard]] std::optional<session::StepReply> take_pointer(const InputEvent& event);
+  [[nodiscard]] int target_at(Vec2 position) const noexcept;
+  void move_focus(Key key);
+
+  Attention attention_;
+  std::vector<Target> targets_;
+  bool done_ = false;
+};
+
+/// Makes the screen of a step.
+/// \param labels  of the pictures, by position
+[[nodiscard]] std::shared_ptr<Screen> screen_for(const session::Step& step,
+                                                 const ScreenContext& context,
+                                                 const std::vector<std::string>& labels);
+
+/// Whether two steps are the same, so that their screen stays.
+[[nodiscard]] bool is_same_step(const session::Step& a, const session::Step& b);
+
+/// Targets that screens have in common.
+inline constexpr int kNextTarget = 100;
+inline constexpr int kBackTarget = 101;
+
+}  // namespace touchtrial::app

@@ -1,0 +1,120 @@
+/// \file The bring-up of a device that nobody on the project has: the steps with a person, and the
+/// record that is sent back, without names. Source: docs/devices/bring-up.md.
+#pragma once
+
+#include "device/acceptance/acceptance.hpp"
+#include "device/device_settings.hpp"
+#include "device/drivers/unverified_fact.hpp"
+
+#include <array>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace touchtrial::device {
+
+/// The steps, in their order.
+enum class BringUpStep {
+  open,
+  rest,
+  ways,
+  push,
+  steps,
+  range,
+  weight,
+  wall,
+  program,
+  cable,
+  questions
+};
+inline constexpr std::size_t kBringUpSteps = 11;
+[[nodiscard]] std::string_view name_of(BringUpStep step) noexcept;
+
+enum class StepOutcome {
+  not_reached,
+  interrupted,  ///< a person, a signal or a fault ended it
+  left_out,     ///< all or a part of it
+  failed,       ///< without a result
+  done,
+};
+[[nodiscard]] std::string_view name_of(StepOutcome outcome) noexcept;
+
+enum class BringUpEnd { stopped, complete, wrong_sign, fault };
+[[nodiscard]] std::string_view name_of(BringUpEnd end) noexcept;
+
+/// \name Forces, N
+///@{
+/// Of a push before the signs are confirmed, and of a second one where nobody felt the first.
+/// Sources differ by a factor of 1.8 in a Falcon's force, so that even 0.5 N is below 1 N.
+inline constexpr double kFirstPushN = 0.3;
+inline constexpr double kSecondPushN = 0.5;
+/// The limit of the safety chain, of everything that follows the confirmation.
+inline constexpr double kConfirmedN = 2.5;
+///@}
+
+/// What a step found: numbers of one unit, or a word.
+struct Finding {
+  std::string
+      name;  ///< unique, with the unit: "noise_mm"; of an axis, with " x" or " +x" behind it
+  std::vector<double> numbers{};
+  std::string word{};
+};
+
+/// Everything that the file has. Holds no name of a person, machine or path.
+struct BringUp {
+  std::string program{};  ///< version and commit
+  std::string driver{};
+  std::string device_mark{};  ///< four digits that tell devices of one driver apart; may be empty
+  std::string model{};
+  std::string firmware{};
+  std::string library{};
+  std::string stand_in{};    ///< of stand_in_of; empty: nothing says that it is no hardware
+  std::string scheduling{};  ///< "fifo" or "other"
+  bool memory_locked = false;
+  std::array<StepOutcome, kBringUpSteps> outcomes{};
+  BringUpEnd ended = BringUpEnd::stopped;
+  std::string why{};  ///< it ended early; a fixed phrase
+  std::vector<Finding> findings{};
+
+  [[nodiscard]] StepOutcome& outcome(BringUpStep step) {
+    return outcomes.at(static_cast<std::size_t>(step));
+  }
+  [[nodiscard]] StepOutcome outcome(BringUpStep step) const {
+    return outcomes.at(static_cast<std::size_t>(step));
+  }
+  /// \return null if it was not found
+  [[nodiscard]] const Finding* find(std::string_view name) const noexcept;
+  /// \return its first number; 0 if it was not found
+  [[nodiscard]] double number(std::string_view name) const noexcept;
+  /// \name Add a finding, or replace the one of this name
+  ///@{
+  void note(const std::string& name, std::vector<double> numbers);
+  void note(const std::string& name, std::string_view word);
+  ///@}
+  /// Whether readings and forces are right on all axes, either way.
+  [[nodiscard]] bool signs_confirmed() const;
+};
+
+/// \return why this is no real hardware, as far as the program can know: a phrase; empty: nothing
+///   says so
+[[nodiscard]] std::string stand_in_of(const DeviceInfo& device, const DeviceSettings& settings);
+
+/// \return what a file may say of a device: the serial number's hash, cut to 16 bits, which tells
+///   two devices apart and fits thousands of serial numbers; texts in which the number was replaced
+[[nodiscard]] BringUp bring_up_of(const DeviceInfo& device);
+
+/// Leads through the steps. No force beyond kSecondPushN acts before the signs are confirmed, and
+/// none at all on what follows a wrong one.
+/// \param facts  of the driver, whose questions are asked
+/// \param record  of bring_up_of; holds all there is, also after an exception
+/// \param save  called after each step
+/// \throws whatever bench, person and save throw
+void bring_up(AcceptanceBench& bench, AcceptancePerson& person,
+              const std::vector<UnverifiedFact>& facts, BringUp& record,
+              const std::function<void()>& save);
+
+/// \return the content of its file: JSON
+[[nodiscard]] std::string bring_up_json(const BringUp& record);
+
+}  // namespace touchtrial::device

@@ -1,0 +1,145 @@
+#include "device/acceptance/conformance/plugin_conformance.hpp"
+
+#include "core/errors.hpp"
+#include "device/drivers/plugin/plugin_library.hpp"
+#include "device/platform/realtime.hpp"
+#include "device/servo/duration_histogram.hpp"
+#include "device/servo/servo_thread.hpp"
+
+#include <chrono>
+#include <optional>
+
+#include <fmt/format.h>
+
+namespace touchtrial::device {
+namespace {
+
+constexpr double kLongestCallUs = 10'000.0;
+/// Of a period: the rest is for the device and for what the host does in between.
+constexpr double kShareOfCalls = 0.5;
+
+ConformanceId check_of(plugin::Trouble trouble) noexcept {
+  switch (trouble) {
+    case plugin::Trouble::sequence_fell:
+      return ConformanceId::numbering;
+    case plugin::Trouble::wrote_past:
+      return ConformanceId::memory;
+    case plugin::Trouble::not_finite:
+    case plugin::Trouble::absurd:
+    case plugin::Trouble::unknown_readiness:
+      return ConformanceId::values;
+    default:
+      return ConformanceId::staying;
+  }
+}
+
+std::optional<ConformanceBlame> blame_of(const HapticDevice& device) {
+  const auto* const plugin = dynamic_cast<const PluginDevice*>(&device);
+  if (plugin == nullptr) return std::nullopt;
+  const plugin::Trouble trouble = plugin->trouble();
+  if (trouble == plugin::Trouble::none) return std::nullopt;
+  return ConformanceBlame{check_of(trouble), plugin::words_for(trouble)};
+}
+
+/// Runs one step of the checks.
+/// \return whether it went well; else the check fails in the error's words
+template <typename Step>
+bool goes_well(ConformanceId id, ConformanceRecord& record, const Step& step) {
+  try {
+    step();
+    return true;
+  } catch (const Error& error) {
+    record.fail(id, error.what());
+    return false;
+  }
+}
+
+/// Loads, opens and describes, each of which may fail by itself.
+/// \return nothing if one failed
+std::optional<DeviceInfo> try_interface(const PluginSettings& settings, ConformanceRecord& record) {
+  std::optional<plugin::Library> library;
+  std::optional<plugin::OpenDevice> opened;
+  std::optional<DeviceInfo> info;
+  const bool good = goes_well(ConformanceId::library, record,
+                              [&] {
+                                expect_loading_survived(settings.library, plugin::kRemedy);
+                                library.emplace(settings.library);
+                              }) &&
+                    goes_well(ConformanceId::opening, record,
+                              [&] { opened.emplace(*library, settings.settings); }) &&
+                    goes_well(ConformanceId::description, record, [&] { info = opened->info(); });
+  if (library) {
+    record.pass(ConformanceId::library, "driver " + library->name());
+  }
+  return good ? info : std::nullopt;
+}
+
+/// Calls the plug-in as its thread does, without any force, and takes the time.
+void measure_calls(const PluginSettings& settings, double rate_hz, ServoClock& clock,
+                   const ConformanceOptions& options, DurationHistogram& durations) {
+  const plugin::Library library(settings.library);
+  plugin::OpenDevice device(library, settings.settings);
+  const ServoClock::Time period(static_cast<std::int64_t>(1e9 / rate_hz));
+  const auto ticks = static_cast<std::int64_t>(options.seconds * rate_hz);
+  ServoClock::Time next = clock.now();
+  for (std::int64_t i = 0; i < ticks; ++i) {
+    if (options.stopped && options.stopped()) return;
+    next += period;
+    clock.wait_until(next);
+    const ServoClock::Time begun = monotonic_now();
+    const plugin::Trouble trouble = device.sample().trouble;
+    if (trouble != plugin::Trouble::none || device.force({}) != plugin::Trouble::none) return;
+    durations.add(monotonic_now() - begun);
+  }
+}
+
+void check_calls(const PluginSettings& settings, double rate_hz, ServoClock& clock,
+                 const ConformanceOptions& options, ConformanceRecord& record) {
+  DurationHistogram durations;
+  const bool opened = goes_well(ConformanceId::reopening, record, [&] {
+    ServoThread thread;
+    thread.run([&] { measure_calls(settings, rate_hz, clock, options, durations); });
+  });
+  if (!opened || durations.count() == 0) {
+    return record.leave(ConformanceId::calls, "an earlier check failed");
+  }
+  const double p99_us = durations.percentile_us(0.99);
+  const double worst_us = 1e-3 * static_cast<double>(durations.worst().count());
+  const std::string finding =
+      fmt::format("99 % within {:.0f} us, worst {:.0f} us", p99_us, worst_us);
+  if (!options.judges_calls) {
+    record.leave(ConformanceId::calls, finding + "; not judged");
+  } else if (p99_us <= kShareOfCalls * 1e6 / rate_hz && worst_us < kLongestCallUs) {
+    record.pass(ConformanceId::calls, finding);
+  } else {
+    record.fail(ConformanceId::calls, finding);
+  }
+}
+
+}  // namespace
+
+std::vector<ConformanceCheck> check_plugin_conformance(
+    const PluginSettings& settings, ServoClock& clock, const ConformanceOptions& options,
+    const std::function<PluginOptions()>& options_of_opening) {
+  ConformanceRecord record;
+  const std::optional<DeviceInfo> info = try_interface(settings, record);
+  if (!info) {
+    record.leave_rest("an earlier check failed", true);
+    return record.checks(true);
+  }
+  const plugin::Library library(settings.library);
+  ConformanceSubject subject;
+  subject.open = [&] { return std::make_unique<PluginDevice>(settings, options_of_opening()); };
+  subject.motor_force_n = [&] { return library.observed_force_n(); };
+  subject.blame = blame_of;
+  record.add(check_conformance(subject, clock, options));
+  if (options.stopped && options.stopped()) {
+    record.leave_rest("the check was stopped", true);
+    return record.checks(true);
+  }
+  if (!record.has(ConformanceId::memory)) record.pass(ConformanceId::memory);
+  check_calls(settings, info->max_rate_hz, clock, options, record);
+  return record.checks(true);
+}
+
+}  // namespace touchtrial::device

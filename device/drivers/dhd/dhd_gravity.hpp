@@ -1,0 +1,26 @@
+/// \file The weight that Force Dimension's library adds to every force. Private to this folder.
+#pragma once
+
+#include "core/vec.hpp"
+#include "device/drivers/dhd/dhd_library.hpp"
+
+#include <optional>
+
+namespace touchtrial::device::dhd {
+
+constexpr double kStandardGravityMS2 = 9.80665;
+
+/// The force with which the library carries arms and end-effector where they are now. It tells the
+/// torques t of the joints and the Jacobian J of the position by the joints' angles; the force with
+/// the same effect at the end-effector solves J^T F = t. Neither allocates nor throws.
+/// \param device  open and calibrated, with gravity compensation on; soon after it was switched off,
+///   the library still tells a part
+/// \return DHD's frame, N; nothing if the library does not tell it
+[[nodiscard]] std::optional<Vec3> added_weight_n(const Api& api, char device) noexcept;
+
+/// \param force_n  DHD's frame
+/// \param most_n  > 0
+/// \return whether the force may be a weight: finite, neither down nor sideways, and at most most_n
+[[nodiscard]] bool is_plausible_weight(Vec3 force_n, double most_n) noexcept;
+
+}  // namespace touchtrial::device::dhd

@@ -1,0 +1,48 @@
+/// \file Every driver of the registry. A new driver is declared and listed here and nowhere else;
+/// its function is defined beside it, in its own folder. Private to this folder.
+#pragma once
+
+#include "device/drivers/registry.hpp"
+
+#include <vector>
+
+namespace touchtrial::device {
+
+/// `list` names every Falcon on the USB and what it lacks: permission, firmware, or that another
+/// program uses it. `open` takes the one that the settings name.
+[[nodiscard]] DeviceDriver falcon_driver();
+
+/// `list` loads the library, opens the device of the settings for a moment and closes it again,
+/// without force: the library has no other way to find out what is plugged in.
+[[nodiscard]] DeviceDriver openhaptics_driver();
+
+/// `list` loads the library and opens each connected device for a moment, to read its name, without
+/// force.
+[[nodiscard]] DeviceDriver dhd_driver();
+
+/// `list` asks the Inverse service for its devices, over HTTP and with a short time limit.
+[[nodiscard]] DeviceDriver inverse3_driver();
+
+/// `list` loads the library of the settings, opens its device for a moment and closes it again,
+/// without force.
+[[nodiscard]] DeviceDriver plugin_driver();
+
+/// `list` finds a mouse where the environment names a display (DISPLAY, WAYLAND_DISPLAY). `open`
+/// throws DeviceError, as a window belongs to the application, which makes the MouseDevice too.
+[[nodiscard]] DeviceDriver mouse_driver();
+
+/// `open` makes a hand that strokes a square plane of 100 mm for eight hours, always along the same
+/// path. It moves once for every tick, so in real time the servo's clock paces it.
+[[nodiscard]] DeviceDriver simulated_driver();
+
+/// Replays the file of DeviceSettings::replay. `list` reads it to find out whether `open` will
+/// succeed.
+[[nodiscard]] DeviceDriver replay_driver();
+
+/// \return all of them, in the order in which the program lists them
+[[nodiscard]] inline std::vector<DeviceDriver> all_drivers() {
+  return {falcon_driver(), openhaptics_driver(), dhd_driver(),       inverse3_driver(),
+          plugin_driver(), mouse_driver(),       simulated_driver(), replay_driver()};
+}
+
+}  // namespace touchtrial::device

@@ -1,0 +1,91 @@
+/// \file The driver "falcon": a Novint Falcon over USB. Tested against an emulator through the
+/// unmodified libusb; not verified on hardware.
+#pragma once
+
+#include "device/device_settings.hpp"
+#include "device/drivers/device_link.hpp"
+#include "device/drivers/falcon/falcon_exchange.hpp"
+#include "device/drivers/falcon/falcon_kinematics.hpp"
+#include "device/drivers/falcon/ftdi_transport.hpp"
+#include "device/haptic_device.hpp"
+#include "device/platform/realtime.hpp"
+
+#include <atomic>
+#include <latch>
+#include <memory>
+#include <thread>
+
+namespace touchtrial::device::falcon {
+
+/// The ball that every Falcon reaches.
+inline constexpr Workspace kFalconWorkspace = {
+    {-kWorkspaceRadiusMm, -kWorkspaceRadiusMm, -kWorkspaceRadiusMm},
+    {kWorkspaceRadiusMm, kWorkspaceRadiusMm, kWorkspaceRadiusMm},
+    WorkspaceShape::ellipsoid};
+
+/// Time and rest of the USB thread.
+using FalconPace = LinkPace;
+
+struct FalconOptions {
+  std::unique_ptr<FalconPace> pace = std::make_unique<RealLinkPace>();
+  /// Of the USB thread: its priority is a little above that of the servo, which needs its samples.
+  SchedulingRequest scheduling{SchedulingPolicy::fifo, 81, true};
+};
+
+/// Exchanges one packet each way at up to 1 kHz on a thread of its own. Sends no force before all
+/// three axes are homed. The gravity bias is its support.
+class FalconDevice final : public LinkedDevice {
+ public:
+  /// The shortest time from one exchange to the next: the device manages about 1 kHz.
+  static constexpr FalconPace::Time kPeriod = std::chrono::milliseconds(1);
+  /// The time for a reply, after which the next command goes out. A frame of the bus each way, the
+  /// chip's latency of 1 ms and 0.1 ms for the bytes each way make 3.2 ms at the very most; so two
+  /// lost replies in a row cost less than the safety chain's 10 ms without a reading.
+  static constexpr FalconPace::Time kReplyLimit = std::chrono::milliseconds(3);
+  /// Packets without force before the device is closed, and the time for each.
+  static constexpr int kFarewells = 5;
+  static constexpr std::chrono::milliseconds kFarewellLimit{20};
+
+  /// Loads the firmware unless the device answers already; returns once exchanges have begun.
+  /// \throws DeviceError or FileError with the remedy
+  FalconDevice(std::unique_ptr<FtdiTransport> transport, const FalconSettings& settings,
+               FalconOptions options = {});
+  ~FalconDevice() override;
+
+  [[nodiscard]] DeviceInfo info() const override;
+  [[nodiscard]] Vec3 support_force_n(const DeviceSample& /*sample*/) noexcept override {
+    return settings_.gravity_bias_n;
+  }
+  [[nodiscard]] DeviceReadiness readiness() const noexcept override;
+
+  /// The scheduling that the USB thread obtained.
+  [[nodiscard]] const SchedulingObtained& scheduling() const noexcept { return scheduling_; }
+
+ private:
+  [[nodiscard]] DeviceLink& link() const noexcept override { return link_; }
+  [[nodiscard]] DeviceLink::Time link_time() const noexcept override {
+    return options_.pace->now();
+  }
+  void exchange_until_stopped() noexcept;
+  void exchange() noexcept;
+  void wait_for_reply() noexcept;
+  void say_farewell() noexcept;
+
+  FalconSettings settings_;
+  std::unique_ptr<FtdiTransport> transport_;
+  FalconOptions options_;
+  mutable DeviceLink link_;
+  FalconExchange exchange_;
+  std::atomic<bool> homed_{false};
+  std::atomic<bool> stopping_{false};
+  SchedulingObtained scheduling_;
+  std::latch started_{1};  ///< until its scheduling is known
+  std::thread thread_;
+};
+
+/// Moves nothing.
+/// \return whether loaded firmware answers
+/// \throws DeviceError if the device is gone
+[[nodiscard]] bool falcon_answers(FtdiTransport& transport);
+
+}  // namespace touchtrial::device::falcon

@@ -1,0 +1,81 @@
+/// \file The Falcon driver's interface to the FTDI chip in the device: libusb in the product
+/// (usb_falcon.hpp), an emulator in the tests.
+#pragma once
+
+#include "device/drivers/falcon/falcon_packet.hpp"
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace touchtrial::device::falcon {
+
+/// The chip's vendor requests (request type 0x40, index 0) that the driver uses.
+enum class FtdiRequest : std::uint8_t {
+  purge = 0,
+  modem_control = 1,
+  flow_control = 2,
+  baud_divisor = 3,
+  data_format = 4,
+  latency_timer = 9,
+};
+
+/// Receives the bytes of the stream, on the thread that calls FtdiTransport::serve.
+class FtdiStreamSink {
+ public:
+  virtual ~FtdiStreamSink() = default;
+  /// \param transfer  the bytes of one bulk transfer, with the chip's status bytes; may be empty
+  virtual void receive(std::span<const std::uint8_t> transfer) noexcept = 0;
+  /// A posted packet has gone out.
+  virtual void sent() noexcept {}
+};
+
+/// A chip that is open and claimed; the destructor closes it. Belongs to one thread at a time. It
+/// has two uses that never mix: single transfers, which wait and throw, for setting up; and the
+/// stream, with one read always queued, which neither waits nor throws.
+class FtdiTransport {
+ public:
+  virtual ~FtdiTransport() = default;
+
+  /// Empty if the device has none.
+  [[nodiscard]] virtual std::string serial() const = 0;
+
+  /// \name Setting up: each waits, and throws DeviceError if the device is gone
+  ///@{
+  virtual void control(FtdiRequest request, std::uint16_t value) = 0;
+  /// \return how many bytes went out; fewer than all if the limit was too short. Throws at once if
+  ///   the bus gives nothing back.
+  [[nodiscard]] virtual std::size_t send(std::span<const std::uint8_t> bytes,
+                                         std::chrono::milliseconds limit) = 0;
+  /// Receives the next packet, with its status bytes.
+  /// \return its length; 0 if none came within the limit
+  [[nodiscard]] virtual std::size_t receive(std::span<std::uint8_t, kUsbPacketSize> packet,
+                                            std::chrono::milliseconds limit) = 0;
+  ///@}
+
+  /// \name Stream
+  ///@{
+  /// Queues the first read.
+  /// \param sink  must outlive the stream
+  /// \throws DeviceError if it cannot
+  virtual void start_stream(FtdiStreamSink& sink) = 0;
+  /// Ends the stream and waits, a few seconds at most, until no transfer is under way; if one still
+  /// is, the device counts as lost. Safe on a lost device.
+  virtual void stop_stream() noexcept = 0;
+  /// Sends without waiting, at most kUsbPacketSize bytes. If the device has not taken the packet
+  /// before it yet, that one is cancelled and these bytes go in its place, so that no old force
+  /// waits in front of a new one. After kMostStuck such packets in a row the link is lost.
+  /// \return whether the bytes were taken
+  [[nodiscard]] virtual bool post(std::span<const std::uint8_t> bytes) noexcept = 0;
+  static constexpr int kMostStuck = 5;
+  /// Waits until bytes arrive, at most this long, and hands them to the sink.
+  virtual void serve(std::chrono::microseconds at_most) noexcept = 0;
+  /// \return whether the device is unplugged or unusable. It stays so: open the device anew.
+  [[nodiscard]] virtual bool lost() const noexcept = 0;
+  ///@}
+};
+
+}  // namespace touchtrial::device::falcon

@@ -1,0 +1,495 @@
+#include "device/drivers/inverse3/inverse3_device.hpp"
+
+#include "core/errors.hpp"
+#include "core/strict_json.hpp"
+#include "device/drivers/drivers.hpp"
+#include "device/platform/realtime.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace touchtrial::device::inverse3 {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr double kMmPerM = 1000.0;
+constexpr double kRateHz = 1e9 / static_cast<double>(Inverse3Device::kPeriod.count());
+/// Radius of the ball that the arm reaches, mm.
+constexpr double kInverse3RadiusMm = 100.0;
+constexpr double kMinverseRadiusMm = 40.0;
+/// A place further from the middle than this is no place of the arm, m.
+constexpr double kFarthestM = 1.0;
+/// The middle of the workspace in the frame of the arm's base, in which services before 3.5 speak,
+/// m. After the positions in the documentation's examples; not verified.
+constexpr Vec3 kCentreFromBaseM = {0.0, -0.12, 0.15};
+/// How often, and after what pause, the configuration is asked for until it is as wanted.
+constexpr int kReadBacks = 20;
+constexpr milliseconds kBetweenReadBacks{10};
+constexpr milliseconds kListPatience{5000};
+constexpr milliseconds kFarewellPatience{200};
+
+/// The service's x to the right, y away, z up, and ours: x to the right, y up, z towards the
+/// person.
+Vec3 to_device_axes(Vec3 service) noexcept {
+  return {service.x, service.z, -service.y};
+}
+Vec3 to_service_axes(Vec3 device) noexcept {
+  return {device.x, -device.z, device.y};
+}
+
+std::string model_of(const std::string& type) {
+  if (type == "inverse3") return "Haply Inverse3";
+  if (type == "inverse3x") return "Haply Inverse3x";
+  if (type == "minverse") return "Haply Minverse";
+  return one_line("Haply " + type);
+}
+
+ServiceAddress address_of(const Inverse3Settings& settings) {
+  return {settings.host, settings.port};
+}
+
+/// Asks a question to which there is an answer.
+std::string answer_of(const ServiceAddress& http, const std::string& path,
+                      std::chrono::nanoseconds patience) {
+  const HttpAnswer answer = ask_service(http, path, patience);
+  if (answer.status == 200) return answer.body;
+  throw DeviceError(one_line("inverse3: the service at " + http.text() + " does not know " + path +
+                             " (HTTP " + std::to_string(answer.status) +
+                             "); update Haply's Inverse service, to 3.5 or later"));
+}
+
+[[noreturn]] void refuse_answer(const ServiceAddress& service, const std::string& what,
+                                const BadMessage& error) {
+  throw DeviceError(one_line("inverse3: " + what + " from " + service.text() + " makes no sense (" +
+                             error.what() +
+                             "); correct inverse3.host and inverse3.port, or update the service"));
+}
+
+KnownService service_at(const ServiceAddress& http, const std::string& version_answer) {
+  ServiceVersion version;
+  try {
+    version = version_in(version_answer);
+  } catch (const BadMessage& error) {
+    refuse_answer(http, "the version", error);
+  }
+  if (version.is_known()) return {version, http};
+  throw DeviceError("inverse3: the service at " + one_line(http.text()) + " has version " +
+                    version.text() + ", and versions 3.1 to 3.x are known; install 3.5 or later");
+}
+
+/// Services before later versions 3.5 have HTTP on a port of its own.
+/// \return nothing if that port has no HTTP either
+std::optional<KnownService> older_service(const Inverse3Settings& settings,
+                                          std::chrono::nanoseconds patience) {
+  const ServiceAddress http{settings.host, settings.http_port};
+  HttpAnswer answer;
+  try {
+    answer = ask_service(http, "/version", patience);
+  } catch (const DeviceError&) {
+    return std::nullopt;
+  }
+  if (answer.status == 200) return service_at(http, answer.body);
+  throw DeviceError(one_line("inverse3: the service at " + http.text() +
+                             " does not know /version (HTTP " + std::to_string(answer.status) +
+                             "), so it is older than 3.1; install Haply's Inverse service 3.5 or "
+                             "later"));
+}
+
+KnownService find_service(const Inverse3Settings& settings, std::chrono::nanoseconds patience) {
+  const ServiceAddress usual = address_of(settings);
+  std::string error;
+  try {
+    const HttpAnswer answer = ask_service(usual, "/version", patience);
+    if (answer.status == 200) return service_at(usual, answer.body);
+    error = "inverse3: what listens at " + usual.text() + " has no HTTP, and nothing does at " +
+            std::to_string(settings.http_port) +
+            "; start Haply's Inverse service 3.5 or later, or correct inverse3.host, inverse3.port "
+            "and inverse3.http_port";
+  } catch (const NoService& none) {
+    error = none.what();
+  }
+  if (auto older = older_service(settings, patience)) return *older;
+  throw DeviceError(one_line(error));
+}
+
+std::string ids_of(const std::vector<DeviceReport>& devices) {
+  std::string ids;
+  for (const DeviceReport& device : devices) ids += (ids.empty() ? "" : ", ") + device.id;
+  return ids;
+}
+
+const DeviceReport* find_device(const ServiceReport& report, const std::string& id) {
+  const auto found = std::find_if(report.devices.begin(), report.devices.end(),
+                                  [&](const DeviceReport& device) { return device.id == id; });
+  return found == report.devices.end() ? nullptr : &*found;
+}
+
+DeviceReadiness readiness_of(const ArmStatus& status) noexcept {
+  if (status.is_usable()) return DeviceReadiness::ready;
+  return status.calibrated ? DeviceReadiness::needs_calibration : DeviceReadiness::needs_inkwell;
+}
+
+/// \return why the configuration does not serve, and the remedy; empty if it does
+std::string trouble_in(const DeviceConfig& config) {
+  const std::string remedy = "; reset it for the profile touchtrial in Haply Hub, or close the Hub";
+  if (!config.force_gate || !config.damping) {
+    return "the service does not tell its force gate and damping, which alter textures; update it";
+  }
+  if (*config.force_gate != 0.0) {
+    return "the service keeps its force gate at " + number_text(*config.force_gate) +
+           ", which alters textures" + remedy;
+  }
+  if (*config.damping != 0.0) {
+    return "the service keeps its damping at " + number_text(*config.damping) +
+           ", which alters textures" + remedy;
+  }
+  if (config.preset != kCentredPreset) {
+    return "the service keeps the preset " + config.preset + " instead of " + kCentredPreset +
+           remedy;
+  }
+  if (!config.plain_frame) return "the service turns or scales positions and forces" + remedy;
+  return "";
+}
+
+std::string switched(const std::optional<bool>& on) {
+  if (!on) return "not told";
+  return *on ? "on" : "off";
+}
+
+/// What a session records of the way from a command to a force, in place of a firmware's number.
+std::string firmware_text(const DeviceConfig& config, const ServiceVersion& version) {
+  std::string text = config.firmware.empty() ? "" : config.firmware + ", ";
+  text += "service " + version.text();
+  if (!config.handedness.empty()) text += ", " + config.handedness + "-handed";
+  if (config.force_gate) text += ", force gate " + number_text(*config.force_gate);
+  if (config.damping) text += ", damping " + number_text(*config.damping);
+  text += ", torque scaling " + switched(config.torque_scaling);
+  if (config.gravity_compensation) {
+    text += ", gravity compensation " + number_text(*config.gravity_compensation);
+  }
+  text += ", home return " + switched(config.home_return);
+  return one_line(text);
+}
+
+std::vector<std::string> needs_of(const ArmStatus& status) {
+  std::vector<std::string> needs;
+  if (!status.power_supply) needs.push_back("it has no power; connect its power supply");
+  if (!status.calibrated) {
+    needs.push_back("it is not calibrated; put the grip into its inkwell until its light changes");
+  }
+  return needs;
+}
+
+std::vector<DeviceListing> list_inverse3(const DeviceSettings& settings) {
+  const Inverse3Settings& ours = settings.inverse3;
+  DeviceListing nothing{"inverse3", "", "", address_of(ours).text(), false, {}};
+  try {
+    const KnownService known = find_service(ours, kListPatience);
+    const ServiceReport inventory = report_in(answer_of(known.http, "/devices", kListPatience));
+    std::vector<DeviceListing> found;
+    for (const DeviceReport& device : inventory.devices) {
+      DeviceListing listing = nothing;
+      listing.model = model_of(device.config ? device.config->type : "inverse3");
+      listing.serial = one_line(device.id);
+      listing.where += ", service " + known.version.text();
+      listing.present = true;
+      if (device.status) listing.missing = needs_of(*device.status);
+      found.push_back(std::move(listing));
+    }
+    if (!found.empty()) return found;
+    nothing.missing = {"the service runs and has no Inverse3; plug it in and switch it on"};
+  } catch (const DeviceError& error) {
+    nothing.missing = {error.what()};
+  } catch (const BadMessage& error) {
+    nothing.missing = {one_line("inverse3: the list of devices makes no sense (" +
+                                std::string(error.what()) + "); update the service")};
+  }
+  return {nothing};
+}
+
+std::unique_ptr<HapticDevice> open_inverse3(const DeviceSettings& settings) {
+  return std::make_unique<Inverse3Device>(settings.inverse3);
+}
+
+}  // namespace
+
+Inverse3Device::Inverse3Device(const Inverse3Settings& settings, Inverse3Options options)
+    : settings_(settings),
+      options_(std::move(options)),
+      known_(find_service(settings_, options_.patience)) {
+  service_ = std::make_unique<ServiceLink>(address_of(settings_), options_.patience);
+  try {
+    const ServiceReport inventory = report_in(service_->answer());
+    choose_device(inventory);
+    expect_no_other_session(inventory);
+    configure();
+  } catch (const BadMessage& error) {
+    refuse_answer(address_of(settings_), "what comes", error);
+  }
+  thread_ = std::thread([this] {
+    (void)request_scheduling(options_.scheduling);
+    started_.count_down();
+    exchange_until_stopped();
+  });
+  started_.wait();
+}
+
+Inverse3Device::~Inverse3Device() {
+  stopping_.store(true, std::memory_order_release);
+  options_.pace->end();
+  thread_.join();
+}
+
+void Inverse3Device::choose_device(const ServiceReport& inventory) {
+  const std::vector<DeviceReport>& devices = inventory.devices;
+  if (devices.empty()) {
+    throw DeviceError("inverse3: the service has no Inverse3; plug it in and switch it on");
+  }
+  if (settings_.device_id.empty() && devices.size() > 1) {
+    throw DeviceError(one_line("inverse3: the service has several devices (" + ids_of(devices) +
+                               "); name one at inverse3.device_id in the device settings"));
+  }
+  id_ = settings_.device_id.empty() ? devices.front().id : settings_.device_id;
+  const DeviceReport* const device = find_device(inventory, id_);
+  if (device == nullptr) {
+    throw DeviceError(one_line("inverse3: there is no device " + id_ + " (connected: " +
+                               ids_of(devices) + "); correct inverse3.device_id"));
+  }
+  if (!device->status) throw BadMessage("no status");
+  if (!device->status->power_supply) {
+    throw DeviceError(one_line("inverse3: " + id_ + " has no power; connect its power supply"));
+  }
+  session_id_ = inventory.session_id;
+  centre_m_ = known_.version.has_filters() ? Vec3{} : kCentreFromBaseM;
+  note_status(*device->status);
+  describe(device->config.value_or(DeviceConfig{}));
+}
+
+/// Forces of several sessions add up, and only we know what is safe for the hand.
+void Inverse3Device::expect_no_other_session(const ServiceReport& inventory) const {
+  const std::string remedy =
+      "; forces of several programs would add up: close the other one (Haply Hub too)";
+  if (!known_.version.has_filters()) {
+    const auto& status = find_device(inventory, id_)->status;
+    if (!status->in_use) return;
+    throw DeviceError(one_line("inverse3: another program uses " + id_ + remedy));
+  }
+  const std::vector<std::string> sessions =
+      sessions_in(answer_of(known_.http, "/sessions", options_.patience));
+  if (sessions.size() <= 1) return;
+  std::string names;
+  for (const std::string& name : sessions) {
+    if (!name.empty()) names += (names.empty() ? "" : ", ") + name;
+  }
+  throw DeviceError(one_line("inverse3: another session is connected to the service" +
+                             (names.empty() ? "" : " (" + names + ")") + remedy));
+}
+
+DeviceReport Inverse3Device::ask_for_inventory(const std::string& message) {
+  if (service_->exchange(message, options_.patience) != LinkOutcome::ok) {
+    throw DeviceError(one_line("inverse3: the service at " + address_of(settings_).text() +
+                               " does not answer its configuration; start it again"));
+  }
+  const ServiceReport report = report_in(service_->answer());
+  const DeviceReport* const device = find_device(report, id_);
+  if (device == nullptr) throw BadMessage("the device is gone");
+  return *device;
+}
+
+void Inverse3Device::configure() {
+  DeviceReport device = ask_for_inventory(first_message(known_.version, id_));
+  if (known_.version.has_filters()) {
+    std::string trouble = "the service does not tell its configuration; update it";
+    for (int i = 0; i < kReadBacks && !trouble.empty(); ++i) {
+      if (i > 0) std::this_thread::sleep_for(kBetweenReadBacks);
+      device = ask_for_inventory(inventory_request(known_.version, id_));
+      if (device.config) trouble = trouble_in(*device.config);
+    }
+    if (!trouble.empty()) throw DeviceError(one_line("inverse3: " + trouble));
+  }
+  if (device.config) {
+    refuse_home_return(*device.config);
+    describe(*device.config);
+  }
+  if (device.status) note_status(*device.status);
+  listen_to_events();
+}
+
+/// It belongs to the device and not to the session, so it is not changed here.
+void Inverse3Device::refuse_home_return(DeviceConfig& config) const {
+  const std::string path = "/inverse3/" + id_ + "/config/home_return";
+  if (!config.home_return) {
+    const HttpAnswer answer = ask_service(known_.http, path, options_.patience);
+    if (answer.status == 200) config.home_return = home_return_in(answer.body);
+  }
+  if (!config.home_return.value_or(false)) return;
+  throw DeviceError(
+      one_line("inverse3: the arm's home return is on, which moves the hand by itself; "
+               "switch it off in Haply Hub, or over HTTP at " +
+               known_.http.text() + path));
+}
+
+/// Services before 3.5 need not have the channel.
+void Inverse3Device::listen_to_events() try {
+  service_->listen_to({settings_.host, settings_.events_port}, options_.patience);
+} catch (const DeviceError&) {
+  if (!known_.version.has_filters()) return;
+  throw DeviceError(one_line(
+      "inverse3: the service's events, which tell of its emergency brake, do not come at " +
+      settings_.host + ':' + std::to_string(settings_.events_port) +
+      "; correct inverse3.events_port"));
+}
+
+void Inverse3Device::describe(const DeviceConfig& config) {
+  info_.name = "inverse3";
+  info_.serial = one_line(id_);
+  info_.model = model_of(config.type);
+  info_.firmware = firmware_text(config, known_.version);
+  info_.max_force_n = settings_.max_force_n;
+  info_.max_rate_hz = kRateHz;
+  info_.has_encoders = true;
+  const double radius_mm = config.type == "minverse" ? kMinverseRadiusMm : kInverse3RadiusMm;
+  const Vec3 reach_mm = {radius_mm, radius_mm, radius_mm};
+  info_.workspace = Workspace{-1.0 * reach_mm, reach_mm, WorkspaceShape::ellipsoid};
+}
+
+void Inverse3Device::exchange_until_stopped() noexcept {
+  LinkPace::Time next = options_.pace->now();
+  while (!stopping_.load(std::memory_order_acquire) && link_.fault() == DeviceFault::none) {
+    options_.pace->rest_until(next);
+    next = options_.pace->now() + kPeriod;
+    try {
+      exchange();
+    } catch (const BadMessage&) {
+      link_.fail(DeviceFault::bad_data);
+    } catch (const std::exception&) {
+      link_.fail(DeviceFault::driver);
+    }
+  }
+  say_farewell();
+  options_.pace->end();
+}
+
+void Inverse3Device::exchange() {
+  // Taken even if it is not sent, so that no old force waits in the link.
+  const Vec3 wanted_n = link_.force_to_send(options_.pace->now());
+  const bool may_push = status_.is_usable() && is_finite(wanted_n);
+  const Vec3 sent_n = may_push ? within_reach(wanted_n) : Vec3{};
+  switch (service_->exchange(force_message(known_.version, id_, to_service_axes(sent_n)),
+                             options_.silence)) {
+    case LinkOutcome::ok:
+      break;
+    case LinkOutcome::nonsense:
+      return link_.fail(DeviceFault::bad_data);
+    case LinkOutcome::silent:
+    case LinkOutcome::closed:
+      return link_.fail(DeviceFault::link_lost);
+  }
+  for (const std::string& event : service_->take_events()) heed(event_in(event));
+  if (service_->events_ended()) return link_.fail(DeviceFault::link_lost);
+  const ServiceReport report = report_in(service_->answer());
+  const DeviceReport* const device = find_device(report, id_);
+  if (device == nullptr) return link_.fail(DeviceFault::link_lost);
+  take(*device, report.buttons);
+}
+
+void Inverse3Device::take(const DeviceReport& report, std::uint32_t buttons) noexcept {
+  const Vec3 place_m = report.position_m - centre_m_;
+  if (norm(place_m) > kFarthestM) return link_.fail(DeviceFault::bad_data);
+  if (report.status) note_status(*report.status);
+  DeviceSample sample;
+  sample.position_mm = kMmPerM * to_device_axes(place_m);
+  sample.velocity_mm_s = kMmPerM * to_device_axes(report.velocity_m_s);
+  sample.buttons = buttons;
+  sample.ready = status_.is_usable();
+  if (report.delivered_n) sample.delivered_n = to_device_axes(*report.delivered_n);
+  link_.publish(sample);
+}
+
+void Inverse3Device::note_status(const ArmStatus& status) noexcept {
+  status_ = status;
+  readiness_.store(readiness_of(status), std::memory_order_release);
+}
+
+void Inverse3Device::heed(const ServiceEvent& event) noexcept {
+  const bool of_other_session = event.category == "session" && event.session_id && session_id_ &&
+                                *event.session_id != *session_id_;
+  if (of_other_session) return link_.fail(DeviceFault::driver);
+  if (!event.device_id.empty() && event.device_id != id_) return;
+  if (event.name == "device-disconnected") link_.fail(DeviceFault::link_lost);
+  if (event.name == "device-busy") link_.fail(DeviceFault::driver);
+  const bool stopped = event.safety_type == "ebrake_triggered" ||
+                       event.safety_type == "stall_detected" ||
+                       event.safety_type == "stability_ceiling";
+  if (event.name == "device-safety-triggered" && stopped) link_.fail(DeviceFault::limit_passed);
+}
+
+void Inverse3Device::say_farewell() noexcept {
+  try {
+    const std::string no_force = force_message(known_.version, id_, {});
+    // A service that answers has taken it: what is still on its way when it closes may be lost.
+    bool answers = true;
+    for (int i = 0; i < kFarewells; ++i) {
+      if (answers) {
+        answers = service_->exchange(no_force, options_.silence) == LinkOutcome::ok;
+      } else {
+        service_->post(no_force, kFarewellPatience);
+      }
+    }
+  } catch (const std::exception&) {
+    // Without a message the arm goes idle by itself.
+  }
+  service_->close(kFarewellPatience);
+}
+
+Vec3 Inverse3Device::within_reach(Vec3 force_n) const noexcept {
+  const double largest_n =
+      std::max({std::abs(force_n.x), std::abs(force_n.y), std::abs(force_n.z)});
+  const double limit_n = settings_.max_force_n;
+  return largest_n > limit_n ? (limit_n / largest_n) * force_n : force_n;
+}
+
+}  // namespace touchtrial::device::inverse3
+
+namespace touchtrial::device {
+
+/// Sources of what is unverified: this driver's page in docs/devices.
+DeviceDriver inverse3_driver() {
+  return {
+      .name = "inverse3",
+      .what = "Haply Inverse3 and Minverse, through Haply's Inverse service",
+      .list = inverse3::list_inverse3,
+      .open = inverse3::open_inverse3,
+      .workspace_is_known = false,
+      .products = {{"inverse3", "Haply Inverse3", "inverse3"},
+                   {"inverse3x", "Haply Inverse3x"},
+                   {"minverse", "Haply Minverse"}},
+      .unverified = {
+          {"signs", "which way positions and forces run on each axis"},
+          {"ports", "whether HTTP, simulation and events answer at the ports of the settings"},
+          {"filters", "whether force gate and damping stay at 0 after they are read back"},
+          {"torque_scaling", "what torque scaling does to a force within the limits"},
+          {"lengths", "whether a millimetre of the service is one at the handle"},
+          {"middle", "the middle of the reach in the device's frame"},
+          {"delivered", "whether the force that the service says it exerted is the commanded one"},
+          {"readings", "how often a new state comes"},
+          {"program_silent", "whether the arm goes idle, and how soon, when messages stop"},
+          {"cable_silent", "what the arm does when its cable is pulled"},
+          {"service_killed", "what the arm does when the service is killed"},
+          {"peak_force",
+           "the largest force, and what the motors can hold: no number is published (device accept "
+           "--thermal)"},
+          {"latency", "the latency of service, USB and motors (device accept, step shake)"},
+          {"home_return",
+           "the form of the service's answer about home_return",
+           "Does touchtrial device list or the service say that home return is off?",
+           {"off", "on", "not_told"}},
+          {"sessions",
+           "the form of the events about sessions, and whether a session that begins later is "
+           "seen"},
+          {"in_use", "whether in_use is true for one's own session (services before 3.5)"}}};
+}
+
+}  // namespace touchtrial::device

@@ -1,0 +1,270 @@
+#include "device/drivers/inverse3/service_link.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include <boost/asio/connect.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+
+namespace touchtrial::device::inverse3 {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+namespace websocket = boost::beast::websocket;
+using boost::system::error_code;
+using Tcp = asio::ip::tcp;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kMostEvents = 256;
+
+Clock::time_point deadline_in(std::chrono::nanoseconds patience) {
+  return Clock::now() + std::chrono::duration_cast<Clock::duration>(patience);
+}
+
+[[noreturn]] void refuse(const ServiceAddress& where, const std::string& why) {
+  throw NoService(one_line("inverse3: no service answers at " + where.text() + " (" + why +
+                           "); start Haply's Inverse service (Haply Hub, or systemctl start "
+                           "haply-inverse-service), or correct inverse3.host and inverse3.port"));
+}
+
+/// Runs what the context has to do until the condition holds.
+/// \return whether it holds, false if the time was over first
+template <typename Holds>
+bool run_until(asio::io_context& context, Clock::time_point deadline, Holds holds) {
+  context.restart();
+  while (!holds()) {
+    if (context.run_one_until(deadline) == 0) return holds();
+  }
+  return true;
+}
+
+/// Waits for one operation.
+/// \param start  starts it with the handler that it is given
+/// \param give_up  makes it end at once
+template <typename Start, typename GiveUp>
+error_code await(asio::io_context& context, Clock::time_point deadline, Start start,
+                 GiveUp give_up) {
+  std::optional<error_code> result;
+  start([&result](error_code error, auto&&...) { result = error; });
+  const auto ended = [&result] { return result.has_value(); };
+  if (run_until(context, deadline, ended)) return *result;
+  give_up();
+  while (!ended() && context.run_one() > 0) {
+  }
+  return asio::error::timed_out;
+}
+
+/// \throws DeviceError if nobody listens there
+void connect(asio::io_context& context, Tcp::socket& socket, const ServiceAddress& where,
+             Clock::time_point deadline) {
+  error_code error;
+  const auto places = Tcp::resolver(context).resolve(where.host, std::to_string(where.port), error);
+  if (error) refuse(where, error.message());
+  error = await(
+      context, deadline,
+      [&](auto handler) { asio::async_connect(socket, places, std::move(handler)); },
+      [&] {
+        error_code ignored;
+        socket.close(ignored);
+      });
+  if (error) refuse(where, error.message());
+  // A message is small and must not wait for a second one.
+  socket.set_option(Tcp::no_delay(true), error);
+}
+
+/// One WebSocket that is always being read.
+class Channel {
+ public:
+  Channel(asio::io_context& context, const ServiceAddress& where, Clock::time_point deadline)
+      : context_(context), stream_(context) {
+    connect(context, stream_.next_layer(), where, deadline);
+    stream_.read_message_max(kLargestMessage);
+    const error_code error = wait(deadline, [&](auto handler) {
+      stream_.async_handshake(where.text(), "/", std::move(handler));
+    });
+    if (error) refuse(where, error.message());
+    stream_.text(true);
+    read();
+  }
+
+  [[nodiscard]] error_code write(const std::string& message, Clock::time_point deadline) {
+    return wait(deadline, [&](auto handler) {
+      stream_.async_write(asio::buffer(message), std::move(handler));
+    });
+  }
+  void close(Clock::time_point deadline) {
+    (void)wait(deadline, [&](auto handler) {
+      stream_.async_close(websocket::close_code::normal, std::move(handler));
+    });
+  }
+
+  [[nodiscard]] std::uint64_t received() const noexcept { return received_; }
+  [[nodiscard]] const error_code& ended() const noexcept { return ended_; }
+  [[nodiscard]] const std::string& newest() const noexcept { return newest_; }
+  /// Keeps messages until they are taken, the newest of them.
+  void keep_messages() { keeps_ = true; }
+  [[nodiscard]] std::vector<std::string> take() { return std::exchange(kept_, {}); }
+
+ private:
+  template <typename Start>
+  error_code wait(Clock::time_point deadline, Start start) {
+    return await(context_, deadline, start, [this] {
+      error_code ignored;
+      stream_.next_layer().close(ignored);
+    });
+  }
+
+  void read() {
+    stream_.async_read(buffer_, [this](error_code error, std::size_t) {
+      if (error) {
+        ended_ = error;
+        return;
+      }
+      newest_ = beast::buffers_to_string(buffer_.data());
+      buffer_.consume(buffer_.size());
+      ++received_;
+      if (keeps_ && kept_.size() < kMostEvents) kept_.push_back(newest_);
+      read();
+    });
+  }
+
+  asio::io_context& context_;
+  websocket::stream<Tcp::socket> stream_;
+  beast::flat_buffer buffer_;
+  std::string newest_;
+  std::vector<std::string> kept_;
+  std::uint64_t received_ = 0;
+  error_code ended_;
+  bool keeps_ = false;
+};
+
+LinkOutcome outcome_of(const error_code& error) {
+  if (!error) return LinkOutcome::ok;
+  if (error == asio::error::timed_out) return LinkOutcome::silent;
+  const bool nonsense = error == websocket::condition::protocol_violation ||
+                        error == websocket::error::message_too_big;
+  return nonsense ? LinkOutcome::nonsense : LinkOutcome::closed;
+}
+
+}  // namespace
+
+HttpAnswer ask_service(const ServiceAddress& service, const std::string& path,
+                       std::chrono::nanoseconds patience) {
+  const Clock::time_point deadline = deadline_in(patience);
+  asio::io_context context;
+  Tcp::socket socket(context);
+  connect(context, socket, service, deadline);
+  http::request<http::empty_body> request(http::verb::get, path, 11);
+  request.set(http::field::host, service.text());
+  request.set(http::field::connection, "close");
+  const auto give_up = [&] {
+    error_code ignored;
+    socket.close(ignored);
+  };
+  error_code error = await(
+      context, deadline,
+      [&](auto handler) { http::async_write(socket, request, std::move(handler)); }, give_up);
+  beast::flat_buffer buffer;
+  http::response_parser<http::string_body> parser;
+  parser.body_limit(kLargestMessage);
+  if (!error) {
+    error = await(
+        context, deadline,
+        [&](auto handler) { http::async_read(socket, buffer, parser, std::move(handler)); },
+        give_up);
+  }
+  if (error) refuse(service, error.message());
+  return {parser.get().result_int(), std::move(parser.get().body())};
+}
+
+struct ServiceLink::Channels {
+  Channels(const ServiceAddress& service, Clock::time_point deadline)
+      : simulation(context, service, deadline) {}
+
+  /// \return ok once every message has its answer
+  LinkOutcome wait_for_answer(Clock::time_point deadline) {
+    const auto answered = [this] { return simulation.received() >= sent || simulation.ended(); };
+    if (!run_until(context, deadline, answered)) return LinkOutcome::silent;
+    if (simulation.ended()) return outcome_of(simulation.ended());
+    return simulation.received() == sent ? LinkOutcome::ok : LinkOutcome::nonsense;
+  }
+
+  asio::io_context context;
+  Channel simulation;
+  std::optional<Channel> events;
+  /// Messages that are to be answered; the inventory counts as the answer to having connected.
+  std::uint64_t sent = 1;
+};
+
+ServiceLink::ServiceLink(const ServiceAddress& service, std::chrono::nanoseconds patience)
+    : channels_(std::make_unique<Channels>(service, deadline_in(patience))) {
+  const LinkOutcome outcome = channels_->wait_for_answer(deadline_in(patience));
+  if (outcome == LinkOutcome::silent) refuse(service, "it accepts, but says nothing");
+  if (outcome != LinkOutcome::ok) refuse(service, "it ends the connection");
+}
+
+ServiceLink::~ServiceLink() = default;
+
+void ServiceLink::listen_to(const ServiceAddress& events, std::chrono::nanoseconds patience) {
+  channels_->events.emplace(channels_->context, events, deadline_in(patience));
+  channels_->events->keep_messages();
+}
+
+LinkOutcome ServiceLink::exchange(const std::string& message,
+                                  std::chrono::nanoseconds patience) noexcept {
+  try {
+    Channels& channels = *channels_;
+    const Clock::time_point deadline = deadline_in(patience);
+    // Whatever came in since the last exchange was not asked for.
+    channels.context.restart();
+    channels.context.poll();
+    if (channels.simulation.ended()) return outcome_of(channels.simulation.ended());
+    if (channels.simulation.received() != channels.sent) return LinkOutcome::nonsense;
+    ++channels.sent;
+    const error_code error = channels.simulation.write(message, deadline);
+    return error ? outcome_of(error) : channels.wait_for_answer(deadline);
+  } catch (const std::exception&) {
+    return LinkOutcome::closed;
+  }
+}
+
+void ServiceLink::post(const std::string& message, std::chrono::nanoseconds patience) noexcept {
+  try {
+    ++channels_->sent;
+    (void)channels_->simulation.write(message, deadline_in(patience));
+  } catch (const std::exception&) {
+    // The connection is gone, and with it the force.
+  }
+}
+
+void ServiceLink::close(std::chrono::nanoseconds patience) noexcept {
+  try {
+    const Clock::time_point deadline = deadline_in(patience);
+    channels_->simulation.close(deadline);
+    if (channels_->events) channels_->events->close(deadline);
+  } catch (const std::exception&) {
+    // It is being given up anyway.
+  }
+}
+
+const std::string& ServiceLink::answer() const noexcept {
+  return channels_->simulation.newest();
+}
+
+std::vector<std::string> ServiceLink::take_events() {
+  return channels_->events ? channels_->events->take() : std::vector<std::string>();
+}
+
+bool ServiceLink::events_ended() const noexcept {
+  return channels_->events && channels_->events->ended();
+}
+
+}  // namespace touchtrial::device::inverse3

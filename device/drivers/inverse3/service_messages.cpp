@@ -1,0 +1,278 @@
+#include "device/drivers/inverse3/service_messages.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial::device::inverse3 {
+namespace {
+
+using nlohmann::json;
+
+/// The profile under which Haply Hub shows this program, and keeps what people set for it there.
+constexpr const char* kProfile = "touchtrial";
+
+json parsed_object(std::string_view text) {
+  json value = json::parse(text.begin(), text.end(), nullptr, false);
+  if (!value.is_object()) throw BadMessage("not a JSON object");
+  return value;
+}
+
+/// Some answers lie in an envelope {"ok": true, "data": ...}.
+json content_of(std::string_view text) {
+  json value = parsed_object(text);
+  const auto data = value.find("data");
+  if (!value.contains("ok") || data == value.end() || !data->is_object()) return value;
+  // Moved, as copies of what is nested deeply would exhaust the stack.
+  json content = std::move(*data);
+  return content;
+}
+
+const json& member_of(const json& object, const char* key) {
+  const auto found = object.is_object() ? object.find(key) : object.end();
+  if (!object.is_object() || found == object.end()) throw BadMessage(std::string("no ") + key);
+  return *found;
+}
+
+/// \return null if there is none of this kind
+const json* object_in(const json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_object() ? &*found : nullptr;
+}
+
+std::string text_in(const json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+bool truth_in(const json& object, const char* key) {
+  const json& value = member_of(object, key);
+  if (!value.is_boolean()) throw BadMessage(std::string(key) + " is not true or false");
+  return value.get<bool>();
+}
+
+double number_in(const json& object, const char* key) {
+  const json& value = member_of(object, key);
+  if (!value.is_number() || !std::isfinite(value.get<double>())) {
+    throw BadMessage(std::string(key) + " is not a finite number");
+  }
+  return value.get<double>();
+}
+
+std::optional<std::int64_t> whole_number_in(const json& object, const char* key) {
+  const auto found = object.find(key);
+  const bool whole = found != object.end() && found->is_number_integer();
+  return whole ? std::optional(found->get<std::int64_t>()) : std::nullopt;
+}
+
+Vec3 vec3_in(const json& object, const char* key) {
+  const json& value = member_of(object, key);
+  return {number_in(value, "x"), number_in(value, "y"), number_in(value, "z")};
+}
+
+ArmStatus status_of(const json& status) {
+  return {truth_in(status, "calibrated"), truth_in(status, "in_use"),
+          truth_in(status, "power_supply"), truth_in(status, "ready"), truth_in(status, "started")};
+}
+
+/// \return the largest magnitude of a damping's numbers: a scalar, and a vector that may be missing
+double damping_of(const json& damping) {
+  double largest = std::abs(number_in(damping, "scalar"));
+  if (!damping.contains("vector")) return largest;
+  const Vec3 vector = vec3_in(damping, "vector");
+  return std::max({largest, std::abs(vector.x), std::abs(vector.y), std::abs(vector.z)});
+}
+
+bool has_unit_scale(const json& transform) {
+  const json* const scale = object_in(transform, "scale");
+  return scale == nullptr ||
+         std::all_of(scale->begin(), scale->end(), [](const json& s) { return s == 1.0; });
+}
+
+std::string firmware_of(const json& config) {
+  const json* const info = object_in(config, "device_info");
+  if (info == nullptr) return "";
+  const auto major = whole_number_in(*info, "major_version");
+  const auto minor = whole_number_in(*info, "minor_version");
+  return major && minor ? std::to_string(*major) + '.' + std::to_string(*minor) : "";
+}
+
+/// A truth, or an object that says whether it is enabled.
+bool is_enabled(const json& setting) {
+  if (setting.is_boolean()) return setting.get<bool>();
+  return truth_in(setting, "enabled");
+}
+
+DeviceConfig config_of(const json& config) {
+  DeviceConfig read;
+  if (const std::string type = text_in(config, "type"); !type.empty()) read.type = type;
+  read.firmware = firmware_of(config);
+  read.preset = text_in(config, "preset");
+  if (const json* const filters = object_in(config, "filters")) {
+    read.force_gate = number_in(member_of(*filters, "force_gate"), "gain");
+    read.damping = damping_of(member_of(*filters, "damping"));
+  }
+  if (const json* const torque = object_in(config, "torque_scaling")) {
+    read.torque_scaling = truth_in(*torque, "enabled");
+  }
+  if (const json* const gravity = object_in(config, "gravity_compensation")) {
+    read.gravity_compensation =
+        truth_in(*gravity, "enabled") ? number_in(*gravity, "scaling_factor") : 0.0;
+  }
+  read.handedness = text_in(config, "handedness");
+  if (config.contains("home_return")) read.home_return = is_enabled(config.at("home_return"));
+  if (const json* const basis = object_in(config, "basis")) {
+    read.plain_frame = text_in(*basis, "permutation") == "XYZ";
+  }
+  if (const json* const mount = object_in(config, "mount")) {
+    read.plain_frame = read.plain_frame && has_unit_scale(*mount);
+  }
+  return read;
+}
+
+DeviceReport device_of(const json& device) {
+  DeviceReport read;
+  read.id = text_in(device, "device_id");
+  if (read.id.empty()) throw BadMessage("no device_id");
+  const json& state = member_of(device, "state");
+  read.position_m = vec3_in(state, "cursor_position");
+  read.velocity_m_s = vec3_in(state, "cursor_velocity");
+  if (state.contains("current_cursor_force")) {
+    read.delivered_n = vec3_in(state, "current_cursor_force");
+  }
+  if (device.contains("status")) read.status = status_of(device.at("status"));
+  if (const json* const config = object_in(device, "config")) read.config = config_of(*config);
+  if (const json* const transform = object_in(state, "transform"); transform && read.config) {
+    read.config->plain_frame = read.config->plain_frame && has_unit_scale(*transform);
+  }
+  return read;
+}
+
+std::uint32_t pressed_in(const json& state) {
+  if (const json* const buttons = object_in(state, "buttons")) {
+    std::uint32_t bits = 0;
+    for (const auto& [key, bit] : {std::pair("a", 1U), std::pair("b", 2U), std::pair("c", 4U)}) {
+      const auto found = buttons->find(key);
+      if (found != buttons->end() && *found == true) bits |= bit;
+    }
+    return bits;
+  }
+  const auto only = state.find("button");
+  return only != state.end() && *only == true ? 1U : 0U;
+}
+
+/// Grips are no concern of ours but for their buttons: what is odd about them is passed over.
+std::uint32_t buttons_of(const json& report) {
+  for (const char* const family : {"wireless_verse_grip", "verse_grip"}) {
+    const auto grips = report.find(family);
+    if (grips == report.end() || !grips->is_array() || grips->empty()) continue;
+    if (!grips->front().is_object()) continue;
+    if (const json* const state = object_in(grips->front(), "state")) return pressed_in(*state);
+  }
+  return 0;
+}
+
+json command(const ServiceVersion& version, const std::string& device, Vec3 force_n) {
+  // Up to 3.4 the force's coordinates are called its values.
+  const char* const key = version.has_filters() ? "vector" : "values";
+  return {
+      {"device_id", device},
+      {"commands",
+       {{"set_cursor_force", {{key, {{"x", force_n.x}, {"y", force_n.y}, {"z", force_n.z}}}}}}}};
+}
+
+std::string dumped(json message, json device) {
+  message["inverse3"] = json::array();
+  message["inverse3"].push_back(std::move(device));
+  return message.dump();
+}
+
+}  // namespace
+
+ServiceVersion version_in(std::string_view text) {
+  const json content = content_of(text);
+  std::string version = text_in(content, "project_version");
+  if (version.empty()) version = text_in(content, "git_tag");
+  ServiceVersion read;
+  const char* const end = version.data() + version.size();
+  const auto major = std::from_chars(version.data(), end, read.major);
+  if (major.ec != std::errc() || major.ptr == end || *major.ptr != '.' ||
+      std::from_chars(major.ptr + 1, end, read.minor).ec != std::errc()) {
+    throw BadMessage("no version");
+  }
+  return read;
+}
+
+ServiceReport report_in(std::string_view text) {
+  const json content = content_of(text);
+  ServiceReport report;
+  report.session_id = whole_number_in(content, "session_id");
+  const auto devices = content.find("inverse3");
+  if (devices != content.end()) {
+    if (!devices->is_array()) throw BadMessage("inverse3 is not a list");
+    for (const json& device : *devices) {
+      if (!device.is_object()) throw BadMessage("a device is not an object");
+      report.devices.push_back(device_of(device));
+    }
+  }
+  report.buttons = buttons_of(content);
+  return report;
+}
+
+bool home_return_in(std::string_view text) {
+  return is_enabled(content_of(text));
+}
+
+std::vector<std::string> sessions_in(std::string_view text) {
+  const json content = content_of(text);
+  const json& sessions = member_of(content, "sessions");
+  if (!sessions.is_array()) throw BadMessage("sessions is not a list");
+  std::vector<std::string> names;
+  for (const json& session : sessions) {
+    const json* const profile = session.is_object() ? object_in(session, "profile") : nullptr;
+    names.push_back(profile == nullptr ? std::string() : text_in(*profile, "name"));
+  }
+  return names;
+}
+
+ServiceEvent event_in(std::string_view text) {
+  const json content = parsed_object(text);
+  ServiceEvent event;
+  event.name = text_in(content, "name");
+  if (event.name.empty()) throw BadMessage("an event without a name");
+  event.category = text_in(content, "category");
+  if (const json* const data = object_in(content, "data")) {
+    event.safety_type = text_in(*data, "safety_type");
+    event.device_id = text_in(*data, "device_id");
+    event.session_id = whole_number_in(*data, "session_id");
+  }
+  return event;
+}
+
+std::string first_message(const ServiceVersion& version, const std::string& device) {
+  json message = json::object();
+  json about = command(version, device, {});
+  if (version.has_filters()) {
+    message["session"]["configure"]["profile"]["name"] = kProfile;
+    about["configure"] = {
+        {"preset", {{"preset", kCentredPreset}}},
+        {"force_gate", {{"gain", 0.0}}},
+        {"damping", {{"scalar", 0.0}, {"vector", {{"x", 0.0}, {"y", 0.0}, {"z", 0.0}}}}}};
+  }
+  return dumped(std::move(message), std::move(about));
+}
+
+std::string inventory_request(const ServiceVersion& version, const std::string& device) {
+  json message = json::object();
+  message["session"]["force_render_full_state"] = json::object();
+  return dumped(std::move(message), command(version, device, {}));
+}
+
+std::string force_message(const ServiceVersion& version, const std::string& device, Vec3 force_n) {
+  return dumped(json::object(), command(version, device, force_n));
+}
+
+}  // namespace touchtrial::device::inverse3

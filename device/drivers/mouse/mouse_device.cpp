@@ -1,0 +1,175 @@
+#include "device/drivers/mouse/mouse_device.hpp"
+
+#include "core/errors.hpp"
+#include "device/drivers/drivers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <stdexcept>
+
+namespace touchtrial::device {
+namespace {
+
+/// Mass and damping of hand and stylus across the plane: 0.1 kg in N s^2/mm, and near critical
+/// damping on the usual wall of 0.4 N/mm.
+constexpr double kMass = 1e-4;
+constexpr double kDamping_n_s_per_mm = 0.012;
+constexpr double kHoverStiffness_n_per_mm = 0.4;
+/// Prevents a servo that stood still from throwing the hand when it continues.
+constexpr ServoClock::Time kLongestStep = std::chrono::milliseconds(20);
+constexpr double kFinestStepS = 0.001;
+/// Between planes nobody reads the device. Where the hand was then says nothing about the next one.
+constexpr ServoClock::Time kUnread = std::chrono::milliseconds(200);
+
+double seconds(ServoClock::Time time) noexcept {
+  return std::chrono::duration<double>(time).count();
+}
+
+/// \return the vector, shortened to the greatest length
+Vec2 limited(Vec2 vector, double greatest) noexcept {
+  const double length = norm(vector);
+  return length > greatest ? (greatest / length) * vector : vector;
+}
+
+double smooth(double share) noexcept {
+  return share * share * (3.0 - 2.0 * share);
+}
+
+void check(const MouseOptions& o) {
+  for (const double value : {o.pull_n_per_mm, o.greatest_pull_n, o.pull_time_s, o.pointer_time_s,
+                             o.greatest_speed_mm_s, o.push_n, o.push_time_s, o.hover_mm}) {
+    if (!(value > 0.0) || !std::isfinite(value)) {
+      throw std::invalid_argument("MouseDevice: an option is out of range");
+    }
+  }
+}
+
+std::string variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+std::vector<DeviceListing> list_mouse(const DeviceSettings&) {
+  DeviceListing listing;
+  listing.driver = kMouseDriver;
+  const std::string wayland = variable("WAYLAND_DISPLAY");
+  listing.where = wayland.empty() ? variable("DISPLAY") : wayland;
+  listing.present = !listing.where.empty();
+  if (listing.present) {
+    listing.model = "pointer on a screen";
+  } else {
+    listing.missing = {
+        "no display: neither DISPLAY nor WAYLAND_DISPLAY is set; run in a graphical session"};
+  }
+  return {listing};
+}
+
+std::unique_ptr<HapticDevice> refuse_without_window(const DeviceSettings&) {
+  throw DeviceError(
+      "mouse: it moves in a participant's window, which this command does not open; try it in a "
+      "session, with touchtrial run STUDY --db pilot.db --device mouse --pilot");
+}
+
+}  // namespace
+
+MouseDevice::MouseDevice(PointerSource& pointer, ServoClock& clock, const MouseOptions& options)
+    : pointer_(pointer),
+      clock_(clock),
+      options_(options),
+      followed_(options.pointer_time_s),
+      displaced_(options.pull_time_s),
+      height_mm_(options.hover_mm) {
+  check(options);
+}
+
+DeviceInfo MouseDevice::info() const {
+  DeviceInfo info;
+  info.name = "mouse";
+  info.max_force_n = 3.3;
+  info.model = "pointer on a screen";
+  info.visual = true;
+  return info;
+}
+
+DeviceFault MouseDevice::fault() const noexcept {
+  return closed_.load(std::memory_order_acquire) ? DeviceFault::link_lost : DeviceFault::none;
+}
+
+DeviceStatus MouseDevice::read(DeviceSample& sample) noexcept {
+  const ServoClock::Time now = clock_.now();
+  const double step_s =
+      readings_ == 0 ? 0.0 : seconds(std::clamp(now - last_read_, {}, kLongestStep));
+  if (readings_ > 0 && now - last_read_ > kUnread) lift();
+  last_read_ = now;
+  look_at(pointer_.newest(), now);
+  move(step_s);
+  const Vec2 place = followed_.value() + displaced_.value();
+  const Vec2 speed = followed_.rate_per_s() + displaced_.rate_per_s();
+  sample.position_mm = {place.x, place.y, height_mm_};
+  sample.velocity_mm_s = {speed.x, speed.y, rise_mm_s_};
+  sample.sequence = ++readings_;
+  sample.buttons = seen_.pressed ? 1U : 0U;
+  sample.ready = seen_.sequence > 0;
+  pointer_.show({place, readings_});
+  return seen_.closed ? DeviceStatus::fault : DeviceStatus::ok;
+}
+
+DeviceStatus MouseDevice::write(Vec3 force_n) noexcept {
+  const bool passes = !halted_.load(std::memory_order_acquire) && is_finite(force_n);
+  force_n_ = passes ? force_n : Vec3{};
+  return seen_.closed ? DeviceStatus::fault : DeviceStatus::ok;
+}
+
+void MouseDevice::look_at(const PointerState& pointer, ServoClock::Time now) noexcept {
+  if (pointer.sequence != seen_.sequence) news_at_ = now;
+  if (seen_.sequence == 0) {
+    // The hand begins where the pointer is first seen.
+    hand_mm_ = pointer.position_mm;
+    followed_.reset(hand_mm_);
+  }
+  seen_ = pointer;
+  if (pointer.closed) closed_.store(true, std::memory_order_release);
+  pressed_ = pointer.pressed && !pointer.closed && now - news_at_ < kPatience &&
+             !halted_.load(std::memory_order_acquire);
+}
+
+void MouseDevice::lift() noexcept {
+  push_share_ = 0.0;
+  force_n_ = {};
+  height_mm_ = options_.hover_mm;
+  rise_mm_s_ = 0.0;
+}
+
+void MouseDevice::move(double step_s) noexcept {
+  hand_mm_ =
+      hand_mm_ + limited(seen_.position_mm - hand_mm_, options_.greatest_speed_mm_s * step_s);
+  followed_.step(hand_mm_, step_s);
+  const Vec2 pull_n = limited({force_n_.x, force_n_.y}, options_.greatest_pull_n);
+  displaced_.step((1.0 / options_.pull_n_per_mm) * pull_n, step_s);
+  const int parts = std::max(1, static_cast<int>(std::ceil(step_s / kFinestStepS)));
+  for (int part = 0; part < parts; ++part) move_across(step_s / parts, force_n_.z);
+}
+
+void MouseDevice::move_across(double step_s, double normal_force_n) noexcept {
+  const double change = step_s / options_.push_time_s;
+  push_share_ = std::clamp(push_share_ + (pressed_ ? change : -change), 0.0, 1.0);
+  const double pushing = smooth(push_share_);
+  const double back_n = std::clamp(kHoverStiffness_n_per_mm * (options_.hover_mm - height_mm_),
+                                   -options_.push_n, options_.push_n);
+  const double hand_n = (1.0 - pushing) * back_n - pushing * options_.push_n;
+  // Semi-implicit Euler, the damper fully implicit.
+  rise_mm_s_ = (rise_mm_s_ + step_s / kMass * (normal_force_n + hand_n)) /
+               (1.0 + step_s / kMass * kDamping_n_s_per_mm);
+  const double next_mm = height_mm_ + step_s * rise_mm_s_;
+  height_mm_ = std::clamp(next_mm, -kReachMm, kReachMm);
+  if (height_mm_ != next_mm) rise_mm_s_ = 0.0;
+}
+
+DeviceDriver mouse_driver() {
+  return {kMouseDriver,
+          "pointer on a screen, for demonstration and pilot sessions: visual, not blind",
+          list_mouse, refuse_without_window};
+}
+
+}  // namespace touchtrial::device

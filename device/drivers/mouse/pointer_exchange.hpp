@@ -1,0 +1,62 @@
+/// \file The exchange of the pointer's state, from the owner of a window to the mouse device, and
+///   of the stylus' state in the other direction. Independent of any window library.
+#pragma once
+
+#include "core/vec.hpp"
+#include "device/servo/latest_value.hpp"
+
+#include <cstdint>
+
+namespace touchtrial::device {
+
+/// The person's own pointer, as its window saw it last.
+struct PointerState {
+  Vec2 position_mm;      ///< on the plane, from its top-left corner
+  bool pressed = false;  ///< the button is held
+  bool closed = false;   ///< the window is gone for good
+  /// Counts the window's rounds, whether or not the pointer has moved; 0: none has begun. A number
+  /// that stands still means a window that hangs.
+  std::uint64_t sequence = 0;
+};
+
+/// What the window draws in the pointer's place.
+struct StylusState {
+  Vec2 position_mm;
+  std::uint64_t sequence = 0;  ///< counts the device's readings; 0: there is none yet
+};
+
+/// The servo's side of a pointer. Both functions belong to the servo thread and never wait for the
+/// window: no lock, heap or I/O.
+class PointerSource {
+ public:
+  virtual ~PointerSource() = default;
+  [[nodiscard]] virtual PointerState newest() noexcept = 0;
+  virtual void show(const StylusState& stylus) noexcept = 0;
+};
+
+/// The PointerSource of every window: neither thread ever waits for the other.
+class PointerExchange final : public PointerSource {
+ public:
+  /// \name Servo thread
+  ///@{
+  [[nodiscard]] PointerState newest() noexcept override { return pointers_.get(); }
+  void show(const StylusState& stylus) noexcept override { styluses_.set(stylus); }
+  ///@}
+
+  /// \name Window's thread
+  ///@{
+  /// Call it once a round, whether or not the pointer has moved; it numbers the state itself.
+  void publish(PointerState pointer) noexcept {
+    pointer.sequence = ++published_;
+    pointers_.set(pointer);
+  }
+  [[nodiscard]] StylusState stylus() noexcept { return styluses_.get(); }
+  ///@}
+
+ private:
+  LatestValue<PointerState> pointers_;
+  LatestValue<StylusState> styluses_;
+  std::uint64_t published_ = 0;
+};
+
+}  // namespace touchtrial::device

@@ -1,0 +1,194 @@
+#include "device/drivers/openhaptics/hd_loop.hpp"
+
+#include "device/platform/realtime.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <thread>
+
+namespace touchtrial::device::hd {
+namespace {
+
+/// More errors than any stack holds, so that a library that never runs out of them cannot hang us.
+constexpr int kMostErrors = 256;
+
+DeviceFault fault_of(std::uint32_t code) noexcept {
+  switch (code) {
+    case 0:
+      return DeviceFault::none;
+    case kWarmMotors:
+      return DeviceFault::warm_motors;
+    case kExceededForce:
+    case kExceededImpulse:
+    case kExceededVelocity:
+      return DeviceFault::limit_passed;
+    case kCommunicationError:
+      return DeviceFault::link_lost;
+    default:
+      return DeviceFault::driver;
+  }
+}
+
+constexpr std::int64_t kTicksBetweenTemperatures = 100;
+/// The library takes a moment for a calibration; a new request during it would begin it anew.
+constexpr std::int64_t kTicksBetweenCalibrations = 100;
+
+/// What a person has to do for a calibration of this style.
+DeviceReadiness need_of(int style) noexcept {
+  switch (style) {
+    case kStyleEncoderReset:
+      return DeviceReadiness::needs_reset;
+    case kStyleAuto:
+      return DeviceReadiness::needs_homing;
+    case kStyleInkwell:
+      return DeviceReadiness::needs_inkwell;
+    default:
+      return DeviceReadiness::needs_calibration;
+  }
+}
+
+Vec3 vec_from(const std::array<double, 3>& values) noexcept {
+  return {values[0], values[1], values[2]};
+}
+
+}  // namespace
+
+Api load_api(const DynamicLibrary& library) {
+  Api api{};
+  library.find("hdInitDevice", api.init_device);
+  library.find("hdDisableDevice", api.disable_device);
+  library.find("hdMakeCurrentDevice", api.make_current_device);
+  library.find("hdBeginFrame", api.begin_frame);
+  library.find("hdEndFrame", api.end_frame);
+  library.find("hdEnable", api.enable);
+  library.find("hdDisable", api.disable);
+  library.find("hdGetDoublev", api.get_doublev);
+  library.find("hdGetIntegerv", api.get_integerv);
+  library.find("hdSetDoublev", api.set_doublev);
+  library.find("hdGetString", api.get_string);
+  library.find("hdGetErrorString", api.get_error_string);
+  library.find("hdGetError", api.get_error);
+  library.find("hdCheckCalibration", api.check_calibration);
+  library.find("hdUpdateCalibration", api.update_calibration);
+  library.find("hdStartScheduler", api.start_scheduler);
+  library.find("hdStopScheduler", api.stop_scheduler);
+  library.find("hdSetSchedulerRate", api.set_scheduler_rate);
+  library.find("hdScheduleAsynchronous", api.schedule_asynchronous);
+  library.find("hdUnschedule", api.unschedule);
+  return api;
+}
+
+Errors drain_errors(const Api& api) noexcept {
+  Errors errors;
+  for (int i = 0; i < kMostErrors; ++i) {
+    const std::uint32_t code = api.get_error().code;
+    if (code == 0) break;
+    errors.oldest = code;
+    const bool telling = errors.fault != DeviceFault::none && errors.fault != DeviceFault::driver;
+    if (!telling) errors.fault = fault_of(code);
+  }
+  return errors;
+}
+
+std::uint32_t Loop::callback(void* loop) noexcept {
+  return static_cast<Loop*>(loop)->enter();
+}
+
+/// Sets `inside_` before it reads `closed_`, while `close` sets `closed_` before it reads
+/// `inside_`: with sequentially consistent atomics at least one of the two sees the other.
+std::uint32_t Loop::enter() noexcept {
+  inside_.store(true);
+  const bool closed = closed_.load();
+  if (!closed) tick();
+  inside_.store(false);
+  return closed ? kCallbackDone : kCallbackContinue;
+}
+
+bool Loop::close(std::chrono::milliseconds patience) noexcept {
+  closed_.store(true);
+  for (auto waited = std::chrono::milliseconds(0); inside_.load(); ++waited) {
+    if (waited >= patience) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
+}
+
+void Loop::tick() noexcept {
+  api_.make_current_device(device_);
+  check_calibration();
+  run_frame();
+  const Errors errors = drain_errors(api_);
+  if (errors.fault != DeviceFault::none) link_.fail(errors.fault);
+  ++tick_;
+}
+
+/// A device that was calibrated once keeps a valid position while it has news for its calibration.
+void Loop::check_calibration() noexcept {
+  const Enum state = api_.check_calibration();
+  if (state == kCalibrationOk) is_calibrated_ = true;
+  if (state != kCalibrationOk && state != kCalibrationNeedsUpdate) is_calibrated_ = false;
+  if (is_update_due(state)) {
+    api_.update_calibration(static_cast<Enum>(options_.calibration_style));
+    // A calibration that fails is tried again.
+    const DeviceFault fault = drain_errors(api_).fault;
+    if (fault != DeviceFault::none && fault != DeviceFault::driver) link_.fail(fault);
+  }
+  readiness_.store(is_calibrated_ ? DeviceReadiness::ready : need_of(options_.calibration_style),
+                   std::memory_order_release);
+}
+
+/// An update moves the origin. A reset makes the arm's place the reset position wherever it is, so
+/// only a person decides it; all other updates wait until no servo renders forces.
+bool Loop::is_update_due(Enum state) noexcept {
+  const bool is_asked = reset_asked_.exchange(false, std::memory_order_acq_rel);
+  if (options_.calibration_style == kStyleEncoderReset) return is_asked && !is_calibrated_;
+  idle_ticks_ = link_.live_force(monotonic_now()) ? 0 : idle_ticks_ + 1;
+  return options_.calibration_style != 0 && state == kCalibrationNeedsUpdate &&
+         tick_ % kTicksBetweenCalibrations == 0 &&
+         (!is_calibrated_ || idle_ticks_ > kTicksBetweenCalibrations);
+}
+
+void Loop::run_frame() noexcept {
+  api_.begin_frame(device_);
+  DeviceSample sample = read_sample();
+  sample.ready = is_calibrated_;
+  if (tick_ % kTicksBetweenTemperatures == 0) watch_temperature();
+  if (!is_finite(sample.position_mm) || !is_finite(sample.velocity_mm_s)) {
+    link_.fail(DeviceFault::bad_data);
+  } else {
+    link_.publish(sample);
+  }
+  const Vec3 force_n = link_.force_to_send(monotonic_now());
+  send(is_calibrated_ ? force_n : Vec3{});
+  api_.end_frame(device_);
+}
+
+DeviceSample Loop::read_sample() noexcept {
+  std::array<double, 3> position{};
+  std::array<double, 3> velocity{};
+  int buttons = 0;
+  api_.get_doublev(kPosition, position.data());
+  api_.get_doublev(kVelocity, velocity.data());
+  api_.get_integerv(kButtons, &buttons);
+  return {vec_from(position), vec_from(velocity), 0, static_cast<std::uint32_t>(buttons)};
+}
+
+void Loop::watch_temperature() noexcept {
+  if (!options_.has_motor_temperature) return;
+  std::array<double, 6> warmth{};
+  api_.get_doublev(kMotorTemperature, warmth.data());
+  const bool warm =
+      std::any_of(warmth.begin(), warmth.end(), [](double motor) { return motor > kWarmestMotor; });
+  if (warm) link_.fail(DeviceFault::warm_motors);
+}
+
+void Loop::send(Vec3 force_n) noexcept {
+  const std::array<double, 3> force = {force_n.x, force_n.y, force_n.z};
+  api_.set_doublev(kCurrentForce, force.data());
+  const bool zero = force_n == Vec3{};
+  zeros_sent_.store(zero ? std::min(zeros_sent_.load(std::memory_order_relaxed) + 1, 1'000'000) : 0,
+                    std::memory_order_release);
+}
+
+}  // namespace touchtrial::device::hd

@@ -1,0 +1,170 @@
+/// \file The part of the OpenHaptics device API (HDAPI) that the driver uses, declared from its
+/// public documentation: nothing of the vendor's kit is needed to build. And the callback that the
+/// vendor's scheduler thread runs once a tick.
+#pragma once
+
+#include "device/drivers/device_link.hpp"
+#include "device/haptic_device.hpp"
+#include "device/platform/dynamic_library.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+
+namespace touchtrial::device::hd {
+
+using Handle = std::uint32_t;  ///< HHD: a device
+using Enum = std::uint32_t;
+using ScheduleHandle = unsigned long;  ///< a scheduled callback
+using Callback = std::uint32_t(void*);
+
+/// The top of the library's stack of errors, passed by value.
+struct ErrorInfo {
+  std::uint32_t code;
+  int internal_code;
+  Handle device;
+};
+
+constexpr Handle kInvalidHandle = 0xFFFFFFFF;
+constexpr std::uint32_t kCallbackDone = 0;
+constexpr std::uint32_t kCallbackContinue = 1;
+/// Runs before every other callback of the scheduler.
+constexpr std::uint16_t kHighestPriority = 0xFFFF;
+
+/// Parameters to read and write.
+constexpr Enum kButtons = 0x2000;
+constexpr Enum kPosition = 0x2050;  ///< 3 doubles, mm
+constexpr Enum kVelocity = 0x2051;  ///< 3 doubles, mm/s
+constexpr Enum kVersion = 0x2500;   ///< of the library
+constexpr Enum kModel = 0x2501;
+constexpr Enum kVendor = 0x2503;
+constexpr Enum kSerial = 0x2504;
+constexpr Enum kFirmware = 0x2505;
+constexpr Enum kMaxWorkspace = 0x2550;     ///< 6 doubles, mm: least x, y, z, greatest x, y, z
+constexpr Enum kUsableWorkspace = 0x2551;  ///< the same, where forces are rendered reliably
+constexpr Enum kCalibrationStyles = 0x2555;
+constexpr Enum kMaxStiffness = 0x2602;      ///< nominal, N/mm
+constexpr Enum kMaxForce = 0x2603;          ///< nominal, N
+constexpr Enum kContinuousForce = 0x2604;   ///< nominal, N
+constexpr Enum kMotorTemperature = 0x2605;  ///< 6 doubles: 0 cold, 1 as warm as a motor may get
+constexpr Enum kMaxDamping = 0x2609;        ///< nominal, N s/mm
+constexpr Enum kCurrentForce = 0x2700;      ///< 3 doubles, N
+
+/// Capabilities to switch on and off.
+constexpr Enum kForceOutput = 0x4000;
+constexpr Enum kForceClamping = 0x4001;
+constexpr Enum kForceRamping = 0x4002;
+
+/// States of calibration, and bits of its styles.
+constexpr Enum kCalibrationOk = 0x5000;
+constexpr Enum kCalibrationNeedsUpdate = 0x5001;
+constexpr int kStyleEncoderReset = 1;  ///< a person puts the arm at a known place and says so
+constexpr int kStyleAuto = 2;          ///< the device learns while it is moved
+constexpr int kStyleInkwell = 4;       ///< the stylus lies in its inkwell
+
+/// Errors with a DeviceFault of their own; all others are DeviceFault::driver.
+constexpr std::uint32_t kWarmMotors = 0x200;
+constexpr std::uint32_t kExceededForce = 0x201;
+constexpr std::uint32_t kExceededImpulse = 0x202;
+constexpr std::uint32_t kExceededVelocity = 0x203;
+constexpr std::uint32_t kCommunicationError = 0x302;
+
+/// The functions, hdInitDevice as init_device and so on.
+struct Api {
+  Handle (*init_device)(const char*);
+  void (*disable_device)(Handle);
+  void (*make_current_device)(Handle);
+  void (*begin_frame)(Handle);
+  void (*end_frame)(Handle);
+  void (*enable)(Enum);
+  void (*disable)(Enum);
+  void (*get_doublev)(Enum, double*);
+  void (*get_integerv)(Enum, int*);
+  void (*set_doublev)(Enum, const double*);
+  const char* (*get_string)(Enum);
+  const char* (*get_error_string)(std::uint32_t);
+  ErrorInfo (*get_error)();
+  Enum (*check_calibration)();
+  void (*update_calibration)(Enum);
+  void (*start_scheduler)();
+  void (*stop_scheduler)();
+  void (*set_scheduler_rate)(unsigned long);
+  ScheduleHandle (*schedule_asynchronous)(Callback*, void*, std::uint16_t);
+  void (*unschedule)(ScheduleHandle);
+};
+
+/// \throws DeviceError if a function is missing
+[[nodiscard]] Api load_api(const DynamicLibrary& library);
+
+/// The sum of a drained stack of errors.
+struct Errors {
+  std::uint32_t oldest = 0;  ///< code; 0: there was none
+  /// The most specific one: a warm motor rather than the frame that failed because of it.
+  DeviceFault fault = DeviceFault::none;
+};
+
+/// Takes all errors off the stack. No heap, lock or I/O on our side.
+[[nodiscard]] Errors drain_errors(const Api& api) noexcept;
+
+/// What the device offers, as found when it was opened.
+struct LoopOptions {
+  bool has_motor_temperature = false;
+  int calibration_style = kStyleInkwell;  ///< one of the styles, or 0: none is known
+};
+
+/// The callback's data, and all that it touches. The thread that opens the device makes and
+/// destroys it.
+class Loop {
+ public:
+  /// On the vendor's scale from 0 (cold) to 1 (as warm as a motor may get). The library raises an
+  /// error at 1; we stop a little before that, while the motors still obey.
+  static constexpr double kWarmestMotor = 0.95;
+
+  Loop(const Api& api, Handle device, const LoopOptions& options) noexcept
+      : api_(api), device_(device), options_(options) {}
+
+  /// For the scheduler, with the loop as data.
+  static std::uint32_t callback(void* loop) noexcept;
+
+  [[nodiscard]] DeviceLink& link() noexcept { return link_; }
+  [[nodiscard]] const DeviceLink& link() const noexcept { return link_; }
+  [[nodiscard]] DeviceReadiness readiness() const noexcept {
+    return readiness_.load(std::memory_order_acquire);
+  }
+  /// As HapticDevice::calibrate. Any thread.
+  void calibrate() noexcept { reset_asked_.store(true, std::memory_order_release); }
+  /// \return the number of frames in a row, up to now, that sent zero
+  [[nodiscard]] int zeros_sent() const noexcept {
+    return zeros_sent_.load(std::memory_order_acquire);
+  }
+
+  /// Makes all further callbacks return at once and end themselves.
+  /// \return false if one is still inside the vendor's library after the patience: this object must
+  ///   then never be destroyed
+  [[nodiscard]] bool close(std::chrono::milliseconds patience) noexcept;
+
+ private:
+  [[nodiscard]] std::uint32_t enter() noexcept;
+  void tick() noexcept;
+  void check_calibration() noexcept;
+  [[nodiscard]] bool is_update_due(Enum state) noexcept;
+  void run_frame() noexcept;
+  [[nodiscard]] DeviceSample read_sample() noexcept;
+  void watch_temperature() noexcept;
+  void send(Vec3 force_n) noexcept;
+
+  Api api_;
+  Handle device_;
+  LoopOptions options_;
+  DeviceLink link_;
+  std::int64_t tick_ = 0;
+  bool is_calibrated_ = false;   ///< the position is valid
+  std::int64_t idle_ticks_ = 0;  ///< in a row, up to now, without a force from a servo
+  std::atomic<bool> reset_asked_{false};
+  std::atomic<DeviceReadiness> readiness_{DeviceReadiness::needs_calibration};
+  std::atomic<int> zeros_sent_{0};
+  std::atomic<bool> inside_{false};
+  std::atomic<bool> closed_{false};
+};
+
+}  // namespace touchtrial::device::hd

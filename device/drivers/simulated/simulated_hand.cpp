@@ -1,0 +1,184 @@
+#include "device/drivers/simulated/simulated_hand.hpp"
+
+#include "device/drivers/drivers.hpp"
+#include "device/drivers/registry.hpp"
+#include "device/servo/servo.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace touchtrial::device {
+namespace {
+
+/// The part of the plane in which the path stays.
+struct Inside {
+  double left_mm, right_mm, top_mm, bottom_mm;
+
+  [[nodiscard]] double shorter_side_mm() const {
+    return std::min(right_mm - left_mm, bottom_mm - top_mm);
+  }
+  [[nodiscard]] Vec2 point(RandomStream& random) const {
+    const double x_mm = random.uniform(left_mm, right_mm);
+    return {x_mm, random.uniform(top_mm, bottom_mm)};
+  }
+};
+
+void check(const PlaneGeometry& plane, const ExplorationOptions& options) {
+  const bool plane_ok = plane.width_mm() > 0.0 && plane.height_mm() > 0.0;
+  const bool speeds_ok = options.slowest_mm_s > 0.0 && options.fastest_mm_s >= options.slowest_mm_s;
+  if (!plane_ok) throw std::invalid_argument("ExplorationPath: the plane has no area");
+  if (!speeds_ok || !(options.margin_mm >= 0.0) || !(options.duration_s > 0.0)) {
+    throw std::invalid_argument("ExplorationPath: speed, margin or duration is out of range");
+  }
+}
+
+Inside inside_of(const PlaneGeometry& plane, double margin_mm) {
+  const double x_mm = std::min(margin_mm, plane.width_mm() / 5.0);
+  const double y_mm = std::min(margin_mm, plane.height_mm() / 5.0);
+  return {x_mm, plane.width_mm() - x_mm, y_mm, plane.height_mm() - y_mm};
+}
+
+/// Draws until the point is far enough. From any point at least a fifth of the area is, so a few
+/// draws suffice.
+Vec2 next_point(Vec2 from_mm, const Inside& inside, RandomStream& random) {
+  Vec2 point_mm = inside.point(random);
+  while (norm(point_mm - from_mm) < inside.shorter_side_mm() / 2.0) {
+    point_mm = inside.point(random);
+  }
+  return point_mm;
+}
+
+/// The share of the final speed at u = 0 .. 1 of a ramp, and the distance covered by then, in ramps
+/// at that speed.
+double ramp_speed(double u) noexcept {
+  return u * u * (3.0 - 2.0 * u);
+}
+double ramp_distance(double u) noexcept {
+  return u * u * u * (1.0 - u / 2.0);
+}
+
+/// The plane and the time of a hand that is opened by name; nobody watches it for longer.
+constexpr PlaneGeometry kNamedPlane{0.2, 500, 500};
+constexpr double kNamedExploreS = 8.0 * 3600.0;
+
+std::vector<DeviceListing> list_simulated(const DeviceSettings&) {
+  DeviceListing listing;
+  listing.driver = "simulated";
+  listing.model = "simulated hand";
+  listing.present = true;
+  return {listing};
+}
+
+std::unique_ptr<HapticDevice> open_simulated(const DeviceSettings& settings) {
+  RandomStream random(1, "simulated device");
+  HandOptions hand;
+  hand.explore_s = kNamedExploreS;
+  ExplorationOptions exploration;
+  exploration.duration_s = kNamedExploreS;
+  const std::string& held = settings.simulated_on;
+  return std::make_unique<SimulatedHand>(hand, ExplorationPath(kNamedPlane, exploration, random),
+                                         held.empty() ? DeviceModel{} : model_of_device(held));
+}
+
+}  // namespace
+
+ExplorationPath::Ramps ExplorationPath::ramps_at(double gone_s, double left_s) noexcept {
+  const double begun = std::clamp(gone_s / kRampS, 0.0, 1.0);
+  const double left = std::clamp(left_s / kRampS, 0.0, 1.0);
+  // Speeding up covers ramp_distance(begun); slowing down covers the rest of half a ramp.
+  return {kRampS * (ramp_distance(begun) + 0.5 - ramp_distance(left)),
+          std::min(ramp_speed(begun), ramp_speed(left))};
+}
+
+ExplorationPath::Stroke ExplorationPath::stroke_between(Vec2 from_mm, Vec2 to_mm, double start_s,
+                                                        double speed_mm_s) noexcept {
+  const double length_mm = norm(to_mm - from_mm);
+  Stroke stroke;
+  stroke.start_s = start_s;
+  stroke.steady_s = std::max(length_mm / speed_mm_s, kRampS);
+  stroke.speed_mm_s = length_mm / stroke.steady_s;
+  stroke.from_mm = from_mm;
+  stroke.direction = (1.0 / length_mm) * (to_mm - from_mm);
+  return stroke;
+}
+
+ExplorationPath::ExplorationPath(const PlaneGeometry& plane, const ExplorationOptions& options,
+                                 RandomStream& random) {
+  check(plane, options);
+  const Inside inside = inside_of(plane, options.margin_mm);
+  Vec2 from_mm = inside.point(random);
+  for (double start_s = 0.0; start_s < options.duration_s; start_s = strokes_.back().end_s()) {
+    const Vec2 to_mm = next_point(from_mm, inside, random);
+    const double speed_mm_s = random.uniform(options.slowest_mm_s, options.fastest_mm_s);
+    strokes_.push_back(stroke_between(from_mm, to_mm, start_s, speed_mm_s));
+    from_mm = to_mm;
+  }
+}
+
+std::string words_of_simulated(const DeviceModel& held) {
+  const bool ideal = held.name.empty() || held.name == "ideal";
+  return ideal ? "simulated" : "simulated " + held.name;
+}
+
+SimulatedHand::SimulatedHand(const HandOptions& options, ExplorationPath path,
+                             const DeviceModel& device)
+    : options_(options),
+      path_(std::move(path)),
+      held_(options, device, kServoTickS),
+      max_force_n_(device.max_force_n > 0.0 ? std::min(device.max_force_n, options.max_force_n)
+                                            : options.max_force_n),
+      device_(device) {
+  last_tick_ = std::llround(options.explore_s * kServoRateHz);
+  const Vec2 first_mm = path_.at(0.0, stroke_).position_mm;
+  held_.place({first_mm.x, first_mm.y, options.start_height_mm});
+}
+
+HeldDevice SimulatedHand::unforced() const {
+  // No force goes through its motors, and nobody reads it.
+  DeviceModel model = device_;
+  model.delay_ticks = 0;
+  model.lowpass_hz = model.force_step_n = model.max_force_n = 0.0;
+  model.position_step_mm = 0.0;
+  model.velocity_readings = 0;
+  model.planted = {};
+  HeldDevice free(options_, model, kServoTickS);
+  free.place(held_.device.true_position_mm());
+  return free;
+}
+
+void SimulatedHand::feel_by(TipSense& sense) {
+  if (foreseen_ == nullptr) unforced_.emplace(unforced());
+  sense_ = &sense;
+}
+
+void SimulatedHand::foresee() {
+  auto way = std::make_shared<std::vector<FreeTick>>();
+  way->reserve(static_cast<std::size_t>(last_tick_) + 1);
+  HeldDevice free = unforced();
+  std::size_t stroke = 0;
+  // A hand that has stopped is told of one more force: none.
+  for (std::int64_t tick = 0; tick <= last_tick_; ++tick) {
+    const Intention intention = intention_at(tick, stroke);
+    static_cast<void>(free.tick({}, intention.target, intention.push_n));
+    const Vec3& tip_mm_s = free.device.true_velocity_mm_s();
+    way->push_back({intention, {tip_mm_s.x, tip_mm_s.y}});
+  }
+  foreseen_ = std::move(way);
+}
+
+DeviceInfo SimulatedHand::info() const {
+  return {"simulated", "", max_force_n_, true};
+}
+
+std::chrono::nanoseconds SimulatedHand::now() const noexcept {
+  return tick_ * kServoTick;
+}
+
+DeviceDriver simulated_driver() {
+  return {"simulated", "a simulated hand that strokes a blank plane", list_simulated,
+          open_simulated};
+}
+
+}  // namespace touchtrial::device

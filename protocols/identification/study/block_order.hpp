@@ -1,0 +1,46 @@
+/// \file The presentations of a block and their order, before images are chosen, and a check that a
+/// study's order is possible. Private to protocols/identification.
+#pragma once
+
+#include "core/cipher.hpp"
+#include "study/study.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace touchtrial::study::identification {
+
+/// Why an order is impossible.
+struct OrderObstacle {
+  std::string key;  ///< the offending key of "trials", as a JSON pointer: "/repeats"
+  std::string what;
+};
+
+/// \return why the study's order is impossible, or nothing if every participant can get a schedule
+[[nodiscard]] std::optional<OrderObstacle> obstacle_to_order(const Study& study);
+
+/// The class and method of a trial, before an image is chosen.
+struct BlockItem {
+  int class_index = 0;
+  int method = 0;
+};
+
+/// A block's presentations in order; the first `lead_ins` are not scored.
+struct BlockOrder {
+  std::vector<BlockItem> items;
+  std::size_t lead_ins = 0;
+};
+
+/// Draws the order of a block.
+/// \param methods  methods that the block presents
+/// \param purpose  suffix of the names of the block's random streams, after "schedule: order, " and
+///   "schedule: lead-in, "
+/// \param secret  of the participant, see ScheduleDraw
+/// \pre obstacle_to_order(study) is empty
+[[nodiscard]] BlockOrder make_block_order(const Study& study, std::span<const int> methods,
+                                          const std::string& purpose, const SecretKey& secret);
+
+}  // namespace touchtrial::study::identification

@@ -1,0 +1,231 @@
+#include "protocols/identification/study/schedule.hpp"
+
+#include "core/errors.hpp"
+#include "core/random.hpp"
+#include "core/strict_json.hpp"
+#include "protocols/identification/study/block_order.hpp"
+#include "study/random_orders.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <numeric>
+#include <span>
+#include <stdexcept>
+#include <utility>
+
+namespace touchtrial::study::identification {
+namespace {
+
+/// The methods of a block, and the suffix of the names of its random streams.
+struct BlockPlan {
+  std::vector<int> methods;
+  std::string purpose;
+};
+
+std::vector<BlockPlan> block_plans(const Study& study, const ScheduleDraw& draw) {
+  const std::vector<int> methods = williams_row(study.presented_methods(), draw.method_order);
+  if (study.trials.blocks == Blocks::mixed) {
+    std::vector<int> in_file_order(methods.size());
+    std::iota(in_file_order.begin(), in_file_order.end(), 0);
+    return {{in_file_order, "all methods"}};
+  }
+  std::vector<BlockPlan> plans;
+  for (const int method : methods) plans.push_back({{method}, "method " + std::to_string(method)});
+  return plans;
+}
+
+/// Chooses images for one participant. For each class and method, it deals the images like a
+/// shuffled pack of cards: all are used before any repeats, and then they are shuffled again.
+class ExemplarSupply {
+ public:
+  /// \param restart  suffix of the names of the random streams; empty for a schedule's first order
+  ExemplarSupply(const Study& study, const ScheduleDraw& draw, std::string restart = {})
+      : study_(study), secret_(draw.secret), restart_(std::move(restart)) {}
+
+  /// \return the index of the next image of the class for the method
+  int next(int class_index, int method);
+
+ private:
+  struct Deck {
+    RandomStream random;
+    std::vector<int> left;  ///< images left to deal; the next one is at the back
+  };
+
+  const Study& study_;
+  SecretKey secret_;
+  std::string restart_;
+  std::map<std::pair<int, int>, Deck> decks_;
+};
+
+int ExemplarSupply::next(int class_index, int method) {
+  const std::size_t images = study_.classes[static_cast<std::size_t>(class_index)].images.size();
+  if (images == 1) return 0;
+  const auto key = std::pair(class_index, method);
+  auto deck = decks_.find(key);
+  if (deck == decks_.end()) {
+    const std::string purpose = "schedule: exemplars of class " + std::to_string(class_index) +
+                                ", method " + std::to_string(method) + restart_;
+    deck = decks_.emplace(key, Deck{RandomStream(secret_, purpose), {}}).first;
+  }
+  std::vector<int>& left = deck->second.left;
+  if (left.empty()) {
+    left.resize(images);
+    std::iota(left.begin(), left.end(), 0);
+    shuffle(std::span<int>(left), deck->second.random);
+  }
+  const int exemplar = left.back();
+  left.pop_back();
+  return exemplar;
+}
+
+/// Draws `count` of `places` places, but never the first.
+/// \return for each place, whether it was drawn
+std::vector<bool> random_places(std::size_t places, std::size_t count, RandomStream& random) {
+  std::vector<std::size_t> later(places - 1);
+  std::iota(later.begin(), later.end(), std::size_t{1});
+  shuffle(std::span<std::size_t>(later), random);
+  std::vector<bool> taken(places, false);
+  for (std::size_t i = 0; i < count; ++i) taken[later[i]] = true;
+  return taken;
+}
+
+/// Inserts catch trials at random places. The first presentation stays first; otherwise every
+/// choice of places is equally likely. A catch trial belongs to the block of the presentation
+/// before it. Does not number trials.
+/// \pre `shown` is not empty if `count` > 0
+std::vector<Presentation> with_catch_trials(const std::vector<Presentation>& shown, int count,
+                                            RandomStream& random) {
+  if (count == 0) return shown;
+  const auto caught = static_cast<std::size_t>(count);
+  std::vector<Presentation> all;
+  auto next = shown.begin();
+  for (const bool is_catch : random_places(shown.size() + caught, caught, random)) {
+    if (is_catch) {
+      all.push_back(
+          {.block = all.back().block, .kind = PresentationKind::catch_trial, .stimulus = {}});
+    } else {
+      all.push_back(*next++);
+    }
+  }
+  return all;
+}
+
+/// A block's presentations, still without catch trials and trial numbers.
+std::vector<Presentation> presentations_of(const BlockOrder& order, int block,
+                                           ExemplarSupply& exemplars) {
+  std::vector<Presentation> shown;
+  for (std::size_t i = 0; i < order.items.size(); ++i) {
+    const auto [class_index, method] = order.items[i];
+    shown.push_back(
+        {.block = block,
+         .kind = i < order.lead_ins ? PresentationKind::lead_in : PresentationKind::scored,
+         .stimulus = {class_index, exemplars.next(class_index, method), method}});
+  }
+  return shown;
+}
+
+void number(std::vector<Presentation>& presentations, int first) {
+  for (Presentation& shown : presentations) shown.trial = first++;
+}
+
+/// Roves gains below the pack's, so that no presentation is stronger than what was prepared. Catch
+/// trials have none.
+void rove(const Study& study, RandomStream random, std::vector<Presentation>& presentations) {
+  if (study.trials.rove_db == 0.0) return;
+  for (Presentation& shown : presentations) {
+    if (shown.kind == PresentationKind::catch_trial) continue;
+    shown.gain_db = study.trials.own_gain_db() + drawn_rove_db(study.trials.rove_db, random);
+  }
+}
+
+/// Leaves a visit's own blocks, if the study divides its methods between visits. They keep their
+/// numbers, which are those of one long session.
+void keep_visit(const Study& study, int visit, std::vector<Presentation>& shown) {
+  if (visit == 0 || study.visits.methods != VisitMethods::divided) return;
+  const int blocks = study.presented_methods() / study.visits.count;
+  std::erase_if(shown, [&](const Presentation& one) { return one.block / blocks + 1 != visit; });
+}
+
+std::vector<int> picture_layout(const Study& study, const ScheduleDraw& draw) {
+  std::vector<int> layout(study.classes.size());
+  std::iota(layout.begin(), layout.end(), 0);
+  RandomStream random(draw.secret, "schedule: layout");
+  shuffle(std::span<int>(layout), random);
+  return layout;
+}
+
+void check_order(const Study& study) {
+  if (const auto obstacle = obstacle_to_order(study)) {
+    throw StudyError(
+        one_line("study " + study.name + ": /trials" + obstacle->key + ": " + obstacle->what));
+  }
+}
+
+}  // namespace
+
+Schedule scheduled(const Study& study, const ScheduleDraw& draw) {
+  check_order(study);
+  Schedule schedule;
+  ExemplarSupply exemplars(study, draw);
+  int block = 0;
+  for (const auto& [methods, purpose] : block_plans(study, draw)) {
+    const BlockOrder order = make_block_order(study, methods, purpose, draw.secret);
+    const auto shown = presentations_of(order, block++, exemplars);
+    schedule.presentations.insert(schedule.presentations.end(), shown.begin(), shown.end());
+  }
+  RandomStream random(draw.secret, "schedule: catch");
+  schedule.presentations =
+      with_catch_trials(schedule.presentations, study.trials.catch_trials, random);
+  rove(study, RandomStream(draw.secret, "schedule: rove"), schedule.presentations);
+  keep_visit(study, draw.visit, schedule.presentations);
+  number(schedule.presentations, 1);
+  schedule.layout = picture_layout(study, draw);
+  return schedule;
+}
+
+std::vector<Presentation> scheduled_again(const Study& study, const ScheduleDraw& draw, int block,
+                                          int restarts_before, int first_trial) {
+  const std::vector<BlockPlan> plans = block_plans(study, draw);
+  if (block < 0 || block >= static_cast<int>(plans.size()) || restarts_before < 0) {
+    throw std::invalid_argument("restarted_block: the study has no such block or restart");
+  }
+  const Schedule first = scheduled(study, draw);
+  const auto caught = std::ranges::count_if(first.presentations, [block](const auto& shown) {
+    return shown.block == block && shown.kind == PresentationKind::catch_trial;
+  });
+  const std::string restart = ", restart " + std::to_string(restarts_before + 1);
+  const auto& [methods, purpose] = plans[static_cast<std::size_t>(block)];
+  ExemplarSupply exemplars(study, draw, restart);
+  const auto shown = presentations_of(
+      make_block_order(study, methods, purpose + restart, draw.secret), block, exemplars);
+  RandomStream random(draw.secret, "schedule: catch, " + purpose + restart);
+  std::vector<Presentation> again = with_catch_trials(shown, static_cast<int>(caught), random);
+  rove(study, RandomStream(draw.secret, "schedule: rove, " + purpose + restart), again);
+  number(again, first_trial);
+  return again;
+}
+
+std::string rule_of_schedule(const Study& study) {
+  std::string exemplars;
+  for (const StudyClass& study_class : study.classes) {
+    exemplars += (exemplars.empty() ? "" : ",") + std::to_string(study_class.images.size());
+  }
+  const TrialOptions& trials = study.trials;
+  return "touchtrial schedule 2: mt19937_64 streams by BLAKE2b(participant's secret, purpose)"
+         "; classes=" +
+         std::to_string(study.classes.size()) + "; exemplars=" + exemplars +
+         "; methods=" + std::to_string(study.presented_methods()) +
+         "; repeats=" + std::to_string(trials.repeats) +
+         "; order=" + std::string(name_of(trials.order)) +
+         "; blocks=" + std::string(name_of(trials.blocks)) +
+         "; lead_in=" + std::to_string(trials.lead_in) +
+         (trials.max_run > 0 ? "; max_run=" + std::to_string(trials.max_run) : "") +
+         (trials.rove_db > 0.0 ? "; rove_db=" + number_text(trials.rove_db) : "") +
+         (trials.catch_trials > 0 ? "; catch=" + std::to_string(trials.catch_trials) : "") +
+         (study.visits.count > 1 ? "; visits=" + std::to_string(study.visits.count) : "") +
+         (study.groups.labels.empty() ? ""
+                                      : "; groups=" + std::to_string(study.groups.labels.size()));
+}
+
+}  // namespace touchtrial::study::identification

@@ -1,0 +1,330 @@
+#include "record/collected_chain.hpp"
+#include "record/file_chain.hpp"
+#include "record/rows.hpp"
+#include "record/schema.hpp"
+#include "record/stored_study.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <limits>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <tbb/parallel_pipeline.h>
+
+namespace touchtrial::record {
+namespace {
+
+std::string trace_of(const TrialId& id) {
+  return "trace of trial " + std::to_string(id.second);
+}
+
+/// The signatures of one file chain. Where not everything is checked, those of the last event,
+/// which vouches for the events before it, and of unblindings.
+class SignatureCheck {
+ public:
+  explicit SignatureCheck(TraceCheck depth) : every_(depth == TraceCheck::full) {}
+
+  void add(const Event& event, bool is_signed) {
+    if (!signatories_) signatories_.emplace(event);
+    if (!is_signed && !event.signature.empty()) {
+      throw EventFault(event, "follows from the stations' chains, but has a signature");
+    }
+    last_ = is_signed ? std::optional(event) : std::nullopt;
+    if (last_ && (every_ || event.kind == EventKind::study_unblinded)) signatories_->require(event);
+  }
+  void finish() const {
+    if (last_) signatories_->require(*last_);
+  }
+
+ private:
+  bool every_;
+  std::optional<Signatories> signatories_;
+  std::optional<Event> last_;
+};
+
+/// How many sessions are in memory at once, for as many threads as there are.
+constexpr std::size_t kSessionsAtOnce = 16;
+
+/// One session on its way through the check, by itself: what it comes to, or what is wrong with it.
+struct SessionOnItsWay {
+  int session = 0;
+  const SessionOnFile* on_file = nullptr;
+  std::vector<Event> events;
+  std::exception_ptr unreadable;  ///< after `events`
+  std::map<int, TraceClaim> claims;
+  std::exception_ptr fault;
+
+  void check(const StudyCommitment& commitment, const SessionReader& reader) noexcept {
+    try {
+      SessionCheck check(session, *on_file, commitment);
+      DerivedRows rows;
+      for (const Event& event : events) check.add(event, rows);
+      if (unreadable) std::rethrow_exception(unreadable);
+      check.finish(rows);
+      claims = check.claims();
+      if (reader) reader(session, std::move(events));
+    } catch (...) {
+      fault = std::current_exception();
+    }
+    events = {};
+  }
+};
+
+/// Walks through everything once, and throws EventFault at the first thing that does not hold.
+class Inspection {
+ public:
+  Inspection(const Database& database, const SessionReader& reader)
+      : database_(database), reader_(reader) {}
+
+  void run(TraceCheck traces) {
+    if (traces == TraceCheck::full) inspect_structure();
+    const std::vector<Event> collected = inspect_stations(traces);
+    if (is_collected_) file_ = FileChain(UniquePlaces::in_the_end);
+    SignatureCheck signatures(traces);
+    walk(0, [&](const Event& event) {
+      if (!collected.empty()) inspect_collected(event, collected);
+      file_.add(event);
+      signatures.add(event, /*is_signed=*/event.sequence >= std::ssize(collected));
+    });
+    signatures.finish();
+    if (!file_.commitment()) throw EventFault(0, kNoEvent, "the file's chain is empty");
+    inspect_length(collected);
+    inspect_sessions();
+    inspect_keys();
+    if (traces == TraceCheck::full) inspect_traces();
+    inspect_schema();
+  }
+
+ private:
+  void inspect_structure() const {
+    // Not quick_check, which takes indices on trust.
+    Query query = database_.query("PRAGMA integrity_check(1)");
+    if (!query.step()) return;
+    const std::string finding = query.text(0);
+    if (finding != "ok") throw EventFault(0, kNoEvent, "the file is damaged: " + finding);
+  }
+
+  /// Holds every event of a chain against the one before it.
+  void walk(int session, const EventVisitor& visit) const {
+    ChainLink chain(session);
+    for_each_event(database_, session, [&](const Event& event) {
+      chain.extend(event);
+      visit(event);
+    });
+  }
+
+  /// \return the chain that the stations' chains come to; empty if there are no stations
+  [[nodiscard]] std::vector<Event> inspect_stations(TraceCheck traces) {
+    std::vector<StationChain> stations;
+    std::int64_t lowest = 0;
+    for (const std::int64_t session : sessions_with_events(database_)) {
+      lowest = std::clamp(session, -std::int64_t{std::numeric_limits<int>::max()}, lowest);
+    }
+    for (int station = 1; station <= -lowest; ++station) {
+      stations.push_back(inspect_station(station, traces));
+      if (station > 1 && !comes_before(stations[stations.size() - 2], stations.back())) {
+        throw EventFault(-station, kNoEvent, "does not come after that of the station before");
+      }
+    }
+    if (stations.empty()) return {};
+    try {
+      is_collected_ = true;
+      return collected_chain(stations).events;
+    } catch (const EventFault&) {
+      throw;
+    } catch (const StoreError& error) {
+      throw EventFault(0, kNoEvent, error.what());
+    }
+  }
+
+  [[nodiscard]] StationChain inspect_station(int station, TraceCheck traces) const {
+    StationChain found{.name = "station " + std::to_string(station), .events = {}};
+    FileChain file;
+    SignatureCheck signatures(traces);
+    walk(-station, [&](const Event& event) {
+      file.add(event);
+      signatures.add(event, /*is_signed=*/true);
+      found.events.push_back(event);
+    });
+    signatures.finish();
+    if (!station_identity(found.events)) throw EventFault(-station, kNoEvent, "opens no session");
+    return found;
+  }
+
+  /// A collected study's chain begins with what its stations' chains come to; later decisions
+  /// follow.
+  void inspect_collected(const Event& event, const std::vector<Event>& collected) const {
+    if (event.sequence < static_cast<std::int64_t>(collected.size())) {
+      if (event.hash == collected[static_cast<std::size_t>(event.sequence)].hash) return;
+      throw EventFault(0, event.sequence, "is not what the stations' chains come to");
+    }
+    if (event.kind == EventKind::session_opened || event.kind == EventKind::session_closed ||
+        event.kind == EventKind::participant_replaced) {
+      throw EventFault(0, event.sequence,
+                       "stands at no station; a collected study has no sessions of its own");
+    }
+  }
+
+  void inspect_length(const std::vector<Event>& collected) const {
+    if (collected.empty()) return;
+    if (!read_event(database_, 0, static_cast<std::int64_t>(collected.size()) - 1)) {
+      throw EventFault(0, kNoEvent, "lacks events that the stations' chains come to");
+    }
+  }
+
+  /// One thread reads sessions, others check them, and what they come to is added in order: the
+  /// first fault by session is named, whichever thread finds one first. No exception leaves a
+  /// filter: oneTBB would leak the sessions in flight.
+  void inspect_sessions() {
+    using OnItsWay = std::shared_ptr<SessionOnItsWay>;
+    auto next = file_.sessions().begin();
+    std::exception_ptr fault;
+    std::atomic<bool> has_fault = false;
+    const auto read = [&](tbb::flow_control& control) -> OnItsWay {
+      if (has_fault || next == file_.sessions().end()) {
+        control.stop();
+        return nullptr;
+      }
+      return read_session(*next++);
+    };
+    const auto check = [&](const OnItsWay& one) {
+      if (!one->fault) one->check(*file_.commitment(), reader_);
+      return one;
+    };
+    const auto add = [&](const OnItsWay& one) {
+      if (fault) return;
+      fault = one->fault;
+      has_fault = fault != nullptr;
+      if (!fault) add_session(*one);
+    };
+    const auto in_order = tbb::filter_mode::serial_in_order;
+    tbb::parallel_pipeline(kSessionsAtOnce, tbb::make_filter<void, OnItsWay>(in_order, read) &
+                                                tbb::make_filter<OnItsWay, OnItsWay>(
+                                                    tbb::filter_mode::parallel, check) &
+                                                tbb::make_filter<OnItsWay, void>(in_order, add));
+    if (fault) std::rethrow_exception(fault);
+    for (const std::int64_t session : sessions_with_events(database_)) {
+      if (session < 0) continue;
+      const bool known = session <= std::numeric_limits<int>::max() &&
+                         file_.sessions().count(static_cast<int>(session)) > 0;
+      if (!known) throw EventFault(session, kNoEvent, "the file's chain knows no such session");
+    }
+  }
+
+  [[nodiscard]] std::shared_ptr<SessionOnItsWay> read_session(
+      const std::pair<const int, SessionOnFile>& known) const {
+    auto one = std::make_shared<SessionOnItsWay>();
+    one->session = known.first;
+    one->on_file = &known.second;
+    if (known.second.opened.station > 0 && !is_collected_) {
+      one->fault = std::make_exception_ptr(
+          EventFault(0, known.second.opened_at, "a session comes from a station that is not here"));
+    } else {
+      one->events = read_events(database_, one->session, one->unreadable);
+    }
+    return one;
+  }
+
+  void add_session(SessionOnItsWay& one) {
+    for (const auto& [trial, claim] : one.claims) {
+      claims_.emplace(TrialId(one.session, trial), claim);
+    }
+  }
+
+  void inspect_keys() const {
+    for (const auto& [session, on_file] : file_.sessions()) {
+      SessionCheck(session, on_file, *file_.commitment()).check_keys(read_keys(database_, session));
+    }
+    Query query = database_.query(
+        "SELECT session FROM participant_keys UNION SELECT session FROM safety_keys ORDER BY 1");
+    while (query.step()) {
+      const std::int64_t session = query.integer(0);
+      const bool known = session > 0 && session <= std::numeric_limits<int>::max() &&
+                         file_.sessions().contains(static_cast<int>(session));
+      if (!known) throw EventFault(session, kNoEvent, "a participant's key has no session");
+    }
+    inspect_station_keys();
+  }
+
+  /// A station keeps the keys of open sessions that began with a copy, and of no others.
+  void inspect_station_keys() const {
+    std::map<std::int64_t, Digest> copies;
+    Query query = database_.query("SELECT session, kept FROM station_keys");
+    while (query.step()) copies.emplace(query.integer(0), sha256(query.blob(1)));
+    for (const auto& [session, on_file] : file_.sessions()) {
+      if (!on_file.opened.kept || on_file.closed || on_file.withdrawn_at) continue;
+      const auto copy = copies.extract(session);
+      if (copy && copy.mapped() == *on_file.opened.kept) continue;
+      throw EventFault(session, kNoEvent,
+                       std::string("the station's copy of the key ") +
+                           (copy ? "was altered" : "is missing") +
+                           "; the session cannot be resumed");
+    }
+    if (copies.empty()) return;
+    throw EventFault(copies.begin()->first, kNoEvent,
+                     "the station holds the key of a session that is not open");
+  }
+
+  void inspect_traces() {
+    Query query = database_.query("SELECT session, trial, box FROM traces ORDER BY session, trial");
+    auto claim = claims_.begin();
+    using Wide = std::pair<std::int64_t, std::int64_t>;
+    const auto missing = [&] {
+      throw EventFault(claim->first.first, claim->second.sequence,
+                       trace_of(claim->first) + " is missing");
+    };
+    while (query.step()) {
+      const Wide id(query.integer(0), query.integer(1));
+      if (claim != claims_.end() && Wide(claim->first) < id) missing();
+      if (claim == claims_.end() || Wide(claim->first) != id) {
+        throw EventFault(id.first, kNoEvent,
+                         "trace of trial " + std::to_string(id.second) + " has no event");
+      }
+      if (blake2b(query.blob(2)) != claim->second.digest) {
+        throw EventFault(id.first, claim->second.sequence, trace_of(claim->first) + " was altered");
+      }
+      ++claim;
+    }
+    if (claim != claims_.end()) missing();
+  }
+
+  /// Runs last: a fault of stored data is named before the missing trigger that allowed it.
+  void inspect_schema() const {
+    const auto differs = schema_fault(database_);
+    if (!differs) return;
+    throw EventFault(
+        0, kNoEvent,
+        differs->what + (differs->remedy.empty() ? "" : "; remove it: " + differs->remedy));
+  }
+
+  const Database& database_;
+  const SessionReader& reader_;
+  FileChain file_;
+  bool is_collected_ = false;
+  std::map<TrialId, TraceClaim> claims_;
+};
+
+}  // namespace
+
+std::optional<ChainFault> find_first_fault(const Database& database, TraceCheck traces,
+                                           const SessionReader& reader) {
+  try {
+    Inspection(database, reader).run(traces);
+    return std::nullopt;
+  } catch (const EventFault& found) {
+    const bool is_int = found.session() >= std::numeric_limits<int>::min() &&
+                        found.session() <= std::numeric_limits<int>::max();
+    return ChainFault{.session = is_int ? static_cast<int>(found.session()) : 0,
+                      .sequence = std::max(found.sequence(), std::int64_t{0}),
+                      .what = found.bare()};
+  }
+}
+
+}  // namespace touchtrial::record

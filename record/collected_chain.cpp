@@ -1,0 +1,381 @@
+#include "record/collected_chain.hpp"
+
+#include "core/errors.hpp"
+#include "record/damage.hpp"
+#include "record/file_chain.hpp"
+#include "record/payload_json.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+#include <utility>
+
+namespace touchtrial::record {
+namespace {
+
+using std::chrono::nanoseconds;
+
+std::string named(const StationChain& station, int own_session) {
+  return "session " + std::to_string(own_session) + " of " + station.name;
+}
+
+/// One station's chain on its way into the collected one.
+class Feed {
+ public:
+  Feed(const StationChain& station, int number, bool simulated)
+      : station_(&station), number_(number), simulated_(simulated) {
+    for (const Event& event : station.events) file_.add(event);
+    skip();
+  }
+
+  [[nodiscard]] const StationChain& station() const noexcept { return *station_; }
+  [[nodiscard]] int number() const noexcept { return number_; }
+  [[nodiscard]] bool is_done() const noexcept { return next_ == station_->events.size(); }
+  [[nodiscard]] const Event& head() const { return station_->events[next_]; }
+  /// The session that the head is about.
+  [[nodiscard]] const SessionOnFile& session() const { return sessions().at(about_); }
+  [[nodiscard]] const std::map<int, SessionOnFile>& sessions() const { return file_.sessions(); }
+
+  /// The feed with the lowest rank comes first.
+  [[nodiscard]] std::tuple<int, int, nanoseconds, int> rank() const {
+    const SessionOpenedBody& opened = session().opened;
+    return {simulated_ ? opened.visit : 0, simulated_ ? opened.enrolment : 0, head().at,
+            simulated_ ? 0 : opened.enrolment};
+  }
+  void advance() {
+    ++next_;
+    skip();
+  }
+
+ private:
+  /// Goes to the next event about a session that has ended.
+  void skip() {
+    for (; !is_done(); ++next_) {
+      about_ = session_about(head());
+      if (about_ != 0 && session().closed) return;
+    }
+  }
+
+  const StationChain* station_;
+  int number_;
+  bool simulated_;
+  FileChain file_;
+  std::size_t next_ = 0;
+  int about_ = 0;
+};
+
+StudyCommitment commitment_of(const StationChain& station) {
+  return body_of(station.events.front(), commitment_from_json);
+}
+
+/// A station's commitment without what stations may differ in.
+StudyCommitment common_commitment(const StationChain& station) {
+  StudyCommitment commitment = commitment_of(station);
+  commitment.program_version.clear();
+  commitment.station.reset();
+  return commitment;
+}
+
+/// Why two stations cannot be of one study, in words.
+std::string difference(const StudyCommitment& a, const StudyCommitment& b) {
+  if (a.study_id != b.study_id) return "they are of different studies";
+  if (a.simulated != b.simulated) return "one is of simulated participants, the other is not";
+  if (a.pilot != b.pilot) return "one is of a pilot, the other is not";
+  if (a.seal != b.seal) return "their seals differ, as the study was changed between them";
+  if (a.pack != b.pack) return "they were recorded with different packs";
+  if (a.investigator != b.investigator) return "they name different investigators";
+  return "their studies' configurations differ";
+}
+
+void require_one_study(std::span<const StationChain> stations) {
+  const StudyCommitment first = common_commitment(stations.front());
+  for (const StationChain& station : stations.subspan(1)) {
+    const StudyCommitment other = common_commitment(station);
+    if (other == first) continue;
+    throw StoreError(one_line(stations.front().name + " and " + station.name +
+                              " cannot be collected into one: " + difference(first, other) +
+                              "; collect stations of one study"));
+  }
+}
+
+/// Participant ids and enrolment numbers of some sessions, each with its visit.
+class Places {
+ public:
+  void insert(const SessionOpenedBody& session) {
+    participants_.emplace(session.participant, session.visit);
+    enrolments_.emplace(session.enrolment, session.visit);
+  }
+  /// Of several sessions with the same place, removes one.
+  void remove(const SessionOpenedBody& session) {
+    participants_.extract({session.participant, session.visit});
+    enrolments_.extract({session.enrolment, session.visit});
+  }
+  /// Whether one of the sessions has the same participant id or enrolment number.
+  [[nodiscard]] bool has(const SessionOpenedBody& session) const {
+    return participants_.contains({session.participant, session.visit}) ||
+           enrolments_.contains({session.enrolment, session.visit});
+  }
+
+ private:
+  std::multiset<std::pair<std::string, int>> participants_;
+  std::multiset<std::pair<int, int>> enrolments_;
+};
+
+/// Makes the collected chain, event by event.
+class Collection {
+ public:
+  explicit Collection(std::span<const StationChain> stations) : stations_(stations) {
+    const bool simulated = commitment_of(stations.front()).simulated;
+    int number = 0;
+    for (const StationChain& station : stations) feeds_.emplace_back(station, ++number, simulated);
+    for (const Feed& feed : feeds_) {
+      for (const auto& [own, session] : feed.sessions()) {
+        if (session.closed && session.replaced_at) former_.insert(session.opened);
+      }
+    }
+  }
+
+  CollectedChain made() {
+    const Event& first = stations_.front().events.front();
+    StudyCommitment commitment = commitment_of(stations_.front());
+    commitment.station.reset();
+    append(EventKind::study_committed, first.at, to_json(commitment));
+    while (Feed* const next = next_feed()) take(*next);
+    refuse_taken_twice();
+    look_at_persons();
+    end_collection();
+    unblind();
+    for (const Feed& feed : feeds_) {
+      for (const auto& [own, session] : feed.sessions()) {
+        if (!session.closed) chain_.left_out.push_back({feed.number(), own});
+      }
+    }
+    return std::move(chain_);
+  }
+
+ private:
+  void append(EventKind kind, nanoseconds at, std::string body, Bytes sealed = {}) {
+    const Event* const last = chain_.events.empty() ? nullptr : &chain_.events.back();
+    chain_.events.push_back(next_on_file(last, kind, at, std::move(body), std::move(sealed)));
+  }
+
+  /// Whether a feed opens a session whose place another session has at this point of the chain.
+  [[nodiscard]] bool is_taken(const Feed& feed) const {
+    return feed.head().kind == EventKind::session_opened && taken_.has(feed.session().opened);
+  }
+
+  /// Whether a feed opens a session that stays, in a place whose former holder's replacement is
+  /// still to come: stations' clocks may differ by more than the time until somebody was replaced.
+  [[nodiscard]] bool comes_later(const Feed& feed) const {
+    return feed.head().kind == EventKind::session_opened && !feed.session().replaced_at &&
+           former_.has(feed.session().opened);
+  }
+
+  /// The feed whose head comes next; null when all are done. A session waits for the replacement of
+  /// its place's former holder while any other event is left. Two sessions that wait for each other
+  /// do not clash if both places are free in the end; time then decides.
+  Feed* next_feed() {
+    Feed* best = nullptr;
+    Feed* later = nullptr;
+    Feed* waits = nullptr;
+    const auto prefer = [](Feed*& known, Feed& feed) {
+      if (known == nullptr || feed.rank() < known->rank()) known = &feed;
+    };
+    for (Feed& feed : feeds_) {
+      if (feed.is_done()) continue;
+      if (is_taken(feed)) {
+        prefer(waits, feed);
+      } else {
+        prefer(comes_later(feed) ? later : best, feed);
+      }
+    }
+    if (best != nullptr) return best;
+    return later != nullptr ? later : waits;
+  }
+
+  [[nodiscard]] const Feed& feed_of(const SessionPlace& place) const {
+    return feeds_[static_cast<std::size_t>(place.station) - 1];
+  }
+  [[nodiscard]] const SessionOnFile& session_at(const SessionPlace& place) const {
+    return feed_of(place).sessions().at(place.own_session);
+  }
+
+  /// A participant id and an enrolment number belong to one session of a visit that nobody
+  /// replaced. Replaced sessions take no place, whenever they were replaced.
+  void refuse_taken_twice() const {
+    std::map<std::pair<std::string, int>, SessionPlace> participants;
+    std::map<std::pair<int, int>, SessionPlace> enrolments;
+    for (const SessionPlace& place : chain_.sessions) {
+      if (session_at(place).replaced_at) continue;
+      const SessionOpenedBody& opened = session_at(place).opened;
+      const auto [participant, is_new] =
+          participants.emplace(std::pair(opened.participant, opened.visit), place);
+      if (!is_new) refuse_taken(participant->second, place);
+      const auto [enrolment, is_free] =
+          enrolments.emplace(std::pair(opened.enrolment, opened.visit), place);
+      if (!is_free) refuse_taken(enrolment->second, place);
+    }
+  }
+
+  [[noreturn]] void refuse_taken(const SessionPlace& first, const SessionPlace& second) const {
+    const SessionOpenedBody& taken = session_at(first).opened;
+    const SessionOpenedBody& opened = session_at(second).opened;
+    const bool participant = taken.participant == opened.participant;
+    throw StoreError(one_line(
+        (participant ? "participant " + opened.participant
+                     : "enrolment " + std::to_string(opened.enrolment) + " (participants " +
+                           taken.participant + " and " + opened.participant + ")") +
+        " is taken twice, by " + named(feed_of(first).station(), first.own_session) + " and by " +
+        named(feed_of(second).station(), second.own_session) +
+        "; exclude and replace one of them at its station" +
+        (taken.enrolment == opened.enrolment
+             ? ", and run nobody under the successor's id, who would inherit the number"
+             : "") +
+        ", or leave that station's file out"));
+  }
+
+  void take(Feed& feed) {
+    const SessionOpenedBody& session = feed.session().opened;
+    const SessionPlace place{.station = feed.number(), .own_session = session.session};
+    const Event& event = feed.head();
+    if (event.kind == EventKind::session_opened) {
+      chain_.sessions.push_back(place);
+      numbers_[place] = static_cast<int>(chain_.sessions.size());
+      taken_.insert(session);
+      append(event.kind, event.at, body_of(event, [&](const std::string& body) {
+               return renumbered_opening(body, numbers_.at(place), place.station);
+             }));
+    } else {
+      if (event.kind == EventKind::participant_replaced) {
+        taken_.remove(session);
+        former_.remove(session);
+      }
+      std::string renumbered_body = body_of(
+          event, [&](const std::string& body) { return renumbered(body, numbers_.at(place)); });
+      append(event.kind, event.at, std::move(renumbered_body), event.sealed);
+    }
+    feed.advance();
+  }
+
+  /// Whether an event is a look at one participant's outcomes.
+  static bool is_personal(const Event& event) {
+    return event.kind == EventKind::study_unblinded &&
+           !body_of(event, unblinding_from_json).participant.empty();
+  }
+
+  /// The last event of a kind on a station's chain, other than looks at one participant.
+  static const Event* last_of(const StationChain& station, EventKind kind) {
+    const auto found =
+        std::find_if(station.events.rbegin(), station.events.rend(),
+                     [&](const Event& event) { return event.kind == kind && !is_personal(event); });
+    return found == station.events.rend() ? nullptr : &*found;
+  }
+
+  /// Every look at one participant, with the sessions that it shows, by time and station.
+  void look_at_persons() {
+    std::multimap<nanoseconds, UnblindingBody> looks;
+    for (const Feed& feed : feeds_) {
+      const std::span<const Event> events = feed.station().events;
+      for (std::size_t i = 0; i < events.size(); ++i) {
+        if (!is_personal(events[i])) continue;
+        UnblindingBody body = body_of(events[i], unblinding_from_json);
+        body.sessions.emplace();
+        for (const Event& before : events.first(i)) {
+          if (before.kind != EventKind::session_opened) continue;
+          const SessionOpenedBody opened = body_of(before, session_opened_from_json);
+          const auto number = numbers_.find({feed.number(), opened.session});
+          if (opened.participant != body.participant || number == numbers_.end()) continue;
+          body.sessions->push_back(number->second);
+        }
+        std::ranges::sort(*body.sessions);
+        looks.emplace(events[i].at, std::move(body));
+      }
+    }
+    for (const auto& [at, body] : looks) append(EventKind::study_unblinded, at, to_json(body));
+  }
+
+  /// The study is closed if all stations closed it.
+  void end_collection() {
+    nanoseconds at = nanoseconds::min();
+    for (const StationChain& station : stations_) {
+      const Event* const closed = last_of(station, EventKind::study_closed);
+      if (closed == nullptr) return;
+      at = std::max(at, closed->at);
+    }
+    append(EventKind::study_closed, at, "{}");
+    closed_ = true;
+  }
+
+  /// The study is unblinded if all stations with sessions unblinded it. If one of them did so only
+  /// for an interim look, or a station still collects, this is an interim look at the sessions that
+  /// the stations' looks show.
+  void unblind() {
+    nanoseconds at = nanoseconds::min();
+    const auto ended = [](const auto& entry) { return entry.second.closed.has_value(); };
+    bool interim = !closed_;
+    std::vector<std::string> reasons;
+    std::vector<int> shown;
+    for (const Feed& feed : feeds_) {
+      if (std::ranges::none_of(feed.sessions(), ended)) continue;
+      const Event* const look = last_of(feed.station(), EventKind::study_unblinded);
+      if (look == nullptr) return;
+      const StudyState state = state_of_chain(feed.station().events);
+      if (!state.unblinded) return;
+      at = std::max(at, look->at);
+      interim = interim || state.interim.has_value();
+      if (std::ranges::find(reasons, state.unblinding_reason) == reasons.end()) {
+        reasons.push_back(state.unblinding_reason);
+      }
+      for (const auto& [own, session] : feed.sessions()) {
+        if (session.closed && state.reports(own))
+          shown.push_back(numbers_.at({feed.number(), own}));
+      }
+    }
+    if (reasons.empty()) return;
+    std::string reason = reasons.front();
+    for (std::size_t i = 1; i < reasons.size(); ++i) reason += "; " + reasons[i];
+    UnblindingBody body{.reason = reason, .interim = interim};
+    std::ranges::sort(shown);
+    if (interim) body.sessions = std::move(shown);
+    append(EventKind::study_unblinded, at, to_json(body));
+  }
+
+  std::span<const StationChain> stations_;
+  std::vector<Feed> feeds_;
+  CollectedChain chain_;
+  std::map<SessionPlace, int> numbers_;
+  Places taken_;   ///< of sessions that nobody has replaced so far
+  Places former_;  ///< of sessions that will be replaced, until their replacement has come
+  bool closed_ = false;
+};
+
+/// The event that opens a file's first session; null: no session was opened.
+const Event* first_opening(std::span<const Event> chain) {
+  const auto found = std::ranges::find(chain, EventKind::session_opened, &Event::kind);
+  return found == chain.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::optional<Digest> station_identity(std::span<const Event> chain) {
+  const Event* const first = first_opening(chain);
+  return first == nullptr ? std::nullopt : std::optional(first->hash);
+}
+
+bool comes_before(const StationChain& a, const StationChain& b) {
+  const auto rank = [](const StationChain& station) {
+    const Event& first = *first_opening(station.events);
+    const bool simulated = body_of(station.events.front(), commitment_from_json).simulated;
+    const int enrolment = body_of(first, session_opened_from_json).enrolment;
+    return std::tuple(simulated ? enrolment : 0, first.at, simulated ? 0 : enrolment, first.hash);
+  };
+  return rank(a) < rank(b);
+}
+
+CollectedChain collected_chain(std::span<const StationChain> stations) {
+  require_one_study(stations);
+  return Collection(stations).made();
+}
+
+}  // namespace touchtrial::record

@@ -1,0 +1,64 @@
+/// \file Makes one file chain of several stations' file chains. The result depends on their content
+/// alone, so that anybody who has the stations' chains can make it again and compare. Source:
+/// docs/data-dictionary.md, "Collected studies"; docs/decisions/0041.
+#pragma once
+
+#include "record/event.hpp"
+
+#include <compare>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace touchtrial::record {
+
+/// A station's file chain as it stands in its own file, and the station's name for messages.
+struct StationChain {
+  std::string name;
+  std::vector<Event> events;
+};
+
+/// Where a session of a collected study comes from.
+struct SessionPlace {
+  int station = 0;  ///< from 1
+  int own_session = 0;
+
+  friend auto operator<=>(const SessionPlace&, const SessionPlace&) = default;
+};
+
+/// The chain that stations' chains come to.
+struct CollectedChain {
+  std::vector<Event> events;           ///< of session 0, hashed
+  std::vector<SessionPlace> sessions;  ///< by number, from 1: sessions that have ended
+  std::vector<SessionPlace> left_out;  ///< sessions that have not ended
+};
+
+/// What tells stations apart: the hash of the event with which the first session was opened.
+/// Nothing if no session was ever opened there.
+[[nodiscard]] std::optional<Digest> station_identity(std::span<const Event> chain);
+
+/// The order of stations: by the time at which their first sessions were opened (by those sessions'
+/// enrolment numbers in simulated studies, whose times mean nothing), and by identity where that is
+/// the same.
+/// \pre both have an identity
+[[nodiscard]] bool comes_before(const StationChain& a, const StationChain& b);
+
+/// Makes the collected chain:
+/// - First comes the commitment of the first station, without the station.
+/// - Then come the stations' events about sessions that have ended. Each station's events keep
+///   their order. Of the stations' next events, the earliest comes first; in simulated studies,
+///   whose times mean nothing, the one about the smallest enrolment number. While any other event
+///   can come, the opening of a session waits until the former holder of its participant id or
+///   enrolment number has been replaced. Sessions are numbered in the order in which they are
+///   opened here.
+/// - Then come the stations' looks at single participants, with the sessions that they show.
+/// - At the end stands that the study is closed, if it is at all stations, and that it is
+///   unblinded, if it is at all stations with sessions.
+/// \param stations  in the order of comes_before, each chain valid by itself (checked_file_chain)
+/// \throws StoreError if they are not of one study, or two of them used one participant id or
+///   enrolment number for sessions that nobody ever replaced
+/// \throws EventFault if an event's body cannot be read
+[[nodiscard]] CollectedChain collected_chain(std::span<const StationChain> stations);
+
+}  // namespace touchtrial::record

@@ -1,0 +1,147 @@
+#include "record/event.hpp"
+
+#include "core/named.hpp"
+#include "record/damage.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace touchtrial::record {
+namespace {
+
+constexpr std::string_view kSignedAs = "touchtrial event 1";
+
+/// What is signed of an event, whose hash stands for the chain up to it.
+auto statement_of(const Event& event) {
+  std::array<std::uint8_t, kSignedAs.size() + Digest{}.size()> statement{};
+  std::ranges::copy(event.hash, std::ranges::copy(kSignedAs, statement.begin()).out);
+  return statement;
+}
+
+constexpr auto kNames = std::to_array<Named<EventKind>>({
+    {"study-committed", EventKind::study_committed},
+    {"session-opened", EventKind::session_opened},
+    {"session-closed", EventKind::session_closed},
+    {"participant-excluded", EventKind::participant_excluded},
+    {"participant-withdrawn", EventKind::participant_withdrawn},
+    {"study-closed", EventKind::study_closed},
+    {"study-unblinded", EventKind::study_unblinded},
+    {"participant-replaced", EventKind::participant_replaced},
+    {"participant-noted", EventKind::participant_noted},
+    {"heads-kept", EventKind::heads_kept},
+    {"loss-accepted", EventKind::loss_accepted},
+    {"opened", EventKind::opened},
+    {"calibrated", EventKind::calibrated},
+    {"instructed", EventKind::instructed},
+    {"practised", EventKind::practised},
+    {"presented", EventKind::presented},
+    {"first-contact", EventKind::first_contact},
+    {"answered", EventKind::answered},
+    {"interrupted", EventKind::interrupted},
+    {"timed-out", EventKind::timed_out},
+    {"trace-stored", EventKind::trace_stored},
+    {"break-taken", EventKind::break_taken},
+    {"paused", EventKind::paused},
+    {"stopped", EventKind::stopped},
+    {"noted", EventKind::noted},
+    {"ticked", EventKind::ticked},
+    {"deviated", EventKind::deviated},
+    {"questioned", EventKind::questioned},
+    {"explored-again", EventKind::explored_again},
+    {"block-restarted", EventKind::block_restarted},
+    {"resumed", EventKind::resumed},
+    {"marked", EventKind::marked},
+    {"closed", EventKind::closed},
+});
+static_assert(kNames.size() == static_cast<std::size_t>(EventKind::closed) + 1);
+
+}  // namespace
+
+std::string_view name_of(EventKind kind) {
+  return name_in(kNames, kind);
+}
+
+std::optional<EventKind> event_kind_from_name(std::string_view name) {
+  return value_in(kNames, name);
+}
+
+bool belongs_to_file_chain(EventKind kind) {
+  return kind <= EventKind::loss_accepted;
+}
+
+Digest event_hash(const Event& event) {
+  return FieldHasher(HashFunction::blake2b)
+      .add(std::int64_t{event.own_session()})
+      .add(event.sequence)
+      .add(name_of(event.kind))
+      .add(std::int64_t{event.at.count()})
+      .add(event.body)
+      .add(event.sealed)
+      .add(event.previous)
+      .finish();
+}
+
+Event next_on_file(const Event* last, EventKind kind, std::chrono::nanoseconds at, std::string body,
+                   Bytes sealed) {
+  Event event{.session = 0,
+              .sequence = last == nullptr ? 0 : last->sequence + 1,
+              .kind = kind,
+              .at = at,
+              .body = std::move(body),
+              .sealed = std::move(sealed),
+              .previous = last == nullptr ? Digest{} : last->hash,
+              .hash = {}};
+  event.hash = event_hash(event);
+  return event;
+}
+
+Event signed_event(Event event, const Signer& signer) {
+  const Signature signature = signer.sign(statement_of(event));
+  event.signature.assign(signature.begin(), signature.end());
+  return event;
+}
+
+bool is_event_signed_by(const PublicKey& signer, const Event& event) {
+  return is_signed_by(signer, statement_of(event), event.signature);
+}
+
+ChainLink ChainLink::after(const Event& last) {
+  ChainLink link(last.session, last.own_session());
+  link.length_ = last.sequence + 1;
+  link.head_ = last.hash;
+  return link;
+}
+
+std::optional<std::string> ChainLink::broken_by(const Event& next) const {
+  if (next.session != session_ || next.own_session() != own_session_) {
+    return "the event belongs to another chain";
+  }
+  // So that one content has one form.
+  if (next.renumbered_from == next.session) return "the event says its own number twice";
+  if (next.sequence > length_) {
+    return "sequence gap: event " + std::to_string(length_) + " is missing";
+  }
+  if (next.sequence < length_) return "the sequence number repeats";
+  if (next.previous != head_) {
+    return length_ == 0 ? "previous is not zero in the first event"
+                        : "previous does not match the hash of the event before";
+  }
+  if (next.hash != event_hash(next)) return "the hash of the event does not match its content";
+  if (belongs_to_file_chain(next.kind) != (session_ <= 0)) {
+    return "an event of kind '" + std::string(name_of(next.kind)) + "' does not belong here";
+  }
+  if (session_ > 0 && next.at.count() != 0) return "the time of the event is not sealed";
+  if (session_ > 0 && !next.signature.empty()) return "an event of a session has a signature";
+  return std::nullopt;
+}
+
+void ChainLink::extend(const Event& next) {
+  if (const auto broken = broken_by(next)) {
+    throw EventFault(session_, std::min(next.sequence, length_), *broken);
+  }
+  ++length_;
+  head_ = next.hash;
+}
+
+}  // namespace touchtrial::record

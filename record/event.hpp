@@ -1,0 +1,142 @@
+/// \file The append-only events of a study, and how each commits to the one before. Source:
+/// docs/data-dictionary.md, "Events".
+#pragma once
+
+#include "core/bytes.hpp"
+#include "core/hash.hpp"
+#include "core/public_keys.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace touchtrial::record {
+
+/// What happened. The first group belongs to the file's chain, the second to a session's.
+enum class EventKind {
+  study_committed,
+  session_opened,
+  session_closed,
+  participant_excluded,
+  participant_withdrawn,
+  study_closed,
+  study_unblinded,
+  participant_replaced,  ///< another participant takes this one's place in the order of enrolment
+  participant_noted,     ///< a remark or deviation that is recorded after or outside a session
+  heads_kept,            ///< which head files the database has from now on
+  loss_accepted,         ///< the database lacks what its head file knows, and goes on without it
+
+  opened,
+  calibrated,
+  instructed,
+  practised,
+  presented,
+  first_contact,
+  answered,
+  interrupted,
+  timed_out,
+  trace_stored,
+  break_taken,
+  paused,
+  stopped,
+  noted,
+  ticked,           ///< an item of the day sheet is done
+  deviated,         ///< something differs from what the study asks for
+  questioned,       ///< a questionnaire was filled in
+  explored_again,   ///< the participant went back to the plane before answering
+  block_restarted,  ///< a block's trials are void and are presented anew, in another order
+  resumed,          ///< after a pause, or after the program ended
+  marked,           ///< what other instruments were told of, and when
+  closed,
+};
+
+/// The name stored in the database: the enumerator with hyphens, for instance "first-contact".
+[[nodiscard]] std::string_view name_of(EventKind kind);
+[[nodiscard]] std::optional<EventKind> event_kind_from_name(std::string_view name);
+/// Whether events of this kind stand on the file's chain; all others stand on a session's.
+[[nodiscard]] bool belongs_to_file_chain(EventKind kind);
+
+/// One event. Anybody can read `body`, which says nothing about stimuli and answers. `sealed` is
+/// ciphertext: a session's event has there its time and the rest of its body (sealing.hpp), an
+/// event of the file's chain the texts about a person (person_texts.hpp). Opened, it is the event
+/// as it was recorded.
+struct Event {
+  int session = 0;            ///< 0: the file's chain; from 1: a session;
+                              ///< -1, -2, ...: the file chain of a collected station
+  std::int64_t sequence = 0;  ///< place in its chain, from 0
+  EventKind kind{};
+  /// File's chain: UTC since 1970. Session: 0 as stored; opened, the time since its opening.
+  std::chrono::nanoseconds at{};
+  std::string body;   ///< compact JSON object with sorted keys
+  Bytes sealed;       ///< empty in an event that was opened, or says nothing about a person
+  Digest previous{};  ///< hash of the event before; zeros for the first
+  Digest hash{};      ///< event_hash of this one
+  /// File's chain: the station's or the investigator's Ed25519 signature, see signed_event. Empty
+  /// in sessions, and where a collected study's chain follows from its stations' chains.
+  Bytes signature{};
+  /// In a collected database: the session's number in the station's file. Empty if it is the same.
+  std::optional<int> renumbered_from{};
+
+  /// The session's number in the file that it was recorded in. Hash and sealed part are bound to
+  /// it.
+  [[nodiscard]] int own_session() const noexcept { return renumbered_from.value_or(session); }
+  /// When it happened, if that can be read: not in a session's event as it is stored.
+  [[nodiscard]] std::optional<std::chrono::nanoseconds> time() const {
+    return session <= 0 || sealed.empty() ? std::optional(at) : std::nullopt;
+  }
+};
+
+/// BLAKE2b over own_session() and all other members but the signature, ciphertext included.
+[[nodiscard]] Digest event_hash(const Event& event);
+
+/// The event that follows `last` on a file's chain, with its hash.
+/// \param last  null: the event is the first
+[[nodiscard]] Event next_on_file(const Event* last, EventKind kind, std::chrono::nanoseconds at,
+                                 std::string body, Bytes sealed = {});
+
+/// The event with its signature, which vouches for the whole chain up to here.
+[[nodiscard]] Event signed_event(Event event, const Signer& signer);
+[[nodiscard]] bool is_event_signed_by(const PublicKey& signer, const Event& event);
+
+/// The end of a chain.
+struct ChainHead {
+  std::int64_t length = 0;  ///< number of events
+  Digest hash{};            ///< of the last; zeros if there is none
+
+  friend bool operator==(const ChainHead&, const ChainHead&) = default;
+};
+
+/// The growing end of one chain. It checks how events are linked; `fold` checks what they mean.
+class ChainLink {
+ public:
+  /// \param session  as Event::session
+  explicit ChainLink(int session) : ChainLink(session, std::max(session, 0)) {}
+  /// \param own_session  Event::own_session of its events
+  ChainLink(int session, int own_session) : session_(session), own_session_(own_session) {}
+
+  /// The end of a chain that is stored already.
+  /// \param last  its last event
+  [[nodiscard]] static ChainLink after(const Event& last);
+
+  /// \return why `next` cannot follow, or nothing if it can
+  [[nodiscard]] std::optional<std::string> broken_by(const Event& next) const;
+
+  /// Adds the next event.
+  /// \throws EventFault if it cannot follow; the chain is then as it was
+  void extend(const Event& next);
+
+  [[nodiscard]] std::int64_t length() const noexcept { return length_; }
+  /// Hash of the last event; zeros before the first.
+  [[nodiscard]] const Digest& head() const noexcept { return head_; }
+
+ private:
+  int session_;
+  int own_session_;
+  std::int64_t length_ = 0;
+  Digest head_{};
+};
+
+}  // namespace touchtrial::record

@@ -1,0 +1,183 @@
+/// \file What the file's chain says of the study and its sessions, and whether a session agrees
+/// with it.
+#pragma once
+
+#include "record/fold.hpp"
+#include "record/payload.hpp"
+#include "record/sealing.hpp"
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace touchtrial::record {
+
+/// A recorded look at one participant's outcomes.
+struct PersonLook {
+  std::string participant;
+  std::string reason;
+  std::chrono::nanoseconds at{};  ///< UTC since 1970
+
+  friend bool operator==(const PersonLook&, const PersonLook&) = default;
+};
+
+/// The state of data collection, from the file's chain.
+struct StudyState {
+  bool closed = false;
+  bool unblinded = false;         ///< the study's outcomes may be shown (an interim look counts)
+  std::string unblinding_reason;  ///< of the last unblinding of the study
+  /// If the last unblinding was an interim look: the sessions that had ended before it.
+  std::optional<std::set<int>> interim;
+  /// If the last unblinding showed the registered question alone: the sessions that had ended
+  /// before it. The study then counts as blind, but for the report of that question.
+  std::optional<std::set<int>> question;
+
+  std::vector<PersonLook> looks;  ///< at one participant each, in order
+  std::set<int> looked_at;        ///< the sessions that they show
+
+  /// Whether the study's results, or the answer to its registered question, have a session. An
+  /// interim look shows nothing of sessions that end after it.
+  [[nodiscard]] bool reports(int session) const {
+    if (question) return question->contains(session);
+    return unblinded && (!interim || interim->contains(session));
+  }
+  /// Whether a session's outcomes may be shown, if only to look at that participant.
+  [[nodiscard]] bool shows(int session) const {
+    return reports(session) || looked_at.contains(session);
+  }
+};
+
+/// \param chain  the events of session 0
+/// \throws EventFault if a body cannot be read
+[[nodiscard]] StudyState state_of_chain(std::span<const Event> chain);
+
+/// One session as the file's chain knows it.
+struct SessionOnFile {
+  SessionOpenedBody opened;
+  std::optional<SessionClosedBody> closed;
+  std::string replaced_by;  ///< empty: nobody
+
+  // Sequences on the file's chain; of several exclusions or withdrawals the last.
+  std::int64_t opened_at = 0;
+  std::optional<std::int64_t> closed_at;
+  std::optional<std::int64_t> excluded_at;
+  std::optional<std::int64_t> withdrawn_at;
+  std::optional<std::int64_t> erased_at;         ///< the participant's key was destroyed
+  std::chrono::nanoseconds erased_time{};        ///< UTC, if erased_at is there
+  std::optional<std::int64_t> safety_erased_at;  ///< the safety key was destroyed
+  std::optional<std::int64_t> replaced_at;
+
+  /// The number that the session has in the file that it was recorded in.
+  [[nodiscard]] int own_session() const noexcept {
+    return opened.own_session > 0 ? opened.own_session : opened.session;
+  }
+  /// Whether it was replaced or withdrawn before it ended, and so cannot go on.
+  [[nodiscard]] bool is_cut_short() const noexcept {
+    return !closed && (replaced_at || withdrawn_at);
+  }
+};
+
+/// When participant ids and enrolment numbers must be unique, each with its visit.
+enum class UniquePlaces {
+  always,     ///< at every moment, among sessions not yet replaced: a station's own file
+  in_the_end  ///< among sessions that nobody ever replaced, which collected_chain ensures
+};
+
+/// The events of the file's chain in order, held against each other. Links and hashes are not
+/// checked here.
+class FileChain {
+ public:
+  explicit FileChain(UniquePlaces unique = UniquePlaces::always) : unique_(unique) {}
+
+  /// \throws EventFault if the event cannot follow those before
+  void add(const Event& event);
+
+  /// Empty only before the first event.
+  [[nodiscard]] const std::optional<StudyCommitment>& commitment() const { return commitment_; }
+  /// By number.
+  [[nodiscard]] const std::map<int, SessionOnFile>& sessions() const { return sessions_; }
+
+ private:
+  void open_session(const Event& event);
+  void close_session(const Event& event);
+  void exclude(const Event& event);
+  void withdraw(const Event& event);
+  void replace(const Event& event);
+  [[nodiscard]] SessionOnFile& known(const Event& event);
+  void take_place(const Event& event, const SessionOpenedBody& body);
+  void require_visit_before(const Event& event, const SessionOpenedBody& body) const;
+
+  UniquePlaces unique_;
+  std::optional<StudyCommitment> commitment_;
+  std::map<int, SessionOnFile> sessions_;
+  /// With the visit; only of sessions that nobody has replaced.
+  std::set<std::pair<std::string, int>> participants_;
+  std::set<std::pair<int, int>> enrolments_;
+  std::vector<Event> seen_by_;  ///< what decides whose outcomes were seen: ends and looks
+  bool closed_ = false;
+};
+
+/// Whose signatures count on a file's chain: the station's that the file belongs to, and the
+/// investigator's. Unblinding is the investigator's alone.
+class Signatories {
+ public:
+  /// \param committed  the chain's first event
+  /// \throws EventFault if it cannot be read, or the investigator did not sign for the station
+  explicit Signatories(const Event& committed);
+
+  /// \throws EventFault if none of them signed the event
+  void require(const Event& event) const;
+
+ private:
+  PublicKey investigator_;
+  std::optional<PublicKey> station_;
+};
+
+/// A station's file chain, checked by itself: links, hashes, signatures, and what the events say of
+/// each other.
+/// \throws EventFault at the first fault
+[[nodiscard]] FileChain checked_file_chain(std::span<const Event> chain);
+
+/// The trace that a trace-stored event names.
+struct TraceClaim {
+  std::int64_t sequence = 0;  ///< of the event
+  Digest digest{};
+};
+
+/// Holds one session against its file's chain. It takes the session's events one by one. Every
+/// function throws EventFault, naming the event, at the first thing that does not hold.
+class SessionCheck {
+ public:
+  /// \param session  its number here
+  /// \param on_file, commitment  outlive this
+  SessionCheck(int session, const SessionOnFile& on_file, const StudyCommitment& commitment);
+
+  /// The next event: checks its link, and whether the opening is the one on the file's chain.
+  /// \param rows  is brought up to date
+  void add(const Event& event, DerivedRows& rows);
+  /// After the last event: whether the session ends as the file's chain says.
+  void finish(const DerivedRows& rows) const;
+  /// Whether the stored keys are those that the session began with, less those destroyed since.
+  void check_keys(const WrappedKeys& stored) const;
+
+  /// All traces that the events name, by trial.
+  [[nodiscard]] const std::map<int, TraceClaim>& claims() const noexcept { return claims_; }
+
+ private:
+  void check_opening(const Event& event) const;
+  void note_trace(const Event& event, const TraceBody& body);
+
+  int session_;
+  const SessionOnFile& on_file_;
+  const StudyCommitment& commitment_;
+  ChainLink chain_;
+  std::map<int, TraceClaim> claims_;
+};
+
+}  // namespace touchtrial::record

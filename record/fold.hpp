@@ -1,0 +1,121 @@
+/// \file What events come to: the rows of sessions and trials. One function makes them, as events
+/// arrive, when a session is added whole, when the tables are verified, and, with answers and
+/// times, from events that were opened (OpenedEvent).
+#pragma once
+
+#include "record/event.hpp"
+#include "record/payload.hpp"
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace touchtrial::record {
+
+enum class SessionState { open, completed, stopped };
+/// As they are written, in the order of the enumerators.
+inline constexpr std::array<std::string_view, 3> kSessionStates = {"open", "completed", "stopped"};
+[[nodiscard]] constexpr std::string_view name_of(SessionState state) {
+  return kSessionStates[static_cast<std::size_t>(state)];
+}
+
+struct SessionRow {
+  int session = 0;  ///< from 1
+  std::string participant;
+  int enrolment = 0;
+  SessionState state{};
+  bool simulated = false;
+  bool pilot = false;
+  bool excluded = false;
+  bool withdrawn = false;  ///< the participant takes no further part
+  bool erased = false;     ///< and the participant's key is destroyed
+  std::string device;
+  /// The participant who took this one's place in the order of enrolment; the same participant if
+  /// the session was restarted; empty if nobody did.
+  std::string replaced_by{};
+  /// The number in the file that it was recorded in (Event::own_session): participant keys and
+  /// sealed boxes are bound to it.
+  int own_session = 0;
+  int station = 0;  ///< the station that it was collected from, from 1; 0: recorded in this file
+  int visit = 1;    ///< of the participant, from 1
+
+  /// Whether it may still go on, as far as the session itself is concerned.
+  [[nodiscard]] bool may_go_on() const noexcept {
+    return state == SessionState::open && !withdrawn && replaced_by.empty();
+  }
+  friend bool operator==(const SessionRow&, const SessionRow&) = default;
+};
+
+/// How a trial ended. `voided`: its block was restarted, so that this trial no longer counts,
+/// whatever its state was, and is never presented again.
+enum class TrialState { presented, answered, timed_out, interrupted, voided };
+inline constexpr std::array<std::string_view, 5> kTrialStates = {
+    "presented", "answered", "timed-out", "interrupted", "voided"};
+[[nodiscard]] constexpr std::string_view name_of(TrialState state) {
+  return kTrialStates[static_cast<std::size_t>(state)];
+}
+
+struct TrialRow {
+  int session = 0;
+  int trial = 0;  ///< from 1
+  int block = 0;
+  TrialState state{};
+  bool valid = true;
+  HandWindows hand{};
+  std::int64_t overruns = 0;
+  double rate_hz = 0.0;  ///< of the trace; 0: there is none
+  int explorations = 1;  ///< of the last presentation
+
+  // From opened events alone; else 0 and empty, as in the tables.
+  std::chrono::nanoseconds presented_at{};
+  std::optional<std::chrono::nanoseconds> contact_at;
+  std::optional<std::chrono::nanoseconds> answered_at;
+  std::optional<int> position;  ///< in the participant's layout; empty: no response
+  std::optional<int> first_position;
+  std::optional<int> confidence;
+  std::optional<int> track;   ///< that an adaptive order chose, from 1; 0: none of its tracks
+  std::optional<int> level;   ///< index into the track's levels
+  std::optional<int> target;  ///< index of the right choice
+  std::int64_t samples = 0;
+
+  /// The session was paused between the end of the exploration and the answer.
+  bool paused = false;
+
+  /// From plane-on to the answer; empty without one, and if the session was paused between.
+  [[nodiscard]] std::optional<std::chrono::nanoseconds> reaction_time() const;
+  /// The same from the first contact.
+  [[nodiscard]] std::optional<std::chrono::nanoseconds> from_contact() const;
+
+  [[nodiscard]] bool has_trace() const noexcept { return rate_hz > 0.0; }
+  friend bool operator==(const TrialRow&, const TrialRow&) = default;
+};
+
+using TrialId = std::pair<int, int>;  ///< session, trial
+
+/// Some or all derived rows.
+struct DerivedRows {
+  std::map<int, SessionRow> sessions;
+  std::map<TrialId, TrialRow> trials;
+};
+
+/// The session that an event is about: its own, or the one that an event of a file's chain names.
+/// \return 0 if the event is about none
+/// \throws EventFault if the event's body names none, and must
+[[nodiscard]] int session_about(const Event& event);
+
+/// Brings `rows` up to date with one more event, stored or opened. Sessions may be folded in any
+/// order, the events of each session in theirs, and the file's chain after the sessions that it
+/// names.
+/// \throws EventFault if the event's body cannot be read, or the event cannot follow those before;
+///   `rows` are then as they were
+void fold(DerivedRows& rows, const Event& event);
+/// The same for a trace-stored event whose body was read already.
+void fold(DerivedRows& rows, const Event& event, const TraceBody& body);
+
+}  // namespace touchtrial::record

@@ -1,0 +1,45 @@
+/// \file One of the two copies of the record in a head file: its text, its signature, and spaces up
+/// to a fixed size. Format: docs/data-dictionary.md, "Head file".
+#pragma once
+
+#include "core/public_keys.hpp"
+#include "record/head_file.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace touchtrial::record {
+
+inline constexpr std::size_t kHeadCopyBytes = 12288;
+
+/// A copy as it was read.
+struct HeadCopy {
+  std::string bytes;
+  std::optional<HeadRecord> record;
+  std::string fault;  ///< why there is no record
+  /// Whose the copy says that it is, if it is whole and signed by none of those who count.
+  std::string claim;
+};
+
+/// The bytes of a copy.
+/// \pre record.sessions are no more than kMostHeadSessions
+/// \throws FileError, naming `path`, if the record is too long or has a name that is not UTF-8
+[[nodiscard]] std::string head_copy_of(const HeadRecord& record, const Signer& signer,
+                                       const std::filesystem::path& path);
+
+/// \param bytes  any
+/// \param signers  whose signatures count
+[[nodiscard]] HeadCopy read_head_copy(std::string bytes, std::span<const PublicKey> signers);
+
+/// The record that the text of a copy is.
+/// \throws StudyError if it is none
+[[nodiscard]] HeadRecord head_record_from(std::string_view text, const std::string& source);
+
+/// \throws FileError, naming the file, on one line
+[[noreturn]] void refuse_head(const std::filesystem::path& path, const std::string& why);
+
+}  // namespace touchtrial::record

@@ -1,0 +1,457 @@
+#include "record/head_file.hpp"
+
+#include "core/draft.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/text.hpp"
+#include "record/head_copy.hpp"
+#include "record/study_store.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <set>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace touchtrial::record {
+namespace {
+
+/// \param error  the system's
+[[noreturn]] void refuse_with_reason(const std::filesystem::path& path, const std::string& what,
+                                     int error, const std::string& remedy) {
+  refuse_head(path, what + " (" + std::generic_category().message(error) + "); " + remedy);
+}
+
+/// A head file that is open and, if the disk knows locks, locked.
+class LockedHead {
+ public:
+  /// \param access  O_RDONLY or O_RDWR
+  /// \throws FileError if the file cannot be opened, or another program holds it for too long
+  LockedHead(const std::filesystem::path& path, int access, std::chrono::milliseconds patience)
+      : path_(path) {
+    const bool writes = access == O_RDWR;
+    if (writes) refuse_link(path);
+    file_ = ::open(path.c_str(), access | (writes ? O_NOFOLLOW : 0) | O_CLOEXEC | O_NONBLOCK);
+    if (file_ < 0 && errno == ENOENT) return;
+    if (file_ < 0) refuse_with_reason(path, "cannot be opened", errno, "check its permissions");
+    try {
+      look(access == O_RDWR ? LOCK_EX : LOCK_SH, patience);
+    } catch (...) {
+      ::close(file_);
+      throw;
+    }
+  }
+  ~LockedHead() {
+    if (file_ >= 0) ::close(file_);
+  }
+  LockedHead(const LockedHead&) = delete;
+  LockedHead& operator=(const LockedHead&) = delete;
+
+  [[nodiscard]] bool is_there() const noexcept { return file_ >= 0; }
+  /// Whether the file is as long as it should be.
+  [[nodiscard]] bool has_its_size() const noexcept { return size_ == off_t{2 * kHeadCopyBytes}; }
+
+  /// The bytes of one slot, as many as there are.
+  [[nodiscard]] std::string slot(std::size_t index) const {
+    std::string bytes(kHeadCopyBytes, '\0');
+    std::size_t done = 0;
+    while (done < bytes.size()) {
+      const ssize_t got = ::pread(file_, bytes.data() + done, bytes.size() - done,
+                                  static_cast<off_t>(index * kHeadCopyBytes + done));
+      if (got < 0 && errno == EINTR) continue;
+      if (got < 0) refuse_with_reason(path_, "cannot be read", errno, "check the disk");
+      if (got == 0) break;
+      done += static_cast<std::size_t>(got);
+    }
+    bytes.resize(done);
+    return bytes;
+  }
+
+  /// Puts a slot onto the disk. If that fails, it puts the old bytes back as far as possible, so
+  /// that nobody reads what a power cut may still take away.
+  /// \throws FileError
+  void write(std::size_t index, const std::string& bytes, const std::string& old) const {
+    const bool cut =
+        size_ <= off_t{2 * kHeadCopyBytes} || ::ftruncate(file_, 2 * kHeadCopyBytes) == 0;
+    if (cut && write_at(index, bytes) && ::fdatasync(file_) == 0) return;
+    const int error = errno;
+    if (write_at(index, old)) static_cast<void>(::fdatasync(file_));
+    refuse_with_reason(path_, "cannot be written", error,
+                       "check its disk, and the free space there");
+  }
+
+ private:
+  void look(int lock, std::chrono::milliseconds patience) {
+    struct stat status {};
+    if (::fstat(file_, &status) != 0 || !S_ISREG(status.st_mode)) {
+      refuse_head(path_, "is not a file; move it away");
+    }
+    wait_for(lock, patience);
+    // Only now: the program that held the lock may have changed the size.
+    if (::fstat(file_, &status) == 0) size_ = status.st_size;
+  }
+
+  /// A program that was stopped while it holds the lock must not stop this one for ever.
+  void wait_for(int lock, std::chrono::milliseconds patience) const {
+    const auto end = std::chrono::steady_clock::now() + patience;
+    while (::flock(file_, lock | LOCK_NB) != 0) {
+      if (errno == EINTR) continue;
+      if (errno != EWOULDBLOCK) {
+        if (lock == LOCK_SH) return;  // the disk knows no locks
+        refuse_with_reason(path_, "cannot be locked", errno, "lay it on a disk of this machine");
+      }
+      if (std::chrono::steady_clock::now() >= end) {
+        refuse_head(path_, "another program keeps it locked; end that program");
+      }
+      std::this_thread::sleep_for(std::chrono::microseconds(200));
+    }
+  }
+
+  [[nodiscard]] bool write_at(std::size_t index, std::string_view bytes) const {
+    auto place = static_cast<off_t>(index * kHeadCopyBytes);
+    while (!bytes.empty()) {
+      const ssize_t written = ::pwrite(file_, bytes.data(), bytes.size(), place);
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) return false;
+      bytes.remove_prefix(static_cast<std::size_t>(written));
+      place += written;
+    }
+    return true;
+  }
+
+  const std::filesystem::path& path_;
+  int file_ = -1;
+  off_t size_ = 0;
+};
+
+/// Both slots of a file, and which of them counts.
+struct HeadSlots {
+  std::array<HeadCopy, 2> slots;
+  std::size_t latest = 0;
+
+  [[nodiscard]] const HeadCopy& newest() const { return slots.at(latest); }
+  [[nodiscard]] const HeadCopy& other() const { return slots.at(1 - latest); }
+};
+
+[[noreturn]] void refuse_both(const std::filesystem::path& path, const HeadCopy& first,
+                              const HeadCopy& second) {
+  const std::string& claim = first.claim.empty() ? second.claim : first.claim;
+  const std::string whose =
+      claim.empty() ? "; "
+                    : "; it says that it is of " + claim +
+                          ": if this database is of another study or station, name a folder of its "
+                          "own with `run --heads`, or give it another name; else ";
+  refuse_head(path, "of its two copies, the first " + first.fault + ", the second " + second.fault +
+                        whose +
+                        "if there is another head file, copy it over this one, or compare the "
+                        "database with the last day sheet and move this file away");
+}
+
+/// \throws FileError if neither slot can be read
+HeadSlots read_slots(const LockedHead& file, std::span<const PublicKey> signers,
+                     const std::filesystem::path& path) {
+  HeadSlots read{
+      .slots = {read_head_copy(file.slot(0), signers), read_head_copy(file.slot(1), signers)}};
+  const auto& [first, second] = read.slots;
+  if (!first.record && !second.record) refuse_both(path, first, second);
+  const bool second_is_newer =
+      second.record && (!first.record || second.record->count >= first.record->count);
+  read.latest = second_is_newer ? 1 : 0;
+  return read;
+}
+
+void drop_oldest(std::map<int, ChainHead>& sessions) {
+  while (sessions.size() > kMostHeadSessions) sessions.erase(sessions.begin());
+}
+
+void require_second_folder(const std::filesystem::path& folder,
+                           const std::filesystem::path& database) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error)) {
+    refuse_head(folder,
+                "the folder of the second head file is not there; connect its disk, or name "
+                "another folder once, with `run --heads`");
+  }
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
+    refuse_with_reason(folder, "the folder of the second head file cannot be written", errno,
+                       "change its permissions, or name another folder");
+  }
+  const std::filesystem::path own = std::filesystem::absolute(database).parent_path();
+  if (std::filesystem::equivalent(folder, own, error)) {
+    refuse_head(folder,
+                "is the database's own folder, which has a head file already; name one on another "
+                "disk");
+  }
+}
+
+bool know_one_database(const HeadRecord& one, const HeadRecord& other) {
+  return one.study_id == other.study_id && one.station == other.station &&
+         one.database == other.database;
+}
+
+std::string missing_answers(std::int64_t answers) {
+  return counted(answers, "acknowledged answer") + (answers == 1 ? " is" : " are") + " missing";
+}
+
+/// \param name  of the chain, for people
+std::optional<Loss> loss_of_chain(const StudyStore& store, int session, const std::string& name,
+                                  const ChainHead& known) {
+  if (known.length == 0) return std::nullopt;
+  const std::optional<Event> same_place = store.event_at(session, known.length - 1);
+  if (same_place && same_place->hash == known.hash) return std::nullopt;
+  if (same_place) {
+    return Loss{.session = session,
+                .what = "event " + std::to_string(known.length - 1) + " of " + name +
+                        " is not the one that the head file knows: it was altered, or the "
+                        "database was rolled back and written anew"};
+  }
+  const std::optional<Event> last = store.last_event(session);
+  if (!last) {
+    return Loss{.session = session,
+                .what = name + " is gone; the head file knows " + counted(known.length, "event") +
+                        " of it"};
+  }
+  return Loss{.session = session,
+              .what = name + " has " + counted(last->sequence + 1, "event") +
+                      "; the head file knows " + std::to_string(known.length)};
+}
+
+std::map<int, std::string> names_of_sessions(const StudyStore& store) {
+  std::map<int, std::string> names;
+  for (const SessionRow& row : store.sessions()) {
+    names[row.session] =
+        "session " + std::to_string(row.session) + " of participant " + row.participant;
+  }
+  return names;
+}
+
+/// Tells missing answers together with the session that lost them, if that can be only one.
+void add_answers(std::vector<Loss>& found, std::int64_t known, std::int64_t stored) {
+  const std::int64_t missing = known - stored;
+  if (missing <= 0) return;
+  const auto of_session = [](const Loss& loss) { return loss.session != 0; };
+  if (std::ranges::count_if(found, of_session) == 1) {
+    Loss& loss = *std::ranges::find_if(found, of_session);
+    loss.what += ": " + missing_answers(missing);
+    loss.answers = missing;
+    return;
+  }
+  found.push_back({.session = 0,
+                   .what = missing_answers(missing) + ": the database has " +
+                           std::to_string(stored) + ", the head file knows " +
+                           std::to_string(known),
+                   .answers = missing});
+}
+
+}  // namespace
+
+void HeadRecord::know_file(const ChainHead& end) {
+  if (end.length > file.length) file = end;
+}
+
+void HeadRecord::know_session(int session, const ChainHead& end) {
+  ChainHead& known = sessions[session];
+  if (end.length > known.length) known = end;
+}
+
+void HeadRecord::know_answers(std::int64_t answers) {
+  acknowledged = std::max(acknowledged, answers);
+}
+
+std::filesystem::path head_path_for(const std::filesystem::path& database) {
+  return beside_database(database, ".head");
+}
+
+std::vector<PublicKey> head_signers(const StudyCommitment& commitment) {
+  std::vector<PublicKey> signers = {commitment.investigator};
+  if (commitment.station) signers.push_back(commitment.station->key);
+  return signers;
+}
+
+HeadRecord record_of(const StudyStore& store) {
+  const auto& station = store.commitment().station;
+  const std::optional<Event> first = store.event_at(0, 0);
+  HeadRecord record{.study_id = store.commitment().study_id,
+                    .station = station ? station->name : "",
+                    .database = first ? first->hash : Digest{},
+                    .count = 0,
+                    .file = store.file_head(),
+                    .sessions = {},
+                    .acknowledged = store.answers(),
+                    .also = {}};
+  for (const SessionRow& row : store.sessions()) {
+    const std::optional<Event> last = store.last_event(row.session);
+    if (row.state != SessionState::open || !last) continue;
+    record.sessions[row.session] = {.length = last->sequence + 1, .hash = last->hash};
+  }
+  drop_oldest(record.sessions);
+  return record;
+}
+
+HeadFile::HeadFile(std::filesystem::path path, std::chrono::milliseconds patience)
+    : path_(std::move(path)), patience_(patience) {}
+
+std::optional<HeadRecord> HeadFile::read(std::span<const PublicKey> signers) const {
+  std::optional<HeadReading> found = reading(signers);
+  if (!found) return std::nullopt;
+  return std::move(found->record);
+}
+
+std::optional<HeadReading> HeadFile::reading(std::span<const PublicKey> signers) const {
+  const LockedHead file(path_, O_RDONLY, patience_);
+  if (!file.is_there()) return std::nullopt;
+  const HeadSlots slots = read_slots(file, signers, path_);
+  HeadReading reading{.file = path_, .record = *slots.newest().record, .damage = {}};
+  if (!slots.other().record) {
+    reading.damage = one_line("one of its two copies " + slots.other().fault);
+  } else if (!file.has_its_size()) {
+    reading.damage = "something was added to its end";
+  }
+  return reading;
+}
+
+void HeadFile::update(const Signer& signer, const HeadChange& change,
+                      std::span<const PublicKey> others) const {
+  std::vector<PublicKey> signers(others.begin(), others.end());
+  signers.push_back(signer.public_half());
+  try {
+    // Another program may make the file between the two.
+    constexpr int kTries = 3;
+    for (int i = 0; i < kTries; ++i) {
+      if (overwrite(signer, change, signers) || create(signer, change)) return;
+    }
+    refuse_head(path_, "can be neither opened nor made, because another program keeps removing it");
+  } catch (const FileError& error) {
+    throw StoreError(error.what());
+  }
+}
+
+bool HeadFile::overwrite(const Signer& signer, const HeadChange& change,
+                         std::span<const PublicKey> signers) const {
+  const LockedHead file(path_, O_RDWR, patience_);
+  if (!file.is_there()) return false;
+  const HeadSlots slots = read_slots(file, signers, path_);
+  HeadRecord record = *slots.newest().record;
+  const std::int64_t count = record.count;
+  change(record);
+  record.count = count + 1;
+  drop_oldest(record.sessions);
+  file.write(1 - slots.latest, head_copy_of(record, signer, path_), slots.other().bytes);
+  return true;
+}
+
+/// \return whether there was no file
+bool HeadFile::create(const Signer& signer, const HeadChange& change) const {
+  HeadRecord record;
+  change(record);
+  record.count = 1;
+  drop_oldest(record.sessions);
+  const std::string slot = head_copy_of(record, signer, path_);
+  Draft draft(path_, Draft::Kind::file);
+  draft.write(bytes_of(slot + slot));
+  return draft.take_free_place();
+}
+
+HeadFiles::HeadFiles(const std::filesystem::path& database, std::vector<PublicKey> signers,
+                     std::optional<std::filesystem::path> also)
+    : signers_(std::move(signers)) {
+  files_.emplace_back(head_path_for(database));
+  if (!also) {
+    const std::optional<HeadRecord> own = files_.front().read(signers_);
+    also = own ? own->also : std::string();
+  }
+  if (also->empty()) return;
+  require_second_folder(*also, database);
+  also_ = std::filesystem::weakly_canonical(*also).string();
+  files_.emplace_back(std::filesystem::path(also_) / files_.front().path().filename());
+}
+
+std::vector<std::filesystem::path> HeadFiles::paths() const {
+  std::vector<std::filesystem::path> paths;
+  for (const HeadFile& file : files_) paths.push_back(file.path());
+  return paths;
+}
+
+std::vector<HeadReading> HeadFiles::read() const {
+  std::vector<HeadReading> readings;
+  for (const HeadFile& file : files_) {
+    if (auto reading = file.reading(signers_)) readings.push_back(std::move(*reading));
+  }
+  return readings;
+}
+
+void HeadFiles::update(const Signer& signer, const HeadChange& change) const {
+  HeadRecord own;
+  const auto change_own = [&](HeadRecord& record) {
+    change(record);
+    record.also = also_;
+    own = record;
+  };
+  files_.front().update(signer, change_own, signers_);
+  if (files_.size() < 2) return;
+  const HeadFile& second = files_.back();
+  const auto change_second = [&](HeadRecord& record) {
+    if (record.count == 0) {
+      record = own;
+      return;
+    }
+    change(record);
+    record.also = also_;
+    if (know_one_database(record, own)) return;
+    refuse_head(second.path(), "belongs to another database; name a folder for each database");
+  };
+  second.update(signer, change_second, signers_);
+}
+
+std::vector<KnownHead> known_heads(const StudyStore& store, const std::filesystem::path& database) {
+  const std::vector<PublicKey> signers = head_signers(store.commitment());
+  const std::filesystem::path own = head_path_for(database);
+  std::optional<HeadReading> reading = HeadFile(own).reading(signers);
+  const std::optional<std::string> recorded = store.heads_on_record();
+  if (!recorded && !reading) return {};
+  std::set<std::string> folders = {recorded.value_or(""), reading ? reading->record.also : ""};
+  folders.erase("");
+  std::vector<KnownHead> known = {{own, std::move(reading)}};
+  for (const std::filesystem::path folder : folders) {
+    std::filesystem::path second = folder / own.filename();
+    reading = HeadFile(second).reading(signers);
+    known.push_back({std::move(second), std::move(reading)});
+  }
+  return known;
+}
+
+std::vector<Loss> losses(const HeadRecord& known, const StudyStore& store) {
+  const HeadRecord now = record_of(store);
+  if (!know_one_database(known, now)) {
+    return {{.session = 0,
+             .what = "the database is not the one that the head file knows: it was made anew, its "
+                     "first event was altered, or the head file belongs to another database; " +
+                     missing_answers(known.acknowledged),
+             .answers = known.acknowledged}};
+  }
+  std::vector<Loss> found;
+  if (auto loss = loss_of_chain(store, 0, "the file's chain", known.file)) {
+    found.push_back(std::move(*loss));
+  }
+  std::map<int, std::string> names = names_of_sessions(store);
+  for (const auto& [session, end] : known.sessions) {
+    const std::string& name =
+        names.try_emplace(session, "session " + std::to_string(session)).first->second;
+    if (auto loss = loss_of_chain(store, session, name, end)) found.push_back(std::move(*loss));
+  }
+  add_answers(found, known.acknowledged, now.acknowledged);
+  return found;
+}
+
+std::string spoken_head(const HeadRecord& record) {
+  return in_fours(to_hex(record.file.hash).substr(0, 16));
+}
+
+}  // namespace touchtrial::record

@@ -1,0 +1,133 @@
+#include "record/merging/bundle.hpp"
+
+#include "core/errors.hpp"
+#include "record/damage.hpp"
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+
+#include <zstd.h>
+
+namespace touchtrial::merging {
+namespace {
+
+constexpr std::string_view kMagic = "touchtrial bundle 1";
+static_assert(std::endian::native == std::endian::little);
+
+/// Numbers of eight bytes, the lowest first, and byte strings after their length.
+class Packing {
+ public:
+  Packing() { part(bytes_of(kMagic)); }
+
+  void number(std::int64_t number) { raw({reinterpret_cast<const std::uint8_t*>(&number), 8}); }
+  void part(ByteView bytes) {
+    number(std::ssize(bytes));
+    raw(bytes);
+  }
+  void event(const record::Event& event) {
+    number(event.sequence);
+    part(bytes_of(record::name_of(event.kind)));
+    number(event.at.count());
+    part(bytes_of(event.body));
+    part(event.sealed);
+    part(event.previous);
+    part(event.hash);
+    part(event.signature);
+  }
+  [[nodiscard]] Bytes compressed() const {
+    Bytes packed(ZSTD_compressBound(bytes_.size()));
+    packed.resize(ZSTD_compress(packed.data(), packed.size(), bytes_.data(), bytes_.size(), 3));
+    return packed;
+  }
+
+ private:
+  void raw(ByteView bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
+  Bytes bytes_;
+};
+
+[[noreturn]] void refuse_bytes() {
+  throw StoreError("is no bundle of this version of Touchtrial");
+}
+
+class Unpacking {
+ public:
+  /// What a frame says of its size is checked before memory is taken for it.
+  explicit Unpacking(ByteView frame) {
+    const unsigned long long size = ZSTD_getFrameContentSize(frame.data(), frame.size());
+    if (size > kMaxBundleBytes) refuse_bytes();  // so are the codes of errors
+    content_.resize(size);
+    if (ZSTD_decompress(content_.data(), size, frame.data(), frame.size()) != size) refuse_bytes();
+    rest_ = content_;
+    if (text_of(part()) != kMagic) refuse_bytes();
+  }
+
+  [[nodiscard]] bool at_end() const { return rest_.empty(); }
+  [[nodiscard]] std::int64_t number() {
+    std::int64_t number = 0;
+    std::memcpy(&number, next(sizeof number).data(), sizeof number);
+    return number;
+  }
+  [[nodiscard]] Bytes part() {
+    const ByteView bytes = next(static_cast<std::uint64_t>(number()));
+    return {bytes.begin(), bytes.end()};
+  }
+  [[nodiscard]] record::Event event(int session) {
+    record::Event event;
+    event.session = session;
+    event.sequence = number();
+    event.kind = record::stored_kind(text_of(part()), session, event.sequence);
+    event.at = std::chrono::nanoseconds(number());
+    event.body = text_of(part());
+    event.sealed = part();
+    event.previous = record::stored_hash(part(), session, event.sequence);
+    event.hash = record::stored_hash(part(), session, event.sequence);
+    event.signature = part();
+    return event;
+  }
+
+ private:
+  ByteView next(std::uint64_t size) {
+    if (size > rest_.size()) refuse_bytes();
+    const ByteView bytes = rest_.first(size);
+    rest_ = rest_.subspan(size);
+    return bytes;
+  }
+  Bytes content_;
+  ByteView rest_;
+};
+
+}  // namespace
+
+Bytes packed(const BundleHalf& half) {
+  Packing packing;
+  // No key is empty.
+  packing.part(half.keys.participant.value_or(Bytes()));
+  packing.part(half.keys.safety.value_or(Bytes()));
+  packing.number(std::ssize(half.events));
+  for (const record::Event& event : half.events) packing.event(event);
+  for (const auto& [trial, box] : half.traces) {
+    packing.number(trial);
+    packing.part(box);
+  }
+  return packing.compressed();
+}
+
+BundleHalf unpacked(ByteView bytes, int session) {
+  Unpacking unpacking(bytes);
+  BundleHalf half;
+  for (std::optional<Bytes>* const key : {&half.keys.participant, &half.keys.safety}) {
+    if (Bytes part = unpacking.part(); !part.empty()) *key = std::move(part);
+  }
+  for (std::int64_t left = unpacking.number(); left > 0; --left) {
+    half.events.push_back(unpacking.event(session));
+  }
+  while (!unpacking.at_end()) {
+    const auto trial = static_cast<int>(unpacking.number());
+    half.traces.emplace_back(trial, unpacking.part());
+  }
+  return half;
+}
+
+}  // namespace touchtrial::merging

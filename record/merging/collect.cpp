@@ -1,0 +1,170 @@
+#include "record/merging/collect.hpp"
+
+#include "record/collected_draft.hpp"
+#include "record/damage.hpp"
+#include "record/payload_json.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace touchtrial::merging {
+namespace {
+
+/// A station and the chain that was read from it, in order.
+struct Station {
+  record::StationChain chain;
+  record::FileChain says;  ///< what the chain says
+  std::unique_ptr<StationFile> file;
+};
+
+[[noreturn]] void refuse(const std::string& text) {
+  throw StoreError(one_line(text));
+}
+
+/// Calls `work`; faults of the station come out as DamagedStore with its name.
+template <typename Work>
+void named(const std::string& station, Work&& work) {
+  try {
+    work();
+  } catch (const record::EventFault& fault) {
+    throw record::DamagedStore(one_line(
+        fmt::format("{}: {}; restore it from a backup, or leave it out", station, fault.what())));
+  }
+}
+
+Station read_station(std::unique_ptr<StationFile> file) {
+  Station station;
+  station.chain.name = file->name();
+  named(station.chain.name, [&] {
+    station.chain.events = file->file_chain();
+    station.says = record::checked_file_chain(station.chain.events);
+  });
+  station.file = std::move(file);
+  return station;
+}
+
+/// The session that an event of a file chain opens, or its kind, in words.
+std::string about(const record::Event& event) {
+  if (event.kind == record::EventKind::session_opened) {
+    const record::SessionOpenedBody body = record::session_opened_from_json(event.body);
+    return fmt::format(" (session {}, participant {})", body.session, body.participant);
+  }
+  return fmt::format(" ({})", record::name_of(event.kind));
+}
+
+/// Keeps the copy of a station's file that went further.
+/// \throws StoreError if each went on by itself
+void keep_further(Station& kept, Station& other, CollectReport& report) {
+  const std::vector<record::Event>& a = kept.chain.events;
+  const std::vector<record::Event>& b = other.chain.events;
+  const auto same = [](const record::Event& x, const record::Event& y) { return x.hash == y.hash; };
+  const auto [in_a, in_b] = std::mismatch(a.begin(), a.end(), b.begin(), b.end(), same);
+  if (in_a != a.end() && in_b != b.end()) {
+    refuse(fmt::format(
+        "{} and {} are copies of one station's file, and each went on by itself: they part at "
+        "event {} of the file's chain{}{}; leave out the one that the station did not go on with",
+        kept.chain.name, other.chain.name, in_a->sequence, about(*in_a), about(*in_b)));
+  }
+  if (in_a == a.end() && in_b != b.end()) std::swap(kept, other);
+  report.superfluous.push_back(other.chain.name);
+}
+
+/// Each station once, in their order.
+std::vector<Station> distinct(Stations files, CollectReport& report) {
+  std::map<Digest, Station> by_identity;
+  for (std::unique_ptr<StationFile>& file : files) {
+    Station station = read_station(std::move(file));
+    const auto identity = record::station_identity(station.chain.events);
+    if (!identity) {
+      report.superfluous.push_back(station.chain.name);
+      continue;
+    }
+    const auto [place, is_new] = by_identity.try_emplace(*identity);
+    if (is_new) {
+      place->second = std::move(station);
+    } else {
+      keep_further(place->second, station, report);
+    }
+  }
+  if (by_identity.empty()) refuse("none of the databases holds a session; nothing is collected");
+  std::vector<Station> stations;
+  for (auto& [identity, station] : by_identity) stations.push_back(std::move(station));
+  std::ranges::sort(stations, record::comes_before, &Station::chain);
+  return stations;
+}
+
+/// The collected study while its sessions come in.
+class Collecting {
+ public:
+  Collecting(Stations files, record::CollectedDraft draft, CollectReport& report)
+      : draft_(std::move(draft)), stations_(distinct(std::move(files), report)) {
+    std::vector<record::StationChain> chains;
+    for (Station& station : stations_) chains.push_back(std::move(station.chain));
+    const record::CollectedChain& chain = draft_.begin(chains);
+    places_ = chain.sessions;
+    report.stations = static_cast<int>(stations_.size());
+    report.sessions = static_cast<int>(places_.size());
+    for (const record::SessionPlace& place : chain.left_out) {
+      const Station& station = stations_[static_cast<std::size_t>(place.station) - 1];
+      report.left_out.push_back(left_out_of(*station.file, place.own_session,
+                                            station.says.sessions().at(place.own_session)));
+    }
+  }
+
+  void take_sessions(const CollectProgress& progress) {
+    const int count = static_cast<int>(places_.size());
+    for (int session = 1; session <= count; ++session) {
+      const record::SessionPlace& place = places_[static_cast<std::size_t>(session) - 1];
+      const int own = place.own_session;
+      StationFile& file = this->file(place.station);
+      named(file.name(), [&] {
+        draft_.add_session(session, file.events(own), file.wrapped_keys(own));
+        file.for_each_trace(own,
+                            [&](int trial, const Bytes& box) { draft_.add_trace(trial, box); });
+        draft_.end_traces();
+      });
+      if (progress) progress(session, count);
+    }
+  }
+
+  void finish() && { std::move(draft_).finish(); }
+
+ private:
+  StationFile& file(int station) { return *stations_[static_cast<std::size_t>(station) - 1].file; }
+
+  record::CollectedDraft draft_;
+  std::vector<Station> stations_;
+  std::vector<record::SessionPlace> places_;
+};
+
+}  // namespace
+
+std::string SessionLeftOut::words() const {
+  return one_line(fmt::format(
+      "{}: session {} (participant {}) {}", station, session, participant,
+      cut_short ? "was replaced or withdrawn before it ended: it cannot be continued, and is left "
+                  "out for good"
+                : "has not ended and is left out; run this again when it has"));
+}
+
+SessionLeftOut left_out_of(const StationFile& station, int session,
+                           const record::SessionOnFile& course) {
+  return {.station = station.name(),
+          .session = session,
+          .participant = course.opened.participant,
+          .cut_short = course.is_cut_short()};
+}
+
+CollectReport collect_into_file(Stations stations, const std::filesystem::path& target,
+                                const CollectProgress& progress) {
+  CollectReport report;
+  Collecting collecting(std::move(stations), record::CollectedDraft::in_file(target), report);
+  collecting.take_sessions(progress);
+  std::move(collecting).finish();
+  return report;
+}
+
+}  // namespace touchtrial::merging

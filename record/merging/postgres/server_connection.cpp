@@ -1,0 +1,190 @@
+#include "record/merging/postgres/server_connection.hpp"
+
+#include "core/text.hpp"
+
+#include <algorithm>
+#include <condition_variable>
+#include <cstdlib>
+#include <mutex>
+
+#include <fmt/format.h>
+#include <linux/tcp.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+namespace touchtrial::merging {
+namespace {
+
+/// Does not pass on libpq's own complaint, which repeats the address.
+ConnectionOptions parsed(const std::string& where) {
+  const bool ours = where.starts_with("postgresql://") || where.starts_with("postgres://");
+  const std::unique_ptr<PQconninfoOption, decltype(&PQconninfoFree)> all(
+      ours ? PQconninfoParse(where.c_str(), nullptr) : nullptr, PQconninfoFree);
+  if (!all) {
+    throw UsageError(
+        "this is no address of a PostgreSQL database; write postgresql://USER@HOST/DATABASE");
+  }
+  ConnectionOptions options;
+  for (const PQconninfoOption* one = all.get(); one->keyword != nullptr; ++one) {
+    if (one->val != nullptr) options[one->keyword] = one->val;
+  }
+  return options;
+}
+
+/// Where a number is given (hostaddr), libpq connects to that, and uses the name for the
+/// certificate alone. A list of servers counts as another machine.
+bool is_this_machine(const std::string& host, const std::string& number) {
+  const std::string& place = number.empty() ? host : number;
+  const bool is_socket = place.empty() || place.front() == '/' || place.front() == '@';
+  const bool is_list = place.find(',') != std::string::npos;
+  return !is_list && (is_socket || place == "localhost" || place == "127.0.0.1" || place == "::1");
+}
+
+/// The kernel counts them for TCP alone; a Unix socket's server is this machine's.
+std::uint64_t bytes_received(int socket) {
+  tcp_info info{};
+  socklen_t size = sizeof info;
+  if (::getsockopt(socket, IPPROTO_TCP, TCP_INFO, &info, &size) != 0) return 0;
+  return info.tcpi_bytes_received;
+}
+
+}  // namespace
+
+ConnectionOptions connection_options(const std::string& where) {
+  ConnectionOptions options = parsed(where);
+  for (const char* const name : {"password", "sslpassword", "service"}) {
+    if (!options.contains(name)) continue;
+    throw UsageError(
+        "the address holds a password, which every user of this machine can read in the list of "
+        "programs, or names a service; take it out, and lay a new password in ~/.pgpass");
+  }
+  for (const char* const name : {"PGHOST", "PGHOSTADDR", "PGSERVICE"}) ::unsetenv(name);
+  if (!is_this_machine(options["host"], options["hostaddr"])) {
+    // Said in the address, it comes before the environment; GSSAPI would come in place of TLS.
+    const bool is_proved =
+        options.emplace("sslmode", "verify-full").first->second == "verify-full" &&
+        options.emplace("gssencmode", "disable").first->second == "disable";
+    if (!is_proved) {
+      throw UsageError(
+          "the address asks for less than sslmode=verify-full to another machine, so that others "
+          "could read and alter the study; write ?sslmode=verify-full without gssencmode, and "
+          "&sslrootcert=FILE with the certificate of the authority that signed the server's");
+    }
+  }
+  // libpq would wait for ever where this is 0 or no number.
+  std::string& timeout = options["connect_timeout"];
+  const int seconds = number_in<int>(timeout).value_or(0);
+  timeout = std::to_string(seconds < 1 ? 10 : std::min(seconds, 60));
+  return options;
+}
+
+ByteView value_at(const SqlRows& rows, int row, int column) {
+  return {reinterpret_cast<const std::uint8_t*>(PQgetvalue(rows.get(), row, column)),
+          static_cast<std::size_t>(PQgetlength(rows.get(), row, column))};
+}
+
+ServerConnection::ServerConnection(const ConnectionOptions& options, const AnswerLimits& limits)
+    : limits_(limits) {
+  std::vector<const char*> names;
+  std::vector<const char*> values;
+  for (const auto& [name, value] : options) {
+    names.push_back(name.c_str());
+    values.push_back(value.c_str());
+  }
+  names.push_back(nullptr);
+  values.push_back(nullptr);
+  connection_.reset(PQconnectdbParams(names.data(), values.data(), 0));
+  PGconn* const made = connection_.get();
+  shown_ = one_line(fmt::format("{}:{}/{}", PQhost(made), PQport(made), PQdb(made)));
+  if (PQstatus(made) != CONNECTION_OK) {
+    refuse(
+        "cannot connect; check the address, that the server runs, user and password (~/.pgpass, "
+        "PGPASSWORD), and for another machine the certificate (sslrootcert)",
+        PQerrorMessage(made));
+  }
+  PQsetnonblocking(made, 1);
+  ask("SET synchronous_commit = on");
+  ask("SET client_min_messages = error");  // libpq would print notices
+}
+
+SqlRows ServerConnection::ask(const std::string& statement, const std::vector<ByteView>& values) {
+  std::vector<const char*> starts;
+  std::vector<int> lengths;
+  const std::vector<int> formats(values.size(), 1);
+  for (const ByteView value : values) {
+    // A null pointer would be NULL.
+    starts.push_back(value.empty() ? "" : reinterpret_cast<const char*>(value.data()));
+    lengths.push_back(static_cast<int>(value.size()));
+  }
+  const std::jthread guard = break_off_too_large();
+  began_ = moved_ = Clock::now();
+  PQsendQueryParams(connection_.get(), statement.c_str(), static_cast<int>(values.size()), nullptr,
+                    starts.data(), lengths.data(), formats.data(), 1);
+  SqlRows rows = next_result();
+  const ExecStatusType status = PQresultStatus(rows.get());
+  if (status != PGRES_TUPLES_OK && status != PGRES_COMMAND_OK) {
+    const char* const reason = PQresultErrorField(rows.get(), PG_DIAG_MESSAGE_PRIMARY);
+    refuse(
+        "the server did not do it; run the same command again, which goes on from there, or ask "
+        "whoever keeps it for the rights that docs/several-stations.md lists",
+        reason != nullptr ? reason : PQerrorMessage(connection_.get()));
+  }
+  if (next_result()) refuse("check that the address is the right one", "it answers twice");
+  return rows;
+}
+
+/// PQgetResult, which itself waits without limits.
+SqlRows ServerConnection::next_result() {
+  constexpr int kBetweenLooksMs = 100;  // what TLS has read already does not wake the socket
+  while (true) {
+    const int unsent = PQflush(connection_.get());
+    if (unsent < 0 || PQconsumeInput(connection_.get()) != 1) {
+      require_within_limits();
+      refuse("the connection was lost; run the same command again, which goes on from there",
+             PQerrorMessage(connection_.get()));
+    }
+    if (unsent == 0 && PQisBusy(connection_.get()) == 0) break;
+    require_within_limits();
+    pollfd socket{.fd = PQsocket(connection_.get()), .events = POLLIN, .revents = 0};
+    if (unsent == 1) socket.events |= POLLOUT;
+    if (::poll(&socket, 1, kBetweenLooksMs) > 0) moved_ = Clock::now();
+  }
+  return {PQgetResult(connection_.get()), PQclear};
+}
+
+void ServerConnection::require_within_limits() const {
+  const Clock::time_point now = Clock::now();
+  const char* reason = nullptr;
+  if (now - moved_ > limits_.silence) reason = "it has been silent for too long";
+  if (now - began_ > limits_.whole) reason = "its answer does not come to an end";
+  if (is_too_large_) reason = "its answer is absurdly large";
+  if (reason == nullptr) return;
+  refuse("the server's connection was broken off; check that the address is the right one", reason);
+}
+
+/// On another thread: libpq reads a message that keeps arriving to its end, which may be 2 GB away.
+std::jthread ServerConnection::break_off_too_large() {
+  const int socket = PQsocket(connection_.get());
+  const std::uint64_t limit = bytes_received(socket) + limits_.bytes;
+  return std::jthread([this, socket, limit](const std::stop_token& is_answered) {
+    constexpr std::chrono::milliseconds kBetweenLooks{5};
+    const auto is_over = [&] { return bytes_received(socket) > limit; };
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any answered;
+    while (!answered.wait_for(lock, is_answered, kBetweenLooks, is_over)) {
+      if (is_answered.stop_requested()) return;
+    }
+    is_too_large_ = true;
+    ::shutdown(socket, SHUT_RDWR);
+  });
+}
+
+void ServerConnection::refuse(const std::string& what, const char* reason) const {
+  const std::string text = reason;
+  throw StoreError(fmt::format("{}: {} ({})", shown_, what,
+                               one_line(text.substr(0, text.find_last_not_of(" \n") + 1))));
+}
+
+}  // namespace touchtrial::merging

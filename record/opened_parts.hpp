@@ -1,0 +1,46 @@
+/// \file Opened events whose bodies stay in their two parts: who reads a study's answers opens every
+/// event, and few have use for the text of the whole body.
+#pragma once
+
+#include "core/cipher.hpp"
+#include "record/body_parts.hpp"
+#include "record/fold.hpp"
+
+#include <chrono>
+#include <optional>
+#include <string>
+
+namespace touchtrial::record {
+
+/// What is sealed of a session's event, beside what is in clear.
+struct OpenedParts {
+  std::chrono::nanoseconds at{};
+  BodyParts body;
+  std::string secret;  ///< as OpenedEvent::secret
+};
+
+/// Opens the events of one session.
+class EventOpener {
+ public:
+  explicit EventOpener(const SecretKey& participant_key);
+
+  /// \param event  of the session, as it is stored
+  /// \return nothing if the key is wrong, or anything of the event was altered
+  [[nodiscard]] std::optional<OpenedParts> operator()(const Event& event) const;
+
+ private:
+  Unsealer participant_;
+  Unsealer safety_;
+};
+
+/// The body that the two parts come to.
+/// \throws StoreError, naming the key, if they are no such body
+template <typename Body>
+[[nodiscard]] Body from_parts(const BodyParts& parts);
+
+/// As fold, with an event that was opened; a trace-stored event's body is read with from_parts.
+/// \param event  with its time and nothing sealed; its body does not count
+/// \throws as fold
+void fold(DerivedRows& rows, const Event& event, const BodyParts& body);
+
+}  // namespace touchtrial::record

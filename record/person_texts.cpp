@@ -1,0 +1,63 @@
+#include "record/person_texts.hpp"
+
+#include "core/cipher.hpp"
+#include "record/body_parts.hpp"
+#include "record/payload_json.hpp"
+#include "record/sealing.hpp"
+
+#include <utility>
+
+namespace touchtrial::record {
+namespace {
+
+/// The length of a text in steps of so many bytes is all that its box tells.
+constexpr std::size_t kStep = 256;
+
+/// A remark without a code is no deviation. Everything else is part of the safety record.
+bool is_plain_remark(EventKind kind, const std::string& body) {
+  return kind == EventKind::participant_noted && note_from_json(body).code.empty();
+}
+
+/// A collected study keeps what this names, but gives chains and sessions other numbers.
+std::string context_of(EventKind kind, std::chrono::nanoseconds at, int own_session) {
+  return "text|" + std::to_string(own_session) + "|" + std::string(name_of(kind)) + "|" +
+         std::to_string(at.count());
+}
+
+}  // namespace
+
+PersonText sealed_person_text(EventKind kind, std::chrono::nanoseconds at, const std::string& body,
+                              const SessionOpenedBody& opened) {
+  BodyParts parts = split_body(kind, body);
+  parts.hidden.resize((parts.hidden.size() / kStep + 1) * kStep, ' ');  // blanks end a JSON text
+  const int own_session = opened.own_session > 0 ? opened.own_session : opened.session;
+  SystemEntropy entropy;
+  return {std::move(parts.clear),
+          seal_box(is_plain_remark(kind, body) ? opened.remarks : opened.reasons,
+                   context_of(kind, at, own_session), bytes_of(parts.hidden),
+                   entropy.secret("text about a person"))};
+}
+
+const std::optional<SecretKey>& opener_of(const Event& event, const PersonKeys& keys) {
+  if (event.session <= 0) {
+    return is_plain_remark(event.kind, event.body) ? keys.participant : keys.safety;
+  }
+  return is_safety_record(event.kind) && !keys.participant ? keys.safety : keys.participant;
+}
+
+std::optional<Event> opened_person_text(const Event& event, int own_session,
+                                        const PersonKeys& keys) {
+  if (event.sealed.empty()) return event;
+  const std::optional<SecretKey>& key = opener_of(event, keys);
+  if (!key) return std::nullopt;
+  const std::optional<Bytes> hidden =
+      open_box(is_plain_remark(event.kind, event.body) ? remarks_box(*key) : reasons_box(*key),
+               context_of(event.kind, event.at, own_session), event.sealed);
+  if (!hidden) return std::nullopt;
+  Event opened = event;
+  opened.body = joined_body({event.body, text_of(ByteView(*hidden))});
+  opened.sealed.clear();
+  return opened;
+}
+
+}  // namespace touchtrial::record

@@ -1,0 +1,29 @@
+/// \file The tables in an SQLite file: how they are made and checked. Private to record.
+/// What each column means: docs/data-dictionary.md, "Database".
+#pragma once
+
+#include "record/database.hpp"
+
+#include <array>
+#include <optional>
+#include <string>
+
+namespace touchtrial::record {
+
+inline constexpr std::array kTables = {"events", "traces", "participant_keys", "safety_keys",
+                                       "station_keys"};
+
+/// Makes the tables of kSchemaVersion in an empty database, in one transaction.
+void make_tables(const Database& database);
+
+struct SchemaFault {
+  std::string what;    ///< the first difference, by type and name
+  std::string remedy;  ///< a shell's command that removes all that was added; empty: none does
+};
+
+/// Compares the tables, indices and triggers of a database with those of kSchemaVersion. Finds, for
+/// instance, a dropped trigger, an altered table, or a view that stands in for a table. SQLite's
+/// own tables, as ANALYZE makes them, may be there.
+[[nodiscard]] std::optional<SchemaFault> schema_fault(const Database& database);
+
+}  // namespace touchtrial::record

@@ -1,0 +1,229 @@
+#include "record/session_recorder.hpp"
+
+#include "core/errors.hpp"
+#include "record/body_parts.hpp"
+#include "record/payload_json.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace touchtrial::record {
+namespace {
+
+bool is_remark(EventKind kind) {
+  switch (kind) {
+    case EventKind::calibrated:
+    case EventKind::instructed:
+    case EventKind::break_taken:
+    case EventKind::stopped:
+    case EventKind::noted:
+    case EventKind::ticked:
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// The padding of an interruption: that of a flight record of three seconds, which the usual record
+/// never exceeds, or of its ticks in whole thousands if it is longer. So the size tells neither
+/// rough textures from smooth ones nor how long they were felt.
+std::size_t interruption_padding(std::int64_t ticks) {
+  // A row has 21 values, 14 of them of up to 24 characters; ordinary rows need 330 bytes or less.
+  constexpr std::size_t kBytesAThousand = 384'000;
+  constexpr std::size_t kBytesBefore = 1024;
+  constexpr std::size_t kUsualThousands = 3;
+  const std::size_t thousands = (static_cast<std::size_t>(ticks) + 999) / 1000;
+  return kBytesBefore + kBytesAThousand * std::max(kUsualThousands, thousands);
+}
+static_assert(1024 % kSealedUnit == 0 && 384'000 % kSealedUnit == 0);
+
+double largest_force_in(const Trace& trace) {
+  double largest = 0.0;  // squared
+  for (const TraceSample& sample : trace.samples) {
+    largest = std::max(largest, dot(sample.force_n, sample.force_n));
+  }
+  return std::sqrt(largest);
+}
+
+}  // namespace
+
+void BufferedEvents::accept(const Event& event, const std::optional<SealedTrace>& trace) {
+  events.push_back(event);
+  if (trace) traces.push_back(*trace);
+}
+
+SessionRecorder::SessionRecorder(int session, const SecretKey& participant_key, EventSink& sink)
+    : session_(session), participant_key_(participant_key), sink_(sink) {}
+
+void SessionRecorder::opened(std::chrono::nanoseconds at, const SessionOpening& opening,
+                             const std::string& secret_schedule) {
+  append(at, {EventKind::opened, to_json(opening), secret_schedule});
+}
+
+void SessionRecorder::presented(std::chrono::nanoseconds at, int trial, int block) {
+  append(at, {EventKind::presented, presented_to_json(trial, block)});
+}
+
+void SessionRecorder::first_contact(std::chrono::nanoseconds at, int trial) {
+  append(at, {EventKind::first_contact, trial_to_json(trial)});
+}
+
+void SessionRecorder::answered(std::chrono::nanoseconds at, const AnswerBody& answer,
+                               const std::optional<TrialEvidence>& evidence) {
+  append_with(at, evidence, {EventKind::answered, to_json(answer)});
+}
+
+void SessionRecorder::interrupted(std::chrono::nanoseconds at, int trial, const std::string& reason,
+                                  const std::optional<InterruptionDetail>& detail) {
+  Draft draft{EventKind::interrupted,
+              interrupted_to_json(trial, reason, detail ? &*detail : nullptr)};
+  if (detail) {
+    draft.secret = to_json(*detail);
+    draft.padding = interruption_padding(detail->ticks);
+  }
+  append(at, std::move(draft));
+}
+
+void SessionRecorder::timed_out(std::chrono::nanoseconds at, int trial,
+                                const std::optional<TrialEvidence>& evidence) {
+  append_with(at, evidence, {EventKind::timed_out, trial_to_json(trial)});
+}
+
+TrialEvidence SessionRecorder::packed(TraceBody body, const TrialMeasures& measures,
+                                      const Trace& trace) const {
+  SealedTrace sealed = seal_trace(session_, body.trial, trace, participant_key_);
+  body.samples = static_cast<std::int64_t>(trace.samples.size());
+  body.largest_force_n = largest_force_in(trace);
+  body.trace = blake2b(sealed.box);
+  return {std::move(body), measures, std::move(sealed)};
+}
+
+void SessionRecorder::trace_stored(std::chrono::nanoseconds at, const TraceBody& body,
+                                   const TrialMeasures& measures, const Trace& trace) {
+  append(at, draft_of(packed(body, measures, trace)));
+}
+
+void SessionRecorder::practised(std::chrono::nanoseconds at, const PracticeBody& body) {
+  append(at, {EventKind::practised, to_json(body)});
+}
+
+void SessionRecorder::deviated(std::chrono::nanoseconds at, const DeviationBody& body) {
+  append(at, {EventKind::deviated, to_json(body)});
+}
+
+void SessionRecorder::questioned(std::chrono::nanoseconds at, const std::string& name,
+                                 const std::string& answers) {
+  append(at, {EventKind::questioned, remark_to_json(name), answers});
+}
+
+void SessionRecorder::marked(std::chrono::nanoseconds at, const MarksBody& marks) {
+  append(at, {EventKind::marked, "{}", to_json(marks)});
+}
+
+void SessionRecorder::explored_again(std::chrono::nanoseconds at, int trial) {
+  append(at, {EventKind::explored_again, trial_to_json(trial)});
+}
+
+void SessionRecorder::block_restarted(std::chrono::nanoseconds at, int block, int first_trial,
+                                      const std::string& secret_schedule) {
+  append(at, {EventKind::block_restarted, block_to_json(block, first_trial), secret_schedule});
+}
+
+void SessionRecorder::paused(std::chrono::nanoseconds at, const PauseBody& body) {
+  append(at, {EventKind::paused, to_json(body)});
+}
+
+void SessionRecorder::resumed(std::chrono::nanoseconds at, const ResumedBody& body) {
+  append(at, {EventKind::resumed, to_json(body)});
+}
+
+void SessionRecorder::remarked(std::chrono::nanoseconds at, EventKind kind,
+                               const std::string& text) {
+  if (!is_remark(kind)) {
+    throw StoreError("an event of kind '" + std::string(name_of(kind)) +
+                     "' is no remark; record it with the function of its name");
+  }
+  append(at, {kind, remark_to_json(text)});
+}
+
+void SessionRecorder::stopped(std::chrono::nanoseconds at, const StopBody& why) {
+  append(at, {EventKind::stopped, to_json(why)});
+}
+
+void SessionRecorder::closed(std::chrono::nanoseconds at, bool complete, int answers, bool one_key,
+                             std::optional<double> largest_force_n) {
+  if (largest_force_n) largest_force_n = in_tenths(*largest_force_n);
+  // Sealing this takes the key: a chain that somebody makes anew without it ends differently.
+  const ClosedBody body{.complete = complete,
+                        .answers = answers,
+                        .one_key = one_key,
+                        .largest_force_n = largest_force_n};
+  append(at,
+         {EventKind::closed, to_json(body), to_json(ChainEnd{.length = length_, .head = head_})});
+}
+
+void SessionRecorder::go_on_after(const Event& last) {
+  head_ = last.hash;
+  length_ = last.sequence + 1;
+  last_at_ = last.at;
+}
+
+SessionRecorder::Draft SessionRecorder::draft_of(TrialEvidence evidence) {
+  return {.kind = EventKind::trace_stored,
+          .body = to_json(evidence.body),
+          .secret = to_json(evidence.measures),
+          .trace = std::move(evidence.trace)};
+}
+
+void SessionRecorder::append(std::chrono::nanoseconds at, Draft draft) {
+  append_together(at, std::span(&draft, 1));
+}
+
+void SessionRecorder::append_with(std::chrono::nanoseconds at,
+                                  const std::optional<TrialEvidence>& evidence, Draft draft) {
+  std::vector<Draft> drafts;
+  if (evidence) drafts.push_back(draft_of(*evidence));
+  drafts.push_back(std::move(draft));
+  append_together(at, drafts);
+}
+
+void SessionRecorder::append_together(std::chrono::nanoseconds at, std::span<Draft> drafts) {
+  if (at < last_at_) {
+    throw StoreError("session " + std::to_string(session_) + ": the clock went backwards before '" +
+                     std::string(name_of(drafts.front().kind)) + "'; use a monotonic clock");
+  }
+  std::vector<RecordedEvent> events;
+  Digest previous = head_;
+  for (Draft& draft : drafts) {
+    const std::int64_t sequence = length_ + static_cast<std::int64_t>(events.size());
+    events.push_back(chained(at, sequence, previous, draft));
+    previous = events.back().event.hash;
+  }
+  if (events.size() == 1) {
+    sink_.accept(events.front().event, events.front().trace);
+  } else {
+    sink_.accept_together(events);
+  }
+  // Only now: an event that its sink refused is not part of the chain.
+  head_ = previous;
+  last_at_ = at;
+  length_ += static_cast<std::int64_t>(events.size());
+}
+
+RecordedEvent SessionRecorder::chained(std::chrono::nanoseconds at, std::int64_t sequence,
+                                       const Digest& previous, Draft& draft) const {
+  Event event{.session = session_,
+              .sequence = sequence,
+              .kind = draft.kind,
+              .at = at,
+              .body = std::move(draft.body),
+              .sealed = {},
+              .previous = previous,
+              .hash = {}};
+  const std::size_t padding = draft.padding.value_or(sealed_padding(draft.kind));
+  return {sealed_event(std::move(event), draft.secret, participant_key_, padding),
+          std::move(draft.trace)};
+}
+
+}  // namespace touchtrial::record

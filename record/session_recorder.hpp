@@ -1,0 +1,144 @@
+/// \file Turns what happens in one session into chained, sealed events.
+#pragma once
+
+#include "record/payload.hpp"
+#include "record/sealing.hpp"
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace touchtrial::record {
+
+struct MarksBody;
+
+/// An event, and the trace that comes with one of kind trace_stored.
+struct RecordedEvent {
+  Event event;
+  std::optional<SealedTrace> trace;
+};
+
+/// What is stored for a presentation beside its answer, ready to be written.
+struct TrialEvidence {
+  TraceBody body;
+  TrialMeasures measures;
+  SealedTrace trace;
+};
+
+/// Where events go. When `accept` returns, a durable sink has them on the disk.
+class EventSink {
+ public:
+  virtual ~EventSink() = default;
+  /// \param trace  comes with a trace_stored event and with no other
+  /// \throws StoreError if the event cannot be stored; it is then not part of the chain
+  virtual void accept(const Event& event, const std::optional<SealedTrace>& trace) = 0;
+  /// Takes events that belong together. A durable sink stores all or none of them.
+  virtual void accept_together(std::span<const RecordedEvent> events) {
+    for (const auto& [event, trace] : events) accept(event, trace);
+  }
+};
+
+/// Keeps a whole session in memory, for StudyStore::add_session.
+class BufferedEvents final : public EventSink {
+ public:
+  void accept(const Event& event, const std::optional<SealedTrace>& trace) override;
+
+  std::vector<Event> events;
+  std::vector<SealedTrace> traces;
+};
+
+/// The growing chain of one session. Not thread-safe; any number may run beside each other. Times
+/// must not be negative or decrease. Every function that records throws StoreError if the time
+/// decreases, a text is not UTF-8, or the sink refuses: the chain is then as it was.
+class SessionRecorder {
+ public:
+  /// \param session  number in the database, from 1
+  /// \param participant_key  encrypts this participant's payloads
+  SessionRecorder(int session, const SecretKey& participant_key, EventSink& sink);
+
+  /// \param secret_schedule  JSON of schedule and layout, sealed
+  void opened(std::chrono::nanoseconds at, const SessionOpening& opening,
+              const std::string& secret_schedule);
+  void presented(std::chrono::nanoseconds at, int trial, int block);
+  void first_contact(std::chrono::nanoseconds at, int trial);
+  /// \param evidence  of the same presentation, stored with the answer or not at all
+  void answered(std::chrono::nanoseconds at, const AnswerBody& answer,
+                const std::optional<TrialEvidence>& evidence = std::nullopt);
+  /// \param reason  in clear: must say nothing about the stimulus, and be nobody's words
+  /// \param detail  sealed but for the faults' names, with a padding that does not depend on a
+  ///   flight record of up to 3,000 ticks, and of a longer one depends on whole thousands
+  void interrupted(std::chrono::nanoseconds at, int trial, const std::string& reason,
+                   const std::optional<InterruptionDetail>& detail = std::nullopt);
+  void timed_out(std::chrono::nanoseconds at, int trial,
+                 const std::optional<TrialEvidence>& evidence = std::nullopt);
+  /// Encodes and seals a trace, and fills `body.trace`, `body.samples` and `body.largest_force_n`.
+  /// Takes a few milliseconds for each second of exploration. Another thread may call it while this
+  /// one records.
+  [[nodiscard]] TrialEvidence packed(TraceBody body, const TrialMeasures& measures,
+                                     const Trace& trace) const;
+  /// Stores what `packed` makes of these, without an answer.
+  void trace_stored(std::chrono::nanoseconds at, const TraceBody& body,
+                    const TrialMeasures& measures, const Trace& trace);
+  void practised(std::chrono::nanoseconds at, const PracticeBody& body);
+  void deviated(std::chrono::nanoseconds at, const DeviationBody& body);
+  /// \param name  of the questionnaire, in clear
+  /// \param answers  JSON, sealed
+  void questioned(std::chrono::nanoseconds at, const std::string& name, const std::string& answers);
+  /// Sealed altogether.
+  void marked(std::chrono::nanoseconds at, const MarksBody& marks);
+  void explored_again(std::chrono::nanoseconds at, int trial);
+  /// \param first_trial  number of the block's first trial from now on
+  /// \param secret_schedule  JSON of the block's new presentations, sealed
+  void block_restarted(std::chrono::nanoseconds at, int block, int first_trial,
+                       const std::string& secret_schedule);
+  void paused(std::chrono::nanoseconds at, const PauseBody& body);
+  void resumed(std::chrono::nanoseconds at, const ResumedBody& body);
+  /// \param kind  calibrated, instructed, break_taken, stopped, noted or ticked
+  /// \param text  one line, or empty; sealed if a person may have typed it: stopped, noted
+  void remarked(std::chrono::nanoseconds at, EventKind kind, const std::string& text);
+  void stopped(std::chrono::nanoseconds at, const StopBody& why);
+  /// Seals the chain's length and head up to here into the event, see ChainEnd.
+  /// \param complete  whether the schedule was finished
+  /// \param answers, one_key, largest_force_n  see ClosedBody
+  void closed(std::chrono::nanoseconds at, bool complete, int answers = 0, bool one_key = false,
+              std::optional<double> largest_force_n = std::nullopt);
+
+  /// Goes on with a chain that is stored already.
+  /// \param last  its last event, opened
+  void go_on_after(const Event& last);
+
+  /// Hash of the last event; zeros before the first.
+  [[nodiscard]] const Digest& head() const noexcept { return head_; }
+  [[nodiscard]] std::int64_t length() const noexcept { return length_; }
+
+ private:
+  struct Draft {
+    EventKind kind{};
+    std::string body;  ///< whole
+    std::string secret{};
+    std::optional<std::size_t> padding{};  ///< empty: that of the kind
+    std::optional<SealedTrace> trace{};
+  };
+  void append(std::chrono::nanoseconds at, Draft draft);
+  /// All or none, one after the other at the same time.
+  void append_together(std::chrono::nanoseconds at, std::span<Draft> drafts);
+  /// After the presentation's trace, if there is one.
+  void append_with(std::chrono::nanoseconds at, const std::optional<TrialEvidence>& evidence,
+                   Draft draft);
+  [[nodiscard]] RecordedEvent chained(std::chrono::nanoseconds at, std::int64_t sequence,
+                                      const Digest& previous, Draft& draft) const;
+  [[nodiscard]] static Draft draft_of(TrialEvidence evidence);
+
+  int session_;
+  SecretKey participant_key_;
+  EventSink& sink_;
+  Digest head_{};
+  std::int64_t length_ = 0;
+  std::chrono::nanoseconds last_at_{0};
+};
+
+}  // namespace touchtrial::record

@@ -1,0 +1,422 @@
+// Sessions and participants of a StoredStudy: who is let in, goes on, ends, withdraws or is
+// replaced.
+#include "core/text.hpp"
+#include "core/utc.hpp"
+#include "record/payload_json.hpp"
+#include "record/rows.hpp"
+#include "record/stored_study.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace touchtrial::record {
+namespace {
+
+constexpr std::size_t kLongestParticipant = 32;
+
+/// Whether a session goes on where the participant's last visit ended.
+bool is_next_visit(const SessionOpening& opening, const SessionRow& last) {
+  return opening.visit == last.visit + 1 && opening.enrolment == last.enrolment &&
+         last.state == SessionState::completed && !last.withdrawn;
+}
+
+/// No session is opened after the study was closed, so that the newest event of the two kinds
+/// tells; a study of many sessions is not read from its beginning.
+bool is_closed(const Database& database) {
+  Query query = database.query(
+      "SELECT kind = 'study-closed' FROM events WHERE session = 0 AND "
+      "kind IN ('study-closed', 'session-opened') ORDER BY sequence DESC LIMIT 1");
+  return query.step() && query.integer(0) != 0;
+}
+
+std::string title_of(const SessionRow& row) {
+  return "session " + std::to_string(row.session) + " (participant " + row.participant + ")";
+}
+
+/// Whether nobody explores after an event of this kind, so that the log can be emptied.
+bool is_rest(EventKind kind) {
+  return kind == EventKind::break_taken || kind == EventKind::paused;
+}
+
+/// What is acknowledged, and where a session may end.
+bool is_known_by_heads(EventKind kind) {
+  return kind == EventKind::opened || kind == EventKind::answered || kind == EventKind::timed_out ||
+         kind == EventKind::stopped || kind == EventKind::closed || is_rest(kind);
+}
+
+/// The same day of another year; of 29 February the 28th if that year has no other.
+std::chrono::nanoseconds years_after(std::chrono::nanoseconds utc, int years) {
+  using namespace std::chrono;
+  const sys_time<nanoseconds> time(utc);
+  const sys_days day = floor<days>(time);
+  year_month_day date(day);
+  date += std::chrono::years(years);
+  if (!date.ok()) date = date.year() / date.month() / last;
+  return (sys_days(date) + (time - day)).time_since_epoch();
+}
+
+/// A trace comes with the event that names it, and with no other.
+void require_match(const Event& event, const SealedTrace* trace) {
+  if (event.kind != EventKind::trace_stored) {
+    if (trace == nullptr) return;
+    throw EventFault(event, "an event of this kind has no trace");
+  }
+  const int trial = body_of(event, trace_body_from_json).trial;
+  if (trace == nullptr || trace->session != event.session || trace->trial != trial) {
+    throw EventFault(event, "the trace of trial " + std::to_string(trial) + " is missing");
+  }
+}
+
+}  // namespace
+
+bool is_participant_id(const std::string& id) {
+  const auto allowed = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '+' ||
+           c == '-' || c == '_';
+  };
+  return !id.empty() && id.size() <= kLongestParticipant && !is_read_as_missing(id) &&
+         !begins_like_formula(id) && std::all_of(id.begin(), id.end(), allowed);
+}
+
+void StoredStudy::refuse_if_over() const {
+  if (stations() > 0) {
+    refuse(
+        "was collected from several stations and takes no sessions of its own; record them in a "
+        "station's database, and merge again");
+  }
+  if (is_closed(database_)) refuse("the study is closed; it takes no more sessions");
+}
+
+void StoredStudy::require_participant_id(const std::string& id) const {
+  if (is_participant_id(id)) return;
+  refuse("'" + id + "' is no participant id; " + std::string(kParticipantIdRule));
+}
+
+void StoredStudy::admit(const Event& opened, const SessionKeys& keys, std::chrono::nanoseconds at) {
+  refuse_if_over();
+  if (opened.session != next_session()) {
+    refuse("session " + std::to_string(opened.session) + " is not the next one (" +
+           std::to_string(next_session()) + "); another program may have taken it, start again");
+  }
+  if (opened.kind != EventKind::opened) {
+    throw EventFault(opened, "a session begins with 'opened'");
+  }
+  const SessionOpening opening = body_of(opened, opening_from_json);
+  check_opening(opening);
+  append_to_file(EventKind::session_opened, at,
+                 to_json(SessionOpenedBody{
+                     .session = opened.session,
+                     .participant = opening.participant,
+                     .enrolment = opening.enrolment,
+                     .visit = opening.visit,
+                     .first = opened.hash,
+                     .key = sha256(keys.wrapped.participant),
+                     .safety_key = sha256(keys.wrapped.safety),
+                     .kept = keys.kept.empty() ? std::nullopt : std::optional(sha256(keys.kept)),
+                     .remarks = keys.wrapped.remarks,
+                     .reasons = keys.wrapped.reasons}));
+  insert_keys(database_, opened.session,
+              {.participant = keys.wrapped.participant, .safety = keys.wrapped.safety});
+  if (!keys.kept.empty()) insert_station_key(database_, opened.session, keys.kept);
+}
+
+bool StoredStudy::conclude(const Event& closed, std::chrono::nanoseconds at) {
+  Query kept = database_.query("DELETE FROM station_keys WHERE session = ? RETURNING session");
+  const bool erased = kept.bind(closed.session).step();
+  append_to_file(
+      EventKind::session_closed, at,
+      to_json(SessionClosedBody{.session = closed.session,
+                                .length = closed.sequence + 1,
+                                .head = closed.hash,
+                                .complete = body_of(closed, closed_from_json).complete}));
+  return erased;
+}
+
+void StoredStudy::empty_log() const {
+  try {
+    database_.checkpoint();
+  } catch (const SQLite::Exception&) {
+    // Everything has been stored. SQLite empties the log when the last program leaves the
+    // file.
+  }
+}
+
+void StoredStudy::check_opening(const SessionOpening& opening) const {
+  if (opening.study_id != commitment().study_id || opening.seal != commitment().seal) {
+    refuse("is the database of another study, or of this one before it was changed (" +
+           commitment().study + ", id " + commitment().study_id +
+           "); use that study's file and key, or another database");
+  }
+  require_participant_id(opening.participant);
+  refuse_mixture(opening);
+  refuse_if_taken(opening);
+  refuse_if_promised(opening);
+}
+
+void StoredStudy::refuse_mixture(const SessionOpening& opening) const {
+  if (opening.pilot != commitment().pilot) {
+    refuse(commitment().pilot ? "is the database of a pilot; give the study's own sessions another"
+                              : "is no pilot's database; give pilot sessions another");
+  }
+  const bool visual = opening.is_visual();
+  if (visual && !opening.pilot) {
+    refuse("device '" + opening.device +
+           "' is seen on a screen and not felt, which is not blind; use it in a pilot's database, "
+           "or choose a device that is felt");
+  }
+  const std::optional<Event> earlier = read_event(database_, 1, 0);
+  if (earlier && body_of(*earlier, opening_from_json).is_visual() != visual) {
+    refuse(std::string("its sessions are ") + (visual ? "felt" : "seen on a screen") +
+           ", and device '" + opening.device + "' is " + (visual ? "seen" : "felt") +
+           ": they are never pooled; use another database");
+  }
+}
+
+void StoredStudy::refuse_if_taken(const SessionOpening& opening) const {
+  // Of sessions with the participant's id or number, one of the participant's own before others.
+  const SessionRow* taken = nullptr;
+  const auto rank = [&](const SessionRow& row) {
+    return std::pair(row.participant == opening.participant, row.visit);
+  };
+  for (const auto& [session, row] : sessions()) {
+    const bool is_own = row.participant == opening.participant;
+    if (!row.replaced_by.empty() || (!is_own && row.enrolment != opening.enrolment)) continue;
+    if (taken == nullptr || rank(row) > rank(*taken)) taken = &row;
+  }
+  if (taken == nullptr) {
+    if (opening.visit == 1) return;
+    refuse("participant " + opening.participant + " has no visit before visit " +
+           std::to_string(opening.visit) + "; begin with the first");
+  }
+  const std::string session = "session " + std::to_string(taken->session);
+  if (taken->participant == opening.participant) {
+    if (is_next_visit(opening, *taken)) return;
+    if (opening.visit > 1) {
+      refuse("visit " + std::to_string(opening.visit) + " of participant " + opening.participant +
+             " does not follow " + session + ", which is visit " + std::to_string(taken->visit) +
+             "; a visit follows the one before it, complete and with the same number");
+    }
+    refuse("participant " + opening.participant + " already has " + session +
+           "; give another participant id");
+  }
+  refuse("enrolment " + std::to_string(opening.enrolment) + ", asked for participant " +
+         opening.participant + ", belongs to participant " + taken->participant + " (" + session +
+         "); give the next free number");
+}
+
+void StoredStudy::refuse_if_promised(const SessionOpening& opening) const {
+  const std::map<int, std::string> promised = promised_enrolments();
+  const auto kept = promised.find(opening.enrolment);
+  if (kept != promised.end() && kept->second != opening.participant) {
+    refuse("enrolment " + std::to_string(opening.enrolment) + " is kept for participant " +
+           kept->second + ", who replaces somebody; give participant " + opening.participant +
+           " number " + std::to_string(next_enrolment()));
+  }
+  const auto own = std::ranges::find_if(
+      promised, [&](const auto& entry) { return entry.second == opening.participant; });
+  if (own != promised.end() && own->first != opening.enrolment) {
+    refuse("participant " + opening.participant + " replaces somebody and inherits enrolment " +
+           std::to_string(own->first) + "; leave the number out, or give that one");
+  }
+  if (own != promised.end()) return;
+  const SessionRow* last = nullptr;
+  for (const auto& [session, row] : sessions()) {
+    if (row.participant == opening.participant) last = &row;
+  }
+  if (last == nullptr || last->replaced_by.empty()) return;  // new, or here for an earlier visit
+  refuse("participant " + opening.participant + " was replaced by participant " +
+         last->replaced_by + " (session " + std::to_string(last->session) +
+         "); give another participant id");
+}
+
+Event StoredStudy::last_of_open(int session) const {
+  const SessionRow row = this->session(session);
+  const std::string name = title_of(row);
+  if (row.state != SessionState::open) {
+    refuse(name + " has ended and cannot go on; use another participant id, or restart it");
+  }
+  if (row.withdrawn) refuse(name + " cannot go on: the participant has withdrawn");
+  if (!row.replaced_by.empty()) {
+    refuse(name + " cannot go on: it was replaced by participant " + row.replaced_by);
+  }
+  if (is_closed(database_)) refuse(name + " cannot go on: the study is closed");
+  return last_event(session).value();
+}
+
+void StoredStudy::check_whole(const BufferedEvents& session) const {
+  if (session.events.empty() || session.events.back().kind != EventKind::closed) {
+    refuse("the session to be added has no end; record its closing first");
+  }
+  ChainLink chain(session.events.front().session);
+  auto trace = session.traces.begin();
+  for (const Event& event : session.events) {
+    chain.extend(event);
+    if (event.kind != EventKind::trace_stored) continue;
+    require_match(event, trace == session.traces.end() ? nullptr : &*trace);
+    ++trace;
+  }
+  if (trace != session.traces.end()) {
+    refuse("the session to be added has a trace without an event; record it anew");
+  }
+}
+
+void StoredStudy::store_whole(const BufferedEvents& session, const NewKeys& keys,
+                              std::chrono::nanoseconds at) {
+  admit(session.events.front(), {.wrapped = keys, .kept = {}}, at);
+  DerivedRows rows;
+  for (const Event& event : session.events) {
+    fold(rows, event);
+    append(event, std::nullopt);
+  }
+  for (const SealedTrace& trace : session.traces) insert_trace(database_, trace);
+  conclude(session.events.back(), at);
+}
+
+void StoredStudy::withdraw(const WithdrawalBody& withdrawal, std::chrono::nanoseconds at) {
+  const int session = withdrawal.session;
+  const SessionRow row = this->session(session);
+  const std::string whose = "the participant of session " + std::to_string(session);
+  if (withdrawal.kept == Kept::data && row.withdrawn) {
+    refuse(whose + " has already withdrawn" + (row.erased ? ", and the data are erased" : ""));
+  }
+  if (withdrawal.kept == Kept::safety_record && row.erased) {
+    refuse(whose + " has already withdrawn, and the data are erased");
+  }
+  if (withdrawal.kept == Kept::nothing) refuse_while_kept(session, at);
+  const auto destroy = [&](const char* sql) { database_.query(sql).bind(session).run(); };
+  destroy("DELETE FROM station_keys WHERE session = ?");  // the session cannot go on
+  if (withdrawal.kept != Kept::data) destroy("DELETE FROM participant_keys WHERE session = ?");
+  if (withdrawal.kept == Kept::nothing) destroy("DELETE FROM safety_keys WHERE session = ?");
+  append_about(session, EventKind::participant_withdrawn, at, to_json(withdrawal));
+}
+
+/// The safety record goes last, and only when the study's years have passed.
+void StoredStudy::refuse_while_kept(int session, std::chrono::nanoseconds at) const {
+  const std::string whose = "the safety record of session " + std::to_string(session);
+  if (!this->session(session).erased) {
+    refuse(whose + " is kept as long as the data are; erase those first (withdraw --erase)");
+  }
+  Query key = database_.query("SELECT 1 FROM safety_keys WHERE session = ?");
+  key.bind(session);
+  if (!key.step()) refuse(whose + " is already erased");
+  const auto until = years_after(opening_on_file(session).at, commitment().safety_record_years);
+  if (at >= until) return;
+  refuse(whose + " is kept until " + utc_day(until) + ", for " +
+         std::to_string(commitment().safety_record_years) +
+         " years, as the study says; come back then");
+}
+
+void StoredStudy::replace(const ReplacementBody& replacement, std::chrono::nanoseconds at) {
+  refuse_if_over();
+  const SessionRow row = session(replacement.session);
+  check_replaced(row);
+  check_replacement(row, replacement.by);
+  if (replacement.by != row.participant) {
+    for (const auto& [session, other] : std::map(sessions())) {
+      const bool is_visit = other.participant == row.participant && other.session != row.session &&
+                            other.replaced_by.empty();
+      if (!is_visit) continue;
+      ReplacementBody body = replacement;
+      body.session = other.session;
+      append_about(other.session, EventKind::participant_replaced, at, to_json(body));
+    }
+  }
+  append_about(replacement.session, EventKind::participant_replaced, at, to_json(replacement));
+}
+
+void StoredStudy::check_replaced(const SessionRow& row) const {
+  const std::string name = title_of(row);
+  if (!row.replaced_by.empty()) {
+    refuse(name + " was already replaced by participant " + row.replaced_by);
+  }
+  // A complete session whose data are kept is analysed, and its place is not free.
+  const bool left_early = row.withdrawn && row.state != SessionState::completed;
+  if (row.excluded || row.erased || left_early || row.state == SessionState::stopped) return;
+  if (row.withdrawn) {
+    refuse(name +
+           " is complete, and its data are kept and analysed; exclude it first if somebody "
+           "is to take its place");
+  }
+  refuse(name + (row.state == SessionState::open ? " is still open" : " is complete") +
+         "; who is replaced must have been stopped, excluded or withdrawn first");
+}
+
+void StoredStudy::check_replacement(const SessionRow& row, const std::string& by) const {
+  require_participant_id(by);
+  if (by == row.participant) return;
+  for (const auto& [session, other] : sessions()) {
+    if (other.participant != by) continue;
+    refuse("participant " + by + " already has session " + std::to_string(session) +
+           "; only somebody new can take a place");
+  }
+  for (const auto& [enrolment, promised] : promised_enrolments()) {
+    if (promised != by) continue;
+    refuse("participant " + by + " already replaces somebody, with enrolment " +
+           std::to_string(enrolment) + "; name another participant");
+  }
+}
+
+StoredSession::StoredSession(StoredStudy& study, int session, SessionKeys keys, UtcClock utc)
+    : StoredSession(study, ChainLink(session), std::move(keys), std::move(utc)) {}
+
+StoredSession::StoredSession(StoredStudy& study, const Event& last, UtcClock utc)
+    : StoredSession(study, ChainLink::after(last), {}, std::move(utc)) {
+  for_each_event(study.database(), last.session, [&](const Event& event) { fold(rows_, event); });
+}
+
+StoredSession::StoredSession(StoredStudy& study, ChainLink chain, SessionKeys keys, UtcClock utc)
+    : study_(study), chain_(chain), keys_(std::move(keys)), utc_(std::move(utc)) {
+  if (!utc_) {
+    utc_ = [] {
+      return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch());
+    };
+  }
+}
+
+void StoredSession::accept(const Event& event, const std::optional<SealedTrace>& trace) {
+  const RecordedEvent recorded{event, trace};
+  accept_together(std::span(&recorded, 1));
+}
+
+void StoredSession::accept_together(std::span<const RecordedEvent> events) {
+  ChainLink chain = chain_;
+  DerivedRows rows = rows_;
+  bool erased_key = false;
+  study_.change([&] {
+    if (chain_.length() > 0) refuse_if_others_wrote(events.front().event.session);
+    for (const RecordedEvent& recorded : events) {
+      const bool first = chain.length() == 0;
+      chain.extend(recorded.event);
+      require_match(recorded.event, recorded.trace ? &*recorded.trace : nullptr);
+      erased_key = store(recorded, first, rows);
+    }
+  });
+  chain_ = chain;
+  rows_ = std::move(rows);
+  const EventKind last = events.back().event.kind;
+  if (is_known_by_heads(last)) {
+    study_.tell_heads({.session = events.back().event.session,
+                       .ended = last == EventKind::closed,
+                       .answers = last == EventKind::answered ? 1 : 0});
+  }
+  if (erased_key || is_rest(last)) study_.empty_log();
+}
+
+/// If two programs recorded one session, each would lose what the other records.
+void StoredSession::refuse_if_others_wrote(int session) const {
+  const ChainHead stored = study_.head(session);
+  if (stored.length == chain_.length() && stored.hash == chain_.head()) return;
+  study_.refuse("session " + std::to_string(session) +
+                " was continued by another program, which has it now; end this one");
+}
+
+bool StoredSession::store(const RecordedEvent& recorded, bool first, DerivedRows& rows) {
+  const Event& event = recorded.event;
+  if (first) study_.admit(event, keys_, utc_());
+  study_.refuse_after_withdrawal(event);
+  fold(rows, event);
+  study_.append(event, recorded.trace);
+  return event.kind == EventKind::closed && study_.conclude(event, utc_());
+}
+
+}  // namespace touchtrial::record

@@ -1,0 +1,200 @@
+/// \file A study in its database: the operations that StudyStore is made of, and its two inner
+/// parts (sessions that are stored event by event, the check of everything that is stored). Private
+/// to record. Call everything here inside Database::run, and functions that write inside
+/// StoredStudy::change.
+#pragma once
+
+#include "record/database.hpp"
+#include "record/fold.hpp"
+#include "record/session_recorder.hpp"
+#include "record/study_store.hpp"
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace touchtrial::record {
+
+/// A session's keys as a database keeps them. See sealing.hpp.
+struct SessionKeys {
+  NewKeys wrapped;  ///< for the investigator
+  Bytes kept;       ///< at the station, while the session is open; may be empty
+};
+
+/// What a commit means to head files, beside the end of the file's chain.
+struct HeadNews {
+  int session = 0;  ///< whose chain grew; 0: none
+  bool ended = false;
+  std::int64_t answers = 0;  ///< how many came
+};
+
+class StoredStudy {
+ public:
+  explicit StoredStudy(Database opened) : database_(std::move(opened)) {}
+
+  [[nodiscard]] const Database& database() const noexcept { return database_; }
+
+  /// The first event's body; read once.
+  /// \throws StoreError if there is no first event
+  [[nodiscard]] const StudyCommitment& commitment() const;
+  [[nodiscard]] StudyState state() const;
+  /// The end of a chain (0: the file's).
+  [[nodiscard]] ChainHead head(int session) const;
+  [[nodiscard]] std::optional<Event> last_event(int session) const;
+  /// How many stations' files were collected into this one.
+  [[nodiscard]] int stations() const;
+  [[nodiscard]] int next_session() const;
+  /// The smallest enrolment number that is neither taken nor kept for somebody.
+  [[nodiscard]] int next_enrolment() const;
+  /// The number that the participant inherits, else next_enrolment.
+  [[nodiscard]] int enrolment_for(const std::string& participant) const;
+  /// What events and file's chain say of every session, by number. Read once, then kept up with
+  /// what is appended here, and read anew when another program has written.
+  [[nodiscard]] const std::map<int, SessionRow>& sessions() const;
+  /// The same of all trials, by session and trial; read anew after an event of a session.
+  [[nodiscard]] const std::vector<TrialRow>& trials() const;
+  /// The participant's session of the last visit that nobody replaced, if any.
+  [[nodiscard]] std::optional<SessionRow> session_of(const std::string& participant) const;
+  /// \throws StoreError if there is no such session
+  [[nodiscard]] SessionRow session(int session) const;
+
+  /// \throws StoreError if neither the file's station nor its investigator signs so
+  void sign_with(const Signer& signer);
+  /// Adds a signed event to the file's chain.
+  /// \throws StoreError if nobody signs, or the event is for the investigator alone
+  /// \throws EventFault if the last event is signed by none of the two
+  void append_to_file(EventKind kind, std::chrono::nanoseconds at, const std::string& body,
+                      Bytes sealed = {});
+  /// \param now  record_of this database
+  void keep_heads(HeadKeeper keeper, HeadRecord now);
+  /// Tells the keeper of heads, if there is one, what was committed.
+  void tell_heads(const HeadNews& news);
+  /// The same for an event about a person, whose texts are sealed.
+  /// \param body  whole
+  void append_about(int session, EventKind kind, std::chrono::nanoseconds at,
+                    const std::string& body);
+  /// Adds an event of a chain, and brings `sessions` up to date.
+  void append(const Event& event, const std::optional<SealedTrace>& trace);
+  /// After a participant withdrew or was replaced during a session, only its end is recorded.
+  /// \throws StoreError for any other event of the session
+  void refuse_after_withdrawal(const Event& event) const;
+
+  /// As Database::change; nothing is known of what was not committed.
+  template <typename Work>
+  void change(Work&& work) {
+    try {
+      database_.change(std::forward<Work>(work));
+    } catch (...) {
+      forget();
+      throw;
+    }
+  }
+
+  /// Lets a session in: stores its key, and its opening on the file's chain.
+  /// \throws StoreError if the study is closed, the session is not the next, belongs to another
+  ///   study, its participant or enrolment is taken (by which session), or it would mix pilots with
+  ///   others or sessions that are seen with sessions that are felt
+  void admit(const Event& opened, const SessionKeys& keys, std::chrono::nanoseconds at);
+  /// The last event of a session that may go on.
+  /// \throws StoreError if there is no such session, it is closed, its participant has withdrawn,
+  ///   or the study is closed
+  [[nodiscard]] Event last_of_open(int session) const;
+  /// Records a session's end on the file's chain, and erases the station's copy of its key.
+  /// \param closed  its last event
+  /// \return whether there was a copy to erase
+  bool conclude(const Event& closed, std::chrono::nanoseconds at);
+  /// Empties the log into the file, so that less is lost with a damaged log, and pages with a
+  /// station's copy of a key that was erased are gone. Does nothing if the disk fails or another
+  /// program reads. Call it outside of `change`.
+  void empty_log() const;
+
+  /// Holds the events of a finished session against each other.
+  /// \throws StoreError, EventFault
+  void check_whole(const BufferedEvents& session) const;
+  /// \pre check_whole found no fault
+  void store_whole(const BufferedEvents& session, const NewKeys& keys, std::chrono::nanoseconds at);
+
+  /// Records a withdrawal, and destroys the keys of what it does not keep.
+  /// \throws StoreError if no more is kept already, or the safety record is not to be erased yet
+  void withdraw(const WithdrawalBody& withdrawal, std::chrono::nanoseconds at);
+  /// \throws StoreError if the session may still go on or was replaced, or `by` is taken
+  void replace(const ReplacementBody& replacement, std::chrono::nanoseconds at);
+
+  /// \throws StoreError with the file's name before `text`
+  [[noreturn]] void refuse(const std::string& text) const;
+  /// \throws StoreError naming `what` if `reason` is empty
+  void require_reason(const std::string& reason, const std::string& what) const;
+
+ private:
+  /// Forgets what another program has changed.
+  void refresh() const;
+  void forget() const;
+  /// \throws StoreError if the database takes no more sessions: it was collected, or is closed
+  void refuse_if_over() const;
+  void require_participant_id(const std::string& id) const;
+  void require_signed(const Event& last) const;
+  /// The first event about a session on the file's chain.
+  [[nodiscard]] Event opening_on_file(int session) const;
+  void refuse_while_kept(int session, std::chrono::nanoseconds at) const;
+  void check_opening(const SessionOpening& opening) const;
+  /// A database holds pilots or others, and sessions that are seen or sessions that are felt.
+  void refuse_mixture(const SessionOpening& opening) const;
+  void refuse_if_taken(const SessionOpening& opening) const;
+  /// Nobody returns after being replaced by another, or takes a number that is kept for another.
+  void refuse_if_promised(const SessionOpening& opening) const;
+  void check_replaced(const SessionRow& row) const;
+  void check_replacement(const SessionRow& row, const std::string& by) const;
+  /// Enrolment numbers that are kept for somebody, and for whom.
+  [[nodiscard]] std::map<int, std::string> promised_enrolments() const;
+
+  Database database_;
+  mutable std::optional<StudyCommitment> commitment_;
+  mutable std::optional<DerivedRows> sessions_;  ///< without trials
+  mutable std::optional<std::vector<TrialRow>> trials_;
+  mutable std::int64_t read_version_ = 0;  ///< SQLite's data_version of both
+  std::optional<Signer> signer_;
+  HeadKeeper heads_;
+  HeadRecord known_;  ///< for a head file that is not there, and the answers so far
+};
+
+/// The durable sink: every event, or group of events, is one transaction.
+class StoredSession final : public EventSink {
+ public:
+  /// \param study  must outlive this
+  StoredSession(StoredStudy& study, int session, SessionKeys keys, UtcClock utc);
+  /// Goes on with a session that is stored and open.
+  /// \param last  its last event
+  StoredSession(StoredStudy& study, const Event& last, UtcClock utc);
+
+  void accept(const Event& event, const std::optional<SealedTrace>& trace) override;
+  void accept_together(std::span<const RecordedEvent> events) override;
+
+ private:
+  StoredSession(StoredStudy& study, ChainLink chain, SessionKeys keys, UtcClock utc);
+  void refuse_if_others_wrote(int session) const;
+  /// \param rows  is brought up to date
+  /// \return whether the station's copy of the session's key was erased
+  bool store(const RecordedEvent& recorded, bool first, DerivedRows& rows);
+
+  StoredStudy& study_;
+  ChainLink chain_;
+  DerivedRows rows_;  ///< what its events come to, which says what may follow
+  SessionKeys keys_;
+  UtcClock utc_;
+};
+
+/// Finds the first fault of a database. Checks, in this order: the file's structure, its chain,
+/// every session's chain, what the file's chain says of the sessions, keys, traces, and the
+/// schema. Call it inside a transaction.
+/// \param traces  `skip` leaves structure and traces out
+/// \param reader  gets every session whose chain is intact; may be empty
+[[nodiscard]] std::optional<ChainFault> find_first_fault(const Database& database,
+                                                         TraceCheck traces,
+                                                         const SessionReader& reader);
+
+}  // namespace touchtrial::record

@@ -1,0 +1,69 @@
+/// \file The texts that people read in a session, in each language of the program: the files of
+/// config/texts, built in and read strictly, and what a study puts in their place.
+/// Format: docs/running-sessions.md, "Texts and languages".
+#pragma once
+
+#include "core/strict_json.hpp"
+#include "study/session_plan.hpp"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace touchtrial::study {
+
+/// The files of config/texts as they were when the program was built, English first.
+[[nodiscard]] std::vector<std::string_view> language_files();
+
+/// All texts of one language.
+struct Language {
+  std::string code;    ///< "fr"
+  std::string name;    ///< in English: "French"
+  bool draft = false;  ///< neither checked by its speakers nor validated
+  Texts texts;
+};
+
+/// The codes of the built-in languages: the names of their files, in the same order.
+[[nodiscard]] const std::vector<std::string_view>& language_codes();
+
+/// Parsed when it is first asked for; thread-safe.
+/// \param code  "de", "de-AT"
+/// \return English if the program does not have the language
+[[nodiscard]] const Language& language_of(std::string_view code);
+
+/// Whether the language writes numbers with a comma ("0,5").
+[[nodiscard]] bool has_decimal_comma(std::string_view code) noexcept;
+
+/// Reads a language file, which must have the keys of the English one and no other. A text must
+/// have the same words in braces and the same pictures as the English one, and "**" in pairs.
+/// \param text  JSON
+/// \throws StudyError with the source, the JSON pointer of the key, and the remedy
+[[nodiscard]] Language parse_language(std::string_view text, const std::string& source);
+
+/// Reads texts that replace some of a language's. They need not have its pictures.
+/// \throws StudyError as parse_language
+[[nodiscard]] Texts read_texts(const JsonValue& place);
+
+/// Checks the bold words and pictures of a page: "**" in pairs, and drawings that exist.
+/// \throws StudyError with the remedy
+void check_markup(const JsonValue& place, const std::string& text);
+
+/// The texts of a study in its language: the language's, with the study's own in their place.
+[[nodiscard]] Texts texts_of(const SessionPlan& session);
+
+/// The pictures of a page, each on a line of its own: "![](NAME)".
+/// \return the name in such a line; empty if the line is text
+[[nodiscard]] std::string_view picture_in(std::string_view line) noexcept;
+
+/// A picture of this name is one of the program's drawings; other names are paths.
+inline constexpr std::string_view kHandDrawing = "drawing:hand";
+
+/// Files of the pictures that the study's own pages of instructions show, as written there, each
+/// once.
+[[nodiscard]] std::vector<std::string> picture_files(const SessionPlan& session);
+
+/// What has to be said of a study whose texts are a draft; empty if they are not.
+/// \param code  the study's language
+[[nodiscard]] std::string draft_notice(std::string_view code);
+
+}  // namespace touchtrial::study

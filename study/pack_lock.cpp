@@ -1,0 +1,106 @@
+#include "study/pack_lock.hpp"
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+
+#include <cerrno>
+#include <iterator>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace touchtrial::study {
+namespace {
+
+/// Whether the file that is open still has this name: whoever made the folder may have removed it.
+bool has_name(int descriptor, const std::filesystem::path& file) {
+  struct stat open {};
+  struct stat named {};
+  return ::fstat(descriptor, &open) == 0 && ::stat(file.c_str(), &named) == 0 &&
+         open.st_dev == named.st_dev && open.st_ino == named.st_ino;
+}
+
+/// \return the error, or 0
+int lock(int descriptor, int operation) {
+  while (::flock(descriptor, operation) != 0) {
+    if (errno != EINTR) return errno;
+  }
+  return 0;
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& what, int reason) {
+  const std::string place = one_line(what.string());
+  if (reason == EWOULDBLOCK) {
+    throw FileError(place +
+                    ": is being prepared, or read for a session, by another process; wait for it "
+                    "to end");
+  }
+  throw FileError(place + ": cannot be locked (" + std::generic_category().message(reason) +
+                  "); check the folder's permissions and the free space");
+}
+
+/// \param what  that is locked, for the message
+/// \param make_folder_again  called before each attempt, because others remove what they made
+/// \return the descriptor of the file that holds the lock
+template <typename MakeFolder>
+int locked(const std::filesystem::path& file, const std::filesystem::path& what, int operation,
+           MakeFolder make_folder_again) {
+  constexpr int kMaxAttempts = 100;  // a folder goes once for each process that found nothing to do
+  for (int attempt = 0;; ++attempt) {
+    make_folder_again();
+    const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
+    const int reason = descriptor < 0 ? errno : lock(descriptor, operation);
+    if (reason == 0 && has_name(descriptor, file)) return descriptor;
+    if (descriptor >= 0) ::close(descriptor);
+    const bool is_gone = reason == ENOENT && attempt < kMaxAttempts;
+    if (reason != 0 && !is_gone) refuse(what, reason);
+  }
+}
+
+}  // namespace
+
+PackLock::PackLock(std::filesystem::path folder, Use use, Wait wait) : folder_(std::move(folder)) {
+  const std::filesystem::path file = folder_ / "prepare.lock";
+  const int waiting = wait == Wait::yes ? 0 : LOCK_NB;
+  if (use == Use::prepare) {
+    descriptor_ = locked(file, folder_, LOCK_EX | waiting, [this] {
+      made_ = made_ || !is_there(folder_);
+      make_folder(folder_);
+    });
+    return;
+  }
+  descriptor_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  if (descriptor_ < 0) return;
+  const int reason = lock(descriptor_, LOCK_SH | waiting);
+  if (reason == 0) return;
+  ::close(descriptor_);
+  refuse(folder_, reason);
+}
+
+PackLock::~PackLock() {
+  std::error_code ignored;
+  if (key_descriptor_ >= 0) {
+    std::filesystem::remove(key_file_, ignored);
+    ::close(key_descriptor_);
+  }
+  if (made_) {
+    const auto files = std::filesystem::directory_iterator(folder_, ignored);
+    if (std::distance(begin(files), end(files)) == 1) {
+      std::filesystem::remove(folder_ / "prepare.lock", ignored);
+      std::filesystem::remove(folder_, ignored);
+    }
+  }
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void PackLock::lock_key(const std::filesystem::path& key) {
+  key_file_ = key;
+  key_file_ += ".lock";
+  key_descriptor_ = locked(key_file_, key, LOCK_EX | LOCK_NB, [] {});
+}
+
+}  // namespace touchtrial::study

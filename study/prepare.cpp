@@ -1,0 +1,575 @@
+#include "study/prepare.hpp"
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/parallel.hpp"
+#include "core/strict_json.hpp"
+#include "core/text.hpp"
+#include "engine/image_file.hpp"
+#include "engine/rendering/gains.hpp"
+#include "study/languages.hpp"
+#include "study/pack_upkeep.hpp"
+#include "study/prepare_advice.hpp"
+#include "study/signed_pack.hpp"
+#include "study/stimulus_field.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <iterator>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+#include <system_error>
+#include <tuple>
+
+namespace touchtrial::study {
+namespace {
+
+std::filesystem::path beside(const std::filesystem::path& study_file, const char* ending) {
+  return study_file.parent_path() / (study_file.stem().string() + ending);
+}
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// An image of the study. Its stimuli, one for each method, are adjacent in the key.
+struct ImageOfStudy {
+  int class_index = 0;
+  int exemplar = 0;
+  std::filesystem::path path;
+  std::size_t first_stimulus = 0;
+  Digest pixels{};
+  std::vector<std::string> remarks;  ///< engine::remarks_on
+  std::int64_t size_px = 0;
+  bool is_done = false;
+  std::exception_ptr failure;
+};
+
+/// What follows from all fields together.
+struct MeasuredFields {
+  engine::StudyGains gains;
+  std::vector<std::string> remarks;  ///< on gains by level
+  std::vector<std::uint8_t> flat;    ///< whether nothing of a field can be felt
+};
+
+std::vector<ImageOfStudy> images_of(const Study& study) {
+  std::vector<ImageOfStudy> images;
+  for (int c = 0; c < static_cast<int>(study.classes.size()); ++c) {
+    const auto& paths = study.classes[static_cast<std::size_t>(c)].images;
+    for (int e = 0; e < static_cast<int>(paths.size()); ++e) {
+      const std::size_t first = images.size() * static_cast<std::size_t>(study.presented_methods());
+      ImageOfStudy& image = images.emplace_back();
+      image.class_index = c;
+      image.exemplar = e;
+      image.path = study.folder / paths[static_cast<std::size_t>(e)];
+      image.first_stimulus = first;
+    }
+  }
+  return images;
+}
+
+std::string fault_of(const Study& study, const ImageOfStudy& image, const std::string& what) {
+  return study.source + ": /classes/" + std::to_string(image.class_index) + "/images/" +
+         std::to_string(image.exemplar) + ": " + what;
+}
+
+[[noreturn]] void refuse_image(const Study& study, const ImageOfStudy& image,
+                               const std::string& what) {
+  throw StudyError(fault_of(study, image, what));
+}
+
+/// Names all pictures that cannot be read, so that a set of many is mended in one go.
+/// \param faults  with their places; nothing happens if there are none
+void refuse_images(std::vector<std::string> faults) {
+  constexpr std::size_t kMaxNamed = 20;
+  if (faults.empty()) return;
+  const std::size_t count = faults.size();
+  faults.resize(std::min(count, kMaxNamed));
+  const std::string all = listed(faults, "; ");
+  throw StudyError(count == 1 ? all : all + " (" + std::to_string(count) + " pictures in all)");
+}
+
+/// One run of prepare_pack. Stimuli are processed in parallel. Each result is stored at the index
+/// of its stimulus, so results do not depend on the order in which threads finish.
+class Preparation {
+ public:
+  Preparation(const StudyKey& key, std::filesystem::path folder, const Progress& progress,
+              const PrepareOptions& options)
+      : key_(key),
+        folder_(std::move(folder)),
+        progress_(progress),
+        options_(options),
+        earlier_(folder_, key),
+        images_(images_of(key.study)),
+        entries_(key.stimuli.size()),
+        is_draft_(key.stimuli.size()),
+        is_damaged_(key.stimuli.size()),
+        solver_warnings_(key.stimuli.size()) {
+    report_.stimuli.resize(key.stimuli.size());
+    for (const engine::PackEntry& entry : earlier_.drafts()) drafts_[entry.code] = entry;
+  }
+
+  PrepareReport run() {
+    check_images_exist(key_.study);
+    // Before the fields: of a picture that changes meanwhile, sessions are refused.
+    pictures_ = picture_digests(key_.study);
+    provide_fields();
+    measure();
+    finish();
+    advise();
+    return std::move(report_);
+  }
+
+ private:
+  void provide_fields() {
+    const std::vector<ImageOfStudy*> order = images_by_code();
+    const auto provide = [this](ImageOfStudy& image, bool large_too) {
+      try {
+        provide_fields_of(image, large_too);
+      } catch (...) {
+        image.failure = std::current_exception();
+      }
+    };
+    in_parallel(0, order.size(), [&](std::size_t i) { provide(*order[i], false); });
+    for (ImageOfStudy* image : order) {
+      if (!image->is_done && !image->failure) provide(*image, true);
+    }
+    if (building_) write_drafts();
+    refuse_failed_images();
+  }
+
+  void refuse_failed_images() const {
+    std::vector<std::string> faults;
+    for (const ImageOfStudy& image : images_) {
+      if (!image.failure) continue;
+      try {
+        std::rethrow_exception(image.failure);
+      } catch (const StudyError& error) {
+        faults.emplace_back(error.what());
+      }
+    }
+    refuse_images(std::move(faults));
+  }
+
+  /// The images sorted by code, which is the order of work. The times of the files therefore reveal
+  /// nothing about the order of classes.
+  [[nodiscard]] std::vector<ImageOfStudy*> images_by_code() {
+    std::vector<ImageOfStudy*> order;
+    for (ImageOfStudy& image : images_) order.push_back(&image);
+    std::ranges::sort(order, {}, [this](const ImageOfStudy* image) {
+      return std::string_view(key_.stimuli[image->first_stimulus].code);
+    });
+    return order;
+  }
+
+  /// \param large_too  whether to process a large image now; false leaves it for later
+  void provide_fields_of(ImageOfStudy& image, bool large_too) {
+    const GreyImage grey = read(image);
+    image.size_px = static_cast<std::int64_t>(grey.size());
+    if (image.size_px > options_.large_image_px && !large_too) return;
+    image.pixels = FieldHasher().add(std::int64_t{grey.width()}).add(grey.samples()).finish();
+    std::optional<TakenTexture> taken;
+    for (int m = 0; m < key_.study.presented_methods(); ++m) {
+      const std::size_t i = image.first_stimulus + static_cast<std::size_t>(m);
+      provide_field(i, grey, taken);
+    }
+    image.is_done = true;
+  }
+
+  /// Whether a later stimulus of the same image uses the same texture.
+  [[nodiscard]] bool is_needed_again(std::size_t i) const {
+    const StimulusIndex& stimulus = key_.stimuli[i].stimulus;
+    const auto& methods = key_.study.methods;
+    const auto own = without_control(methods[static_cast<std::size_t>(stimulus.method)]);
+    for (int m = stimulus.method + 1; m < key_.study.presented_methods(); ++m) {
+      if (without_control(methods[static_cast<std::size_t>(m)]) == own) return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] GreyImage read(ImageOfStudy& image) const {
+    try {
+      engine::Picture picture = engine::read_picture(image.path);
+      image.remarks = engine::remarks_on(picture.notes);
+      return std::move(picture.grey);
+    } catch (const FileError& error) {
+      refuse_image(key_.study, image, error.what());
+    }
+  }
+
+  void provide_field(std::size_t i, const GreyImage& image, std::optional<TakenTexture>& taken) {
+    const Clock::time_point start = Clock::now();
+    const engine::ExtractionOptions method = method_of(key_.study, key_.stimuli[i].stimulus);
+    const Digest tag = input_tag(key_.master, image, method, key_.study.rendering);
+    const std::string& code = key_.stimuli[i].code;
+    const auto earlier = earlier_.find(code, tag);
+    if (earlier) {
+      entries_[i] = earlier->entry;
+    } else {
+      is_damaged_[i] = earlier_.names(code, tag) ? 1 : 0;
+      announce_building();
+      build(i, image, method, tag, taken);
+    }
+    is_draft_[i] = !earlier || earlier->is_draft ? 1 : 0;
+    note_provided(i, earlier.has_value(), start);
+  }
+
+  void build(std::size_t i, const GreyImage& image, const engine::ExtractionOptions& method,
+             const Digest& tag, std::optional<TakenTexture>& taken) {
+    const auto& [code, stimulus] = key_.stimuli[i];
+    const BuiltField built =
+        build_field(image, method, key_.study.rendering, taken, is_needed_again(i));
+    entries_[i] = {
+        code, engine::write_field(draft_folder(folder_), code, built.field.view()), tag, {}};
+    solver_warnings_[i] = solver_warning(key_.study, stimulus, built);
+  }
+
+  void note_provided(std::size_t i, bool reused, Clock::time_point start) {
+    const StimulusIndex& stimulus = key_.stimuli[i].stimulus;
+    PreparedStimulus& prepared = report_.stimuli[i];
+    prepared.class_label = key_.study.classes[static_cast<std::size_t>(stimulus.class_index)].label;
+    prepared.exemplar = stimulus.exemplar;
+    prepared.method = key_.study.methods[static_cast<std::size_t>(stimulus.method)].label;
+    prepared.reused = reused;
+    prepared.seconds = seconds_since(start);
+    note_done(i);
+  }
+
+  void announce_building() {
+    const std::lock_guard lock(mutex_);
+    if (building_) return;
+    make_folder(draft_folder(folder_));
+    write_drafts();
+    building_ = true;
+  }
+
+  /// Records finished fields once a second, so that an interrupted run keeps its work.
+  void note_done(std::size_t i) {
+    const std::lock_guard lock(mutex_);
+    if (is_draft_[i] != 0) drafts_[entries_[i].code] = entries_[i];
+    if (building_ && seconds_since(recorded_) > 1.0) write_drafts();
+    ++done_;
+    if (progress_) progress_(done_, static_cast<int>(key_.stimuli.size()));
+  }
+
+  void write_drafts() {
+    engine::PackManifest manifest{key_.study_id, {}};
+    for (const auto& [code, entry] : drafts_) manifest.entries.push_back(entry);
+    manifest.signature = key_.signer().sign(engine::digest_of(manifest));
+    engine::write_manifest(draft_folder(folder_), manifest);
+    recorded_ = Clock::now();
+  }
+
+  /// Where a stimulus's field lies until all are in their places.
+  [[nodiscard]] std::filesystem::path field_of(std::size_t i) const {
+    return field_path(is_draft_[i] != 0 ? draft_folder(folder_) : folder_, entries_[i].code);
+  }
+
+  /// Gains, flatness and statistics of all fields.
+  void measure() {
+    std::vector<engine::MappedField> mapped;
+    std::vector<engine::FieldView> views;
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+      mapped.push_back(engine::map_field(field_of(i)));
+      views.push_back(mapped.back().view());
+    }
+    choose_gains(views);
+    measured_.flat.resize(views.size());
+    in_parallel(0, views.size(), [&](std::size_t i) {
+      if (!is_large(views[i])) describe(i, views[i]);
+    });
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      if (is_large(views[i])) describe(i, views[i]);
+    }
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+      PreparedStimulus& prepared = report_.stimuli[i];
+      prepared.gains = entries_[i].gains = measured_.gains.of_field[i];
+      prepared.bytes = size_of_field(i);
+    }
+  }
+
+  void choose_gains(std::span<const engine::FieldView> views) {
+    if (!key_.study.level) {
+      measured_.gains = engine::choose_gains(views, key_.study.rendering);
+      return;
+    }
+    if (!options_.level_gains) throw std::logic_error("prepare_pack: nobody knows levels");
+    std::tie(measured_.gains, measured_.remarks) = options_.level_gains(views);
+  }
+
+  [[nodiscard]] bool is_large(engine::FieldView field) const noexcept {
+    return std::int64_t{field.geometry.height_px} * field.geometry.width_px >
+           options_.large_image_px;
+  }
+
+  void describe(std::size_t i, engine::FieldView field) {
+    measured_.flat[i] = is_flat(field) ? 1 : 0;
+    if (!options_.statistics) return;
+    report_.stimuli[i].statistics =
+        engine::field_statistics(field, measured_.gains.of_field[i], key_.study.rendering);
+  }
+
+  [[nodiscard]] std::uintmax_t size_of_field(std::size_t i) const {
+    std::error_code error;
+    const auto bytes = std::filesystem::file_size(field_of(i), error);
+    return error ? 0 : bytes;
+  }
+
+  /// Puts everything into its place. The list comes last: until then it does not agree with the
+  /// fields that were replaced, or was signed for another seal, so that nothing is presented from a
+  /// mixture, and what is still among the drafts is found by the next run.
+  void finish() {
+    engine::PackManifest manifest{key_.study_id, entries_};
+    sign(manifest, key_, pictures_);
+    const bool is_changed = !earlier_.has(manifest) || std::ranges::count(is_draft_, 1) > 0;
+    if (is_changed) {
+      make_folder(draft_folder(folder_));
+      engine::write_manifest(draft_folder(folder_), manifest);
+    }
+    if (options_.publish_secrets) options_.publish_secrets();
+    if (is_changed) publish(manifest);
+    remove_leftovers(folder_, manifest);
+  }
+
+  void publish(const engine::PackManifest& manifest) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+      if (is_draft_[i] != 0) order.push_back(i);
+    }
+    std::ranges::sort(order, {}, [this](std::size_t i) { return entries_[i].code; });
+    for (const std::size_t i : order) {
+      rename_file(field_of(i), field_path(folder_, entries_[i].code));
+    }
+    rename_file(draft_folder(folder_) / "pack.json", folder_ / "pack.json");
+    // Otherwise a field's time would tell which picture's it is.
+    const auto now = std::filesystem::file_time_type::clock::now();
+    for (const engine::PackEntry& entry : manifest.entries) {
+      std::error_code ignored;
+      std::filesystem::last_write_time(field_path(folder_, entry.code), now, ignored);
+    }
+  }
+
+  void advise() {
+    std::uintmax_t pixels_of_study = 0;
+    for (const ImageOfStudy& image : images_) {
+      pixels_of_study += static_cast<std::uintmax_t>(image.size_px);
+    }
+    report_.skipped = skipped_work(key_.study, pixels_of_study);
+    report_.warnings = rendering_warnings(key_.study.rendering, measured_.gains);
+    std::ranges::copy(measured_.remarks, std::back_inserter(report_.warnings));
+    if (const std::string draft = draft_notice(key_.study.session.language); !draft.empty()) {
+      report_.warnings.push_back(
+          draft + ": have its speakers check every screen, and say so where you report the study");
+    }
+    if (!earlier_.damage().empty()) {
+      report_.warnings.push_back(earlier_.damage() + ": all fields were built anew");
+    }
+    // Not which: `run` may have named a code.
+    if (const auto damaged = std::ranges::count(is_damaged_, 1); damaged > 0) {
+      report_.warnings.push_back(counted(damaged, "field") +
+                                 " of the pack, damaged or gone: built anew");
+    }
+    for (auto& warning : validity_warnings(key_.study)) {
+      report_.warnings.push_back(std::move(warning));
+    }
+    std::vector<Digest> pixels;
+    for (const ImageOfStudy& image : images_) {
+      pixels.push_back(image.pixels);
+      for (const std::string& remark : image.remarks) {
+        report_.warnings.push_back(one_line(image.path.string() + ": " + remark));
+      }
+    }
+    for (auto& warning : twin_warnings(key_.study, pixels)) {
+      report_.warnings.push_back(std::move(warning));
+    }
+    for (std::size_t i = 0; i < key_.stimuli.size(); ++i) {
+      if (!solver_warnings_[i].empty()) report_.warnings.push_back(solver_warnings_[i]);
+      if (measured_.flat[i] == 0) continue;
+      report_.warnings.push_back(described(key_.study, key_.stimuli[i].stimulus) +
+                                 ": is flat, nothing of it can be felt");
+    }
+  }
+
+  const StudyKey& key_;
+  std::filesystem::path folder_;
+  const Progress& progress_;
+  PrepareOptions options_;
+  EarlierFields earlier_;
+  std::vector<ImageOfStudy> images_;
+  std::vector<Digest> pictures_;
+  std::vector<engine::PackEntry> entries_;
+  std::vector<std::uint8_t> is_draft_;  ///< whether a field is to be put into its place
+  std::vector<std::uint8_t> is_damaged_;
+  std::vector<std::string> solver_warnings_;
+  MeasuredFields measured_;
+  PrepareReport report_;
+
+  std::mutex mutex_;  ///< guards the members below
+  std::map<std::string, engine::PackEntry> drafts_;
+  bool building_ = false;
+  Clock::time_point recorded_;
+  int done_ = 0;
+};
+
+}  // namespace
+
+std::filesystem::path PackPlace::station(const std::string& name) const {
+  std::filesystem::path file = key;
+  file.replace_extension(name.empty() || name == kOnlyStation ? ".station"
+                                                              : "." + name + ".station");
+  return file;
+}
+
+PackPlace default_pack_place(const std::filesystem::path& study_file) {
+  return {beside(study_file, ".pack"), beside(study_file, ".key")};
+}
+
+PackPlace simulated_pack_place(const std::filesystem::path& study_file) {
+  return {beside(study_file, ".sim.pack"), {}};
+}
+
+PackPlace pack_place_at(const std::filesystem::path& pack_folder) {
+  // The key lies beside the folder whatever it is called by: "name.pack/", "name.pack/.", ".".
+  auto pack = pack_folder.lexically_normal();
+  if (!pack.has_filename()) pack = pack.parent_path();
+  if (pack == "." || pack.filename() == "..") {
+    pack = (std::filesystem::current_path() / pack).lexically_normal();
+    if (!pack.has_filename()) pack = pack.parent_path();
+  }
+  std::filesystem::path key = pack;
+  if (key.extension() == ".pack") key.replace_extension();
+  key += ".key";
+  return {pack, key};
+}
+
+std::filesystem::path pack_in_reach(const StudyCodes& codes,
+                                    const std::filesystem::path& database) {
+  const std::filesystem::path& named = codes.pack_folder;
+  if (named.empty() || is_there(named)) return named;
+  for (const std::filesystem::path& folder :
+       {database.parent_path(), codes.study.folder, std::filesystem::path()}) {
+    std::filesystem::path place = folder / named.filename();
+    try {
+      if (is_there(place) && engine::Pack(place).manifest().study_id == codes.study_id) {
+        return place;
+      }
+    } catch (const FileError&) {
+      // No pack, or a damaged one; another place may have it.
+    }
+  }
+  return named;
+}
+
+namespace {
+
+[[noreturn]] void refuse_practice_image(const Study& study, std::size_t index,
+                                        const std::string& what) {
+  throw StudyError(one_line(study.source + ": /practice/classes/" + std::to_string(index) +
+                            "/images/0: " + what));
+}
+
+/// As a session needs them (PracticeSet).
+void require_large_enough(const Study& study, std::size_t index, const PlaneGeometry& plane) {
+  const auto path = study.folder / study.practice.classes[index].images.front();
+  try {
+    const auto [width, height] = engine::size_of_image(path);
+    if (width >= plane.width_px && height >= plane.height_px) return;
+  } catch (const FileError& error) {
+    refuse_practice_image(study, index, error.what());
+  }
+  refuse_practice_image(study, index,
+                        path.string() + ": has fewer pixels than the study's plane, " +
+                            std::to_string(plane.width_px) + " x " +
+                            std::to_string(plane.height_px) + "; take a larger image");
+}
+
+/// Practice images are not in the pack, but a missing one should be found before a session needs
+/// it.
+void check_practice_images_exist(const Study& study) {
+  if (study.trials.practice == 0) return;
+  for (std::size_t i = 0; i < study.practice.classes.size(); ++i) {
+    const auto path = study.folder / study.practice.classes[i].images.front();
+    if (is_there(path)) continue;
+    refuse_practice_image(study, i, path.string() + ": does not exist; correct the path");
+  }
+}
+
+}  // namespace
+
+void check_images_exist(const Study& study) {
+  for (const ImageOfStudy& image : images_of(study)) {
+    if (is_there(image.path)) continue;
+    refuse_image(study, image,
+                 one_line(image.path.string()) + ": does not exist; correct the path");
+  }
+  check_practice_images_exist(study);
+  for (const std::string& file : picture_files(study.session)) {
+    if (is_there(study.folder / file)) continue;
+    throw StudyError(one_line(study.source + ": /session: the instructions show " +
+                              in_quotes(file) + ", which does not exist; correct the path"));
+  }
+}
+
+PlaneGeometry plane_of(const Study& study) {
+  const std::vector<ImageOfStudy> images = images_of(study);
+  std::vector<std::pair<int, int>> sizes(images.size());
+  std::vector<std::string> faults(images.size());
+  in_parallel(0, images.size(), [&](std::size_t i) {
+    try {
+      sizes[i] = engine::size_of_image(images[i].path);
+    } catch (const FileError& error) {
+      faults[i] = error.what();
+    }
+  });
+  const auto words = [](const std::pair<int, int>& size) {
+    return std::to_string(size.first) + " x " + std::to_string(size.second) + " pixels";
+  };
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    if (!faults[i].empty()) faults[i] = fault_of(study, images[i], faults[i]);
+  }
+  std::erase(faults, "");
+  refuse_images(std::move(faults));
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    if (sizes[i] == sizes[0]) continue;
+    refuse_image(study, images[i],
+                 one_line(images[i].path.string()) + ": has " + words(sizes[i]) + ", and " +
+                     one_line(images[0].path.string()) + " has " + words(sizes[0]) +
+                     "; all must be as large as the plane that is felt: crop them to one size with "
+                     "`touchtrial stimuli import`");
+  }
+  const PlaneGeometry plane{study.rendering.pitch_mm, sizes[0].second, sizes[0].first};
+  for (std::size_t i = 0; study.trials.practice > 0 && i < study.practice.classes.size(); ++i) {
+    require_large_enough(study, i, plane);
+  }
+  return plane;
+}
+
+PrepareReport prepare_pack(const PackLock& lock, const StudyKey& key, const Progress& progress,
+                           const PrepareOptions& options) {
+  const auto discard_drafts = [&lock] {
+    std::error_code ignored;
+    std::filesystem::remove_all(draft_folder(lock.folder()), ignored);
+  };
+  try {
+    return Preparation(key, lock.folder(), progress, options).run();
+  } catch (const StudyError&) {  // the next run, with another picture, uses what is finished
+    if (options.is_new_key) discard_drafts();
+    throw;
+  } catch (...) {  // what is finished may fill the disk
+    discard_drafts();
+    throw;
+  }
+}
+
+PrepareReport prepare_pack(const StudyKey& key, const std::filesystem::path& pack_folder,
+                           const Progress& progress, const PrepareOptions& options) {
+  return prepare_pack(PackLock(pack_folder), key, progress, options);
+}
+
+}  // namespace touchtrial::study

@@ -1,0 +1,121 @@
+#include "study/prepare_advice.hpp"
+
+#include "core/errors.hpp"
+#include "core/strict_json.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace touchtrial::study {
+namespace {
+
+std::string image_in_words(const Study& study, int class_index, int exemplar) {
+  const StudyClass& shown = study.classes[static_cast<std::size_t>(class_index)];
+  const auto& image = shown.images[static_cast<std::size_t>(exemplar)];
+  return one_line("class \"" + shown.label + "\", image " + image.string());
+}
+
+}  // namespace
+
+std::string described(const Study& study, const StimulusIndex& stimulus) {
+  const auto& method = study.methods[static_cast<std::size_t>(stimulus.method)];
+  return image_in_words(study, stimulus.class_index, stimulus.exemplar) + ", method " +
+         method.label;
+}
+
+std::vector<SkippedWork> skipped_work(const Study& study, std::uintmax_t pixels) {
+  std::size_t images = 0;
+  for (const StudyClass& study_class : study.classes) images += study_class.images.size();
+  std::vector<SkippedWork> skipped;
+  for (std::size_t m = static_cast<std::size_t>(study.presented_methods());
+       m < study.methods.size(); ++m) {
+    skipped.push_back({study.methods[m].label + " x " + std::to_string(images) + " stimuli",
+                       "the " + study.protocol_name() +
+                           " protocol presents only its first method, " +
+                           study.methods.front().label,
+                       pixels * sizeof(float)});
+  }
+  return skipped;
+}
+
+std::vector<std::string> rendering_warnings(const engine::RenderingOptions& rendering,
+                                            const engine::StudyGains& gains) {
+  std::vector<std::string> warnings;
+  if (gains.over_budget) {
+    warnings.push_back("/rendering/gains: the explicit gains exceed the stiffness budget of " +
+                       number_text(rendering.texture_stiffness_n_per_mm) +
+                       " N/mm, where devices may buzz; lower them or give \"budget\"");
+  }
+  const auto is_nothing = [](const engine::Gains& of_field) { return of_field == engine::Gains{}; };
+  if (!rendering.gains && std::ranges::all_of(gains.of_field, is_nothing)) {
+    warnings.emplace_back(
+        "/rendering/gains: all are 0, and nothing will be felt: every picture is flat, or has a "
+        "side "
+        "of less than 3 pixels, too thin for a stiffness budget; take other pictures");
+  }
+  if (rendering.gains && rendering.equalise == engine::Equalise::rms) {
+    warnings.emplace_back(
+        "/rendering/equalise: rms has no effect beside explicit gains; give gains \"budget\"");
+  }
+  if (rendering.model == engine::ModelKind::paper && rendering.reference_grey == 0.0) {
+    warnings.emplace_back(
+        "/rendering/reference_grey: 0 is the paper's literal reading, a step of force at the "
+        "surface from which a hand bounces; 128 has none");
+  }
+  return warnings;
+}
+
+std::vector<std::string> validity_warnings(const Study& study) {
+  const ValidityRule& rule = study.trials.validity;
+  const double limit_s = study.trials.explore_limit_s;
+  std::vector<std::string> warnings;
+  const auto warn = [&warnings](const std::string& key, const std::string& what) {
+    warnings.push_back("/trials/validity/" + key + ": " + what +
+                       ", so that no trial can be valid; lower it, or change the study");
+  };
+  const auto warn_of_time = [&](const char* key, double least_s) {
+    if (least_s <= limit_s) return;
+    warn(key, number_text(least_s) + " s, and a presentation can be explored for " +
+                  number_text(limit_s) + " s (/trials/explore_limit_s)");
+  };
+  warn_of_time("exploring_s", rule.least_exploring_s);
+  warn_of_time("contact_s", rule.least_contact_s);
+  if (rule.least_path_mm > kFastestMmS * limit_s) {
+    warn("path_mm", number_text(rule.least_path_mm) +
+                        " mm, more than the fastest stroke that "
+                        "participants are asked for goes in " +
+                        number_text(limit_s) + " s");
+  }
+  const double largest_n = std::min(rule.largest_median_n, study.rendering.max_force_n);
+  if (rule.least_median_n > largest_n) {
+    warn("least_median_n", number_text(rule.least_median_n) + " N, and the force may be " +
+                               number_text(largest_n) + " N at most");
+  }
+  return warnings;
+}
+
+std::string solver_warning(const Study& study, const StimulusIndex& stimulus,
+                           const BuiltField& built) {
+  if (built.converged) return {};
+  const auto& options = study.methods[static_cast<std::size_t>(stimulus.method)].tv_gabor;
+  return described(study, stimulus) + ": stopped after " + std::to_string(built.steps) +
+         " steps at a relative gap of " + number_text(built.gap) + ", not " +
+         number_text(options.gap) + "; raise max_steps";
+}
+
+std::vector<std::string> twin_warnings(const Study& study, std::span<const Digest> pixels) {
+  std::vector<std::string> warnings;
+  std::map<Digest, std::string> seen;
+  std::size_t image = 0;
+  for (int c = 0; c < static_cast<int>(study.classes.size()); ++c) {
+    const auto exemplars = study.classes[static_cast<std::size_t>(c)].images.size();
+    for (int e = 0; e < static_cast<int>(exemplars); ++e) {
+      const std::string words = image_in_words(study, c, e);
+      const auto [first, is_new] = seen.emplace(pixels[image++], words);
+      if (!is_new) warnings.push_back(words + ": has the same pixels as " + first->second);
+    }
+  }
+  return warnings;
+}
+
+}  // namespace touchtrial::study

@@ -1,0 +1,399 @@
+#include "study/random_orders.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <stdexcept>
+#include <unordered_map>
+#include <utility>
+
+#include <boost/multiprecision/cpp_int.hpp>
+
+namespace touchtrial::study {
+namespace {
+
+// Orders with limited runs.
+
+using BigCount = boost::multiprecision::cpp_int;
+
+/// Draws a uniform whole number in [0, bound) by rejection, with fewer than two tries on average.
+/// \pre bound >= 1
+BigCount draw_below(const BigCount& bound, RandomStream& random) {
+  constexpr unsigned kWord = 64;
+  if (bound == 1) return 0;
+  const unsigned bits = boost::multiprecision::msb(BigCount(bound - 1)) + 1;
+  const unsigned words = (bits + kWord - 1) / kWord;
+  while (true) {
+    std::vector<std::uint64_t> drawn(words);
+    for (std::uint64_t& word : drawn) word = random.bits();
+    BigCount number;
+    boost::multiprecision::import_bits(number, drawn.begin(), drawn.end());
+    number >>= words * kWord - bits;
+    if (number < bound) return number;
+  }
+}
+
+/// How many symbols have 0, 1, .. copies left, then 1 + the copies left of the last symbol.
+using State = std::u16string;
+
+/// Counts sequences of runs. A run is a symbol and its number of repetitions; adjacent runs have
+/// different symbols.
+class RunCounter {
+ public:
+  RunCounter(const std::vector<int>& counts, int max_run)
+      : left_(counts),
+        max_run_(max_run),
+        histogram_(static_cast<std::size_t>(*std::ranges::max_element(counts)) + 1, u'\0') {
+    for (const int count : counts) ++histogram_[static_cast<std::size_t>(count)];
+  }
+
+  [[nodiscard]] int left(int symbol) const { return left_[static_cast<std::size_t>(symbol)]; }
+  [[nodiscard]] int symbols() const { return static_cast<int>(left_.size()); }
+  [[nodiscard]] int longest(int copies) const { return std::min(copies, max_run_); }
+
+  void take(int symbol, int copies) {
+    int& left = left_[static_cast<std::size_t>(symbol)];
+    move(left, left - copies);
+    left -= copies;
+  }
+
+  /// The number of completions after a run of `last` (negative: nothing came before). The next
+  /// symbol differs from `last`.
+  [[nodiscard]] BigCount completions(int last) { return count(last < 0 ? -1 : left(last)); }
+
+ private:
+  /// Records that a symbol with `from` copies left now has `to`.
+  void move(int from, int to) {
+    --histogram_[static_cast<std::size_t>(from)];
+    ++histogram_[static_cast<std::size_t>(to)];
+  }
+
+  /// Counts completions from the current state.
+  /// \param last  copies left of the symbol before; negative if there is none
+  const BigCount& count(int last) {
+    State state = histogram_;
+    state.push_back(static_cast<char16_t>(last + 1));
+    if (const auto known = counts_.find(state); known != counts_.end()) return known->second;
+    BigCount total = 0;
+    bool any_left = false;
+    for (int copies = 1; copies < static_cast<int>(histogram_.size()); ++copies) {
+      const int symbols = histogram_[static_cast<std::size_t>(copies)];
+      any_left = any_left || symbols > 0;
+      const int others = symbols - (last == copies ? 1 : 0);
+      if (others > 0) total += others * after_any_run(copies);
+    }
+    if (!any_left) total = 1;
+    return counts_.emplace(std::move(state), std::move(total)).first->second;
+  }
+
+  BigCount after_any_run(int copies) {
+    BigCount sum = 0;
+    for (int run = 1; run <= longest(copies); ++run) {
+      move(copies, copies - run);
+      sum += count(copies - run);
+      move(copies - run, copies);
+    }
+    return sum;
+  }
+
+  std::vector<int> left_;
+  int max_run_;
+  State histogram_;
+  std::unordered_map<State, BigCount> counts_;
+};
+
+/// The largest number of copies of the symbol before that may come first, >= 0.
+int longest_continuation(const RunCounter& counter, int max_run, RunBefore before) {
+  return std::min(max_run - before.length, counter.left(before.symbol));
+}
+
+BigCount count_all(RunCounter& counter, int max_run, RunBefore before) {
+  if (before.symbol < 0) return counter.completions(-1);
+  BigCount total = 0;
+  const int longest = longest_continuation(counter, max_run, before);
+  for (int run = 0; run <= longest; ++run) {
+    counter.take(before.symbol, run);
+    total += counter.completions(before.symbol);
+    counter.take(before.symbol, -run);
+  }
+  return total;
+}
+
+/// Finds the order with a given number in the list of all orders, run by run.
+class Descent {
+ public:
+  Descent(RunCounter& counter, BigCount number) : counter_(counter), number_(std::move(number)) {}
+
+  /// Appends a run if the order continues with it.
+  /// \return whether it does
+  bool takes(int symbol, int run) {
+    counter_.take(symbol, run);
+    const BigCount below = counter_.completions(symbol);
+    if (number_ >= below) {
+      number_ -= below;
+      counter_.take(symbol, -run);
+      return false;
+    }
+    order_.insert(order_.end(), static_cast<std::size_t>(run), symbol);
+    return true;
+  }
+
+  /// Appends the next run.
+  /// \return the run's symbol
+  int take_next_run(int last) {
+    for (int symbol = 0; symbol < counter_.symbols(); ++symbol) {
+      if (symbol == last) continue;
+      const int longest = counter_.longest(counter_.left(symbol));
+      for (int run = 1; run <= longest; ++run) {
+        if (takes(symbol, run)) return symbol;
+      }
+    }
+    return last;
+  }
+
+  [[nodiscard]] std::vector<int>& order() { return order_; }
+
+ private:
+  RunCounter& counter_;
+  BigCount number_;
+  std::vector<int> order_;
+};
+
+/// The number of sequences with fewer than `m` symbols whose first symbol differs from the symbol
+/// before, for m = 0 .. length + 1. These are cumulative sums, so that one difference gives the
+/// number for a range of lengths.
+std::vector<BigCount> sequences_below(int symbols, int length, int max_run) {
+  std::vector<BigCount> below = {0, 1};
+  for (int m = 1; m <= length; ++m) {
+    const auto first = static_cast<std::size_t>(std::max(m - max_run, 0));
+    below.push_back(below.back() + (symbols - 1) * BigCount(below.back() - below[first]));
+  }
+  return below;
+}
+
+/// Draws the length of the next run, in proportion to the number of sequences that can follow it.
+int draw_run(const std::vector<BigCount>& below, int left, int shortest, int longest,
+             RandomStream& random) {
+  // left - r symbols follow a run of r. The numbers begin with the shortest run.
+  const auto at = [&below](int length) -> const BigCount& {
+    return below[static_cast<std::size_t>(length)];
+  };
+  const BigCount& top = at(left - shortest + 1);
+  const BigCount number = draw_below(BigCount(top - at(left - longest)), random);
+  for (int run = shortest; run < longest; ++run) {
+    if (number < top - at(left - run)) return run;
+  }
+  return longest;
+}
+
+// De Bruijn cycles.
+
+constexpr int kRoot = 0;  // any vertex serves, because circuits have no beginning
+
+/// Wilson's algorithm: walks at random from each vertex to the tree. The last exit that the walk
+/// takes from a vertex becomes its edge, which erases the walk's loops.
+/// \return the exit of each vertex
+std::vector<int> random_arborescence(int vertices, RandomStream& random) {
+  const auto count = static_cast<std::size_t>(vertices);
+  std::vector<int> exit(count, kRoot);
+  std::vector<bool> in_tree(count, false);
+  in_tree[kRoot] = true;
+  for (int start = 0; start < vertices; ++start) {
+    for (int v = start; !in_tree[v]; v = exit[v]) {
+      exit[v] = static_cast<int>(random.below(count));
+    }
+    for (int v = start; !in_tree[v]; v = exit[v]) in_tree[v] = true;
+  }
+  return exit;
+}
+
+/// The exits of one vertex in the order in which they are taken.
+/// \param last  the exit that is taken last; negative: any
+std::vector<int> ordered_exits(int vertices, int last, RandomStream& random) {
+  std::vector<int> exits(static_cast<std::size_t>(vertices));
+  std::iota(exits.begin(), exits.end(), 0);
+  std::span<int> free = exits;
+  if (last >= 0) {
+    std::swap(exits[static_cast<std::size_t>(last)], exits.back());
+    free = free.first(free.size() - 1);
+  }
+  shuffle(free, random);
+  return exits;
+}
+
+// Williams designs.
+
+std::vector<int> shuffled_numbers(int first, int count, RandomStream& random) {
+  std::vector<int> numbers(static_cast<std::size_t>(count));
+  std::iota(numbers.begin(), numbers.end(), first);
+  shuffle(std::span<int>(numbers), random);
+  return numbers;
+}
+
+/// Concatenates rows of a Williams design.
+std::vector<int> joined(int symbols, std::span<const int> rows) {
+  std::vector<int> order;
+  for (const int row : rows) {
+    const std::vector<int> permutation = williams_row(symbols, row);
+    order.insert(order.end(), permutation.begin(), permutation.end());
+  }
+  return order;
+}
+
+bool keeps_limit(const std::vector<int>& order, int max_run, RunBefore before) {
+  return std::ranges::all_of(order, [&](int symbol) {
+    before = run_at_end({symbol}, before);
+    return before.length <= max_run;
+  });
+}
+
+/// Draws `rows` rows of the square that starts at row `first`, in an order that keeps the limit.
+std::vector<int> square_rows(int symbols, int first, int rows, int max_run, RunBefore before,
+                             RandomStream& random) {
+  while (true) {
+    const std::vector<int> all = shuffled_numbers(first, symbols, random);
+    std::vector<int> order = joined(symbols, std::span(all).first(static_cast<std::size_t>(rows)));
+    if (max_run == 0 || keeps_limit(order, max_run, before)) return order;
+  }
+}
+
+}  // namespace
+
+bool limited_order_exists(const std::vector<int>& counts, int max_run, RunBefore before) {
+  const int total = std::accumulate(counts.begin(), counts.end(), 0);
+  for (int symbol = 0; symbol < static_cast<int>(counts.size()); ++symbol) {
+    const int copies = counts[static_cast<std::size_t>(symbol)];
+    // The run before uses up part of the first place.
+    const int taken = symbol == before.symbol ? before.length : 0;
+    const std::int64_t places = std::int64_t{total} - copies + 1;
+    if (copies + taken > places * max_run) return false;
+  }
+  return true;
+}
+
+bool limited_orders_are_countable(const std::vector<int>& counts, int max_run) {
+  constexpr double kMostStates = 150'000.0;
+  constexpr double kMostRuns = 2'000'000.0;
+  const auto symbols = static_cast<int>(counts.size());
+  const int copies = *std::ranges::max_element(counts);
+  double states = std::min(symbols, copies + 1);
+  for (int i = 1; i <= std::min(symbols, copies); ++i) {
+    states *= static_cast<double>(symbols + copies - i + 1) / i;
+  }
+  const double runs = states * std::min(symbols, copies) * std::min(max_run, copies);
+  return states <= kMostStates && runs <= kMostRuns;
+}
+
+std::optional<std::vector<int>> draw_limited_order(const std::vector<int>& counts, int max_run,
+                                                   RunBefore before, RandomStream& random) {
+  RunCounter counter(counts, max_run);
+  const BigCount total = count_all(counter, max_run, before);
+  if (total == 0) return std::nullopt;
+  Descent descent(counter, draw_below(total, random));
+  if (before.symbol >= 0) {
+    const int longest = longest_continuation(counter, max_run, before);
+    for (int run = 0; run <= longest; ++run) {
+      if (descent.takes(before.symbol, run)) break;
+    }
+  }
+  const auto length = static_cast<std::size_t>(std::accumulate(counts.begin(), counts.end(), 0));
+  int last = before.symbol;
+  while (descent.order().size() < length) last = descent.take_next_run(last);
+  return descent.order();
+}
+
+std::vector<int> draw_limited_sequence(int symbols, int length, int max_run, RunBefore before,
+                                       RandomStream& random) {
+  const std::vector<BigCount> counts = sequences_below(symbols, length, max_run);
+  std::vector<int> sequence;
+  int last = before.symbol;
+  int left = length;
+  const auto append = [&](int run) {
+    sequence.insert(sequence.end(), static_cast<std::size_t>(run), last);
+    left -= run;
+  };
+  if (last >= 0) append(draw_run(counts, left, 0, std::min(max_run - before.length, left), random));
+  while (left > 0) {
+    const int others = last < 0 ? symbols : symbols - 1;
+    const auto drawn = static_cast<int>(random.below(static_cast<std::uint64_t>(others)));
+    last = last >= 0 && drawn >= last ? drawn + 1 : drawn;
+    append(draw_run(counts, left, 1, std::min(max_run, left), random));
+  }
+  return sequence;
+}
+
+RunBefore run_at_end(const std::vector<int>& order, RunBefore before) {
+  for (const int symbol : order) {
+    before.length = symbol == before.symbol ? before.length + 1 : 1;
+    before.symbol = symbol;
+  }
+  return before;
+}
+
+std::vector<int> random_de_bruijn_cycle(int symbols, RandomStream& random) {
+  const std::vector<int> last_exit = random_arborescence(symbols, random);
+  std::vector<std::vector<int>> exits;
+  for (int v = 0; v < symbols; ++v) {
+    exits.push_back(ordered_exits(symbols, v == kRoot ? -1 : last_exit[v], random));
+  }
+  const std::size_t length = exits.size() * exits.size();
+  std::vector<std::size_t> taken(exits.size(), 0);
+  std::vector<int> cycle;
+  for (int v = kRoot; cycle.size() < length;) {
+    cycle.push_back(v);
+    v = exits[v][taken[v]++];
+  }
+  const auto start = static_cast<std::ptrdiff_t>(random.below(length));
+  std::rotate(cycle.begin(), cycle.begin() + start, cycle.end());
+  return cycle;
+}
+
+int williams_rows(int symbols) {
+  if (symbols < 1) throw std::invalid_argument("williams_rows: needs at least one symbol");
+  return symbols % 2 == 1 ? 2 * symbols : symbols;
+}
+
+std::vector<int> williams_row(int symbols, int number) {
+  if (symbols < 1) throw std::invalid_argument("williams_row: needs at least one symbol");
+  if (number < 0) throw std::invalid_argument("williams_row: a row cannot be negative");
+  const bool odd = symbols % 2 == 1;
+  const int row = number % williams_rows(symbols);
+  std::vector<int> order;
+  for (int i = 0; i < symbols; ++i) {
+    // In 0, 1, m-1, 2, m-2, .. all differences of neighbours are different modulo m.
+    const int first_row = i % 2 == 1 ? (i + 1) / 2 : (symbols - i / 2) % symbols;
+    order.push_back((first_row + row) % symbols);
+  }
+  // One odd square alone is unbalanced; its mirror image has the missing pairs of neighbours.
+  if (odd && row >= symbols) return {order.rbegin(), order.rend()};
+  return order;
+}
+
+bool williams_order_exists(int symbols, int rows, int max_run) {
+  return symbols > 2 || rows < 2 || max_run > 1;
+}
+
+std::vector<int> random_williams_order(int symbols, int rows, int max_run, RunBefore before,
+                                       RandomStream& random) {
+  const std::vector<int> names = shuffled_numbers(0, symbols, random);
+  if (before.symbol >= 0) {
+    before.symbol = static_cast<int>(std::ranges::find(names, before.symbol) - names.begin());
+  }
+  std::vector<int> order;
+  std::vector<int> squares;
+  for (int left = rows; left > 0; left -= symbols) {
+    if (squares.empty()) squares = shuffled_numbers(0, symbols % 2 == 0 ? 1 : 2, random);
+    const int first = squares.back() * symbols;
+    squares.pop_back();
+    const std::vector<int> drawn =
+        square_rows(symbols, first, std::min(left, symbols), max_run, before, random);
+    before = run_at_end(drawn, before);
+    order.insert(order.end(), drawn.begin(), drawn.end());
+  }
+  for (int& symbol : order) symbol = names[static_cast<std::size_t>(symbol)];
+  return order;
+}
+
+}  // namespace touchtrial::study

@@ -1,0 +1,201 @@
+/// \file The parts of a study besides its trials: the study file's "practice", "session", "visits",
+/// "groups" and "registration". Format: docs/study-file.md.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <ratio>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace touchtrial::study {
+
+/// A class of textures; each image is an exemplar.
+struct StudyClass {
+  std::string label;
+  std::vector<std::filesystem::path> images;  ///< as written in the file
+
+  friend bool operator==(const StudyClass&, const StudyClass&) = default;
+};
+
+/// A text in several languages, by their codes ("en", "de").
+using Translated = std::map<std::string, std::string>;
+
+/// Texts by section ("screens") and key ("next"), as in a language file.
+using Texts = std::map<std::string, std::map<std::string, std::string>>;
+
+/// What participants see of the pictures and of their hand.
+enum class Sight {
+  curtain,    ///< pictures, but neither hand nor device
+  blindfold,  ///< nothing: labels are learnt by heart, and the experimenter enters spoken answers
+};
+
+enum class QuestionKind { choice, number, text };
+
+/// A question to the participant.
+struct Question {
+  std::string id;  ///< a plain name, unique in its questionnaire
+  QuestionKind kind = QuestionKind::text;
+  Translated text;
+  std::vector<Translated> options;  ///< answers of a choice, >= 2
+  bool required = false;
+  std::optional<double> min{};  ///< of a number
+  std::optional<double> max{};
+
+  friend bool operator==(const Question&, const Question&) = default;
+};
+
+/// Questions that are asked together.
+struct Questionnaire {
+  std::string name;  ///< a plain name, for instance "handedness" or "closing"
+  std::vector<Question> questions;
+};
+
+/// Textures for learning the task; none of them is in the study.
+struct PracticePlan {
+  std::vector<StudyClass> classes;  ///< one image each
+  int criterion = 4;                ///< correct answers that end practice, <= trials.practice
+  int rounds = 2;  ///< maximum; participants who never reach the criterion are flagged
+
+  friend bool operator==(const PracticePlan&, const PracticePlan&) = default;
+};
+
+/// Noise that masks the device's sound.
+struct MaskingPlan {
+  bool wanted = true;
+  double level_dbfs = -30.0;  ///< rms re full scale, <= 0; the lab measures the level in dBA
+
+  friend bool operator==(const MaskingPlan&, const MaskingPlan&) = default;
+};
+
+/// The largest letters for which every screen has room.
+inline constexpr double kLargestTextScale = 1.5;
+
+/// The study file's "session".
+struct SessionPlan {
+  std::string language = "en";  ///< of the participant's texts; one of language_codes()
+  /// Pages of instructions by language; empty: the program's own.
+  std::map<std::string, std::vector<std::string>> instructions;
+  std::map<std::string, Texts> texts;  ///< by language; in place of the program's own
+  double text_scale = 1.0;  ///< of the letters on the participant's screens, 1 to kLargestTextScale
+  bool high_contrast = false;  ///< whether these screens are black on white
+  Sight sight = Sight::curtain;
+  MaskingPlan masking;
+  bool handedness = true;                   ///< whether to ask the handedness inventory
+  int confidence_levels = 0;                ///< 2 to 9; 0: confidence is not asked
+  std::vector<std::string> day_sheet;       ///< items in addition to the program's own
+  std::string consent_version;              ///< version that participants sign; may be empty
+  std::string ethics_number;                ///< may be empty
+  std::vector<Question> closing_questions;  ///< in addition to the program's own
+  bool closing = true;                      ///< whether to ask the program's own closing questions
+
+  friend bool operator==(const SessionPlan&, const SessionPlan&) = default;
+};
+
+/// What each visit presents.
+enum class VisitMethods {
+  all,     ///< every method, in the participant's one order
+  divided  ///< as many of the methods at each visit, in that order
+};
+
+/// The study file's "visits": how often a participant comes. A day has 24 hours, from the opening
+/// of one visit's session to that of the next.
+struct VisitPlan {
+  int count = 1;
+  double least_days = 0.0;            ///< between visits; an earlier one is refused
+  std::optional<double> most_days{};  ///< between visits; a later one is a deviation
+  VisitMethods methods = VisitMethods::all;
+
+  friend bool operator==(const VisitPlan&, const VisitPlan&) = default;
+};
+
+/// From one visit's opening to the next one's; negative if a clock went back.
+[[nodiscard]] inline double days_between(std::chrono::nanoseconds first,
+                                         std::chrono::nanoseconds next) noexcept {
+  return std::chrono::duration<double, std::ratio<86'400>>(next - first).count();
+}
+
+/// The study file's "groups": participants are dealt into them at random, as many in each.
+struct GroupPlan {
+  std::vector<std::string> labels;  ///< >= 2, unique; empty: there are no groups
+  bool open = false;                ///< the experimenter may know who is in which
+
+  friend bool operator==(const GroupPlan&, const GroupPlan&) = default;
+};
+
+/// The visits that enter a registered analysis.
+enum class RegisteredVisits { all, first, last };
+
+/// The quantity that a registration is about.
+enum class Estimand {
+  mean_accuracy,  ///< mean over participants of the share of right answers, against chance
+  difference,     ///< mean over participants of the accuracy with one method less that with another
+};
+
+enum class RegisteredTest {
+  t,          ///< Student's t test over participants
+  sign_flip,  ///< exact flips of the signs of participants' differences
+  crossover,  ///< period-adjusted t test of two methods, one after the other
+};
+
+/// How the error rate is spent over registered looks (Lan, DeMets 1983).
+enum class Spending { obrien_fleming, pocock };
+
+/// "mean-accuracy" or "difference"
+[[nodiscard]] std::string_view name_of(Estimand estimand);
+/// "t", "sign-flip" or "crossover"
+[[nodiscard]] std::string_view name_of(RegisteredTest test);
+/// "obrien-fleming" or "pocock"
+[[nodiscard]] std::string_view name_of(Spending spending);
+
+/// The registered reasons for leaving a session out, besides that it was stopped or its participant
+/// withdrew.
+struct ExclusionRules {
+  std::vector<std::string> deviations;     ///< codes, the program's first, that leave one out
+  std::optional<double> invalid_trials{};  ///< share of its trials; a session with more is left out
+
+  friend bool operator==(const ExclusionRules&, const ExclusionRules&) = default;
+};
+
+/// The part of a registration that the program holds a study against.
+struct RegisteredAnalysis {
+  Estimand estimand = Estimand::mean_accuracy;
+  std::vector<std::string> methods;  ///< labels: the first less the second; empty: the study's two
+  RegisteredTest test = RegisteredTest::t;
+  bool one_sided = true;                    ///< against larger values
+  double alpha = 0.05;                      ///< 1e-6 .. 0.5
+  std::optional<double> smallest_effect{};  ///< worth having: an accuracy, or a difference
+  /// Of non-inferiority: by how much the first method may be worse and still be as good; in (0, 1].
+  std::optional<double> margin{};
+  std::vector<int> looks;  ///< numbers of participants at interim looks, ascending
+  Spending spending = Spending::obrien_fleming;
+  std::optional<ExclusionRules> exclusion_rules{};
+  RegisteredVisits visits = RegisteredVisits::all;
+
+  friend bool operator==(const RegisteredAnalysis&, const RegisteredAnalysis&) = default;
+};
+
+/// The study file's "registration", which is deposited before the first participant.
+struct Registration {
+  std::string hypothesis;
+  int participants = 0;  ///< 0: not stated
+  std::string stopping_rule;
+  std::string exclusions;
+  std::string primary_test;
+  /// That stops, faults, largest forces, reasons and deviations of somebody whose data were erased
+  /// are kept, from the session on.
+  int safety_record_years = 10;
+  std::optional<RegisteredAnalysis> analysis{};
+
+  friend bool operator==(const Registration&, const Registration&) = default;
+};
+
+/// The fields of the registered analysis as names and values in words; empty without one.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> fields_of(
+    const Registration& registration);
+
+}  // namespace touchtrial::study

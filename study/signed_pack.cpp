@@ -1,0 +1,141 @@
+#include "study/signed_pack.hpp"
+
+#include "core/errors.hpp"
+#include "core/parallel.hpp"
+#include "study/languages.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace touchtrial::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+Digest picture_digest(const fs::path& name, const fs::path& file) {
+  const Digest content = sha256_of_file(file);
+  return FieldHasher()
+      .add("touchtrial picture 1")
+      .add(name.string())
+      .add(ByteView(content))
+      .finish();
+}
+
+[[noreturn]] void refuse_pack(const fs::path& path, const std::string& what) {
+  throw FileError(one_line(path.string() + ": " + what));
+}
+
+bool is_intact(const engine::Pack& pack, const std::string& code) {
+  try {
+    return pack.is_intact(code);
+  } catch (const FileError&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+std::vector<fs::path> shown_pictures(const Study& study) {
+  std::vector<fs::path> names;
+  const auto add = [&names](const fs::path& name) {
+    if (std::ranges::count(names, name) == 0) names.push_back(name);
+  };
+  for (const StudyClass& shown : study.classes) add(shown.images.front());
+  if (study.trials.practice > 0) {
+    for (const StudyClass& shown : study.practice.classes) add(shown.images.front());
+  }
+  for (const std::string& file : picture_files(study.session)) add(file);
+  return names;
+}
+
+std::vector<Digest> picture_digests(const Study& study) {
+  const std::vector<fs::path> names = shown_pictures(study);
+  std::vector<Digest> digests(names.size());
+  all_in_parallel(names.size(), [&](std::size_t i) {
+    digests[i] = picture_digest(names[i], study.folder / names[i]);
+  });
+  std::ranges::sort(digests);
+  return digests;
+}
+
+void sign(engine::PackManifest& manifest, const StudyKey& key, std::vector<Digest> pictures) {
+  manifest.study_id = key.study_id;
+  manifest.seal = key.seal;
+  manifest.investigator_box = key.investigator_box;
+  manifest.pictures = std::move(pictures);
+  std::ranges::sort(manifest.entries, {}, &engine::PackEntry::code);
+  manifest.signature = key.signer().sign(engine::digest_of(manifest));
+}
+
+bool is_signed(const engine::PackManifest& manifest, const PublicKey& investigator) {
+  return is_signed_by(investigator, engine::digest_of(manifest), manifest.signature);
+}
+
+void require_signed(const engine::Pack& pack, const std::string& study_id, const Digest& seal,
+                    const PublicKey& investigator) {
+  const engine::PackManifest& manifest = pack.manifest();
+  if (manifest.study_id != study_id) {
+    refuse_pack(
+        pack.folder(),
+        "is another study's pack; name the pack and the file of secrets that were made together "
+        "(--pack, --station-file, --key)");
+  }
+  if (!is_signed(manifest, investigator)) {
+    refuse_pack(
+        pack.folder() / "pack.json",
+        "is not signed by the study's investigator: it was altered, or the file of secrets is "
+        "another investigator's; copy pack and station's file anew from the investigator's "
+        "machine, or run `touchtrial prepare` there");
+  }
+  if (manifest.seal != seal) {
+    refuse_pack(
+        pack.folder(),
+        "was made for this study before or after a change of its file, or is not complete; run "
+        "`touchtrial prepare`, and copy pack and station's file together");
+  }
+  for (const engine::PackEntry& entry : manifest.entries) {
+    if (is_intact(pack, entry.code)) continue;
+    refuse_pack(pack.folder(),
+                "field " + entry.code +
+                    " is not what was prepared; copy the pack anew, or run `touchtrial "
+                    "prepare`");
+  }
+}
+
+std::vector<fs::path> require_pictures(const engine::Pack& pack, const Study& study,
+                                       std::span<const fs::path> folders) {
+  std::vector<fs::path> absent;
+  for (const fs::path& name : shown_pictures(study)) {
+    const auto folder =
+        std::ranges::find_if(folders, [&](const fs::path& one) { return is_there(one / name); });
+    if (folder == folders.end()) {
+      absent.push_back(name);
+    } else if (!std::ranges::binary_search(pack.manifest().pictures,
+                                           picture_digest(name, *folder / name))) {
+      refuse_pack(
+          *folder / name,
+          "participants would see another picture than the one that was there at `touchtrial "
+          "prepare`; restore it, or, only if nobody has taken part yet, run `touchtrial prepare` "
+          "again");
+    }
+  }
+  return absent;
+}
+
+void require_whole(const engine::Pack& pack, const StudyCodes& codes) {
+  require_signed(pack, codes.study_id, codes.seal, codes.investigator_signature);
+  if (pack.manifest().investigator_box != codes.investigator_box) {
+    refuse_pack(
+        pack.folder(),
+        "the file of secrets seals for another investigator than the one who signed the pack; "
+        "copy the station's file anew from the investigator's machine");
+  }
+  const std::array<fs::path, 1> folders = {codes.study.folder};
+  const std::vector<fs::path> absent = require_pictures(pack, codes.study, folders);
+  if (absent.empty()) return;
+  refuse_pack(codes.study.folder / absent.front(),
+              "does not exist, and participants are to see it; copy it here");
+}
+
+}  // namespace touchtrial::study

@@ -1,0 +1,215 @@
+#include "study/station.hpp"
+
+#include "core/errors.hpp"
+#include "core/random.hpp"
+#include "core/strict_json.hpp"
+#include "study/random_orders.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+#include <queue>
+#include <stdexcept>
+#include <utility>
+
+namespace touchtrial::study {
+namespace {
+
+constexpr std::size_t kLongestStation = 32;
+
+bool is_name_letter(char letter) {
+  return (letter >= '0' && letter <= '9') || (letter >= 'A' && letter <= 'Z') ||
+         (letter >= 'a' && letter <= 'z') || letter == '+' || letter == '-' || letter == '_';
+}
+
+void require_station_name(const std::string& name) {
+  if (!name.empty() && name.size() <= kLongestStation &&
+      std::ranges::all_of(name, is_name_letter)) {
+    return;
+  }
+  throw UsageError(in_quotes(name) +
+                   " is no name of a station; use 1 to 32 of 0-9, A-Z, a-z, '+', '-', '_'");
+}
+
+/// How many more numbers each station gets. Each number goes to the station with the fewest, and
+/// among equals to the first.
+std::vector<int> shares(std::span<const Station> stations, int numbers) {
+  using Standing = std::pair<int, std::size_t>;  // numbers so far, index of the station
+  std::priority_queue<Standing, std::vector<Standing>, std::greater<>> smallest;
+  for (std::size_t i = 0; i < stations.size(); ++i) smallest.emplace(stations[i].size(), i);
+  std::vector<int> more(stations.size(), 0);
+  for (int i = 0; i < numbers; ++i) {
+    const auto [size, index] = smallest.top();
+    smallest.pop();
+    smallest.emplace(size + 1, index);
+    ++more[index];
+  }
+  return more;
+}
+
+SecretKey secret_for(const Station& station, Draws draws) {
+  return derive_key(station.secret, draws == Draws::people ? "schedules" : "rehearsed schedules");
+}
+
+/// A number's group, and its place among the group's numbers at its station.
+struct Dealt {
+  int group = 0;
+  int place = 0;
+};
+
+Dealt dealt(const GroupPlan& plan, const SecretKey& secret, int place) {
+  if (plan.labels.empty()) return {0, place};
+  const std::size_t groups = plan.labels.size();
+  std::vector<int> members(groups, 0);
+  RandomStream random(secret, "groups");
+  for (int left = place;;) {
+    std::vector<std::size_t> block(groups * (plan.open ? 1 + random.below(2) : 1));
+    for (std::size_t i = 0; i < block.size(); ++i) block[i] = i % groups;
+    shuffle(std::span<std::size_t>(block), random);
+    for (const std::size_t group : block) {
+      if (left-- == 0) return {static_cast<int>(group), members[group]};
+      ++members[group];
+    }
+  }
+}
+
+int row_of(const SecretKey& secret, int rows, int place) {
+  std::vector<int> order(static_cast<std::size_t>(rows));
+  std::iota(order.begin(), order.end(), 0);
+  RandomStream random(secret, "orders of methods", static_cast<std::uint64_t>(place / rows));
+  shuffle(std::span<int>(order), random);
+  return order[static_cast<std::size_t>(place % rows)];
+}
+
+}  // namespace
+
+int Station::size() const noexcept {
+  int numbers = 0;
+  for (const EnrolmentRange& range : ranges) numbers += range.size();
+  return numbers;
+}
+
+std::optional<int> Station::place_of(int enrolment) const noexcept {
+  int before = 0;
+  for (const EnrolmentRange& range : ranges) {
+    if (enrolment >= range.first && enrolment <= range.last) {
+      return before + enrolment - range.first;
+    }
+    before += range.size();
+  }
+  return std::nullopt;
+}
+
+int method_orders(const Study& study) {
+  const int methods = study.presented_methods();
+  return methods > 1 && study.trials.blocks != Blocks::mixed ? williams_rows(methods) : 1;
+}
+
+ScheduleDraw draw_for(const Study& study, const Station& station, int enrolment, Draws draws,
+                      int visit) {
+  const std::optional<int> place = station.place_of(enrolment);
+  if (!place) {
+    throw UsageError("enrolment number " + std::to_string(enrolment) + " is not one of station " +
+                     station.name +
+                     "'s; take one of its own, or hand out more with `touchtrial "
+                     "plan --extend`");
+  }
+  if (visit < 1 || visit > study.visits.count) {
+    throw UsageError("visit " + std::to_string(visit) + " is not in the study, which has " +
+                     std::to_string(study.visits.count));
+  }
+  const SecretKey secret = secret_for(station, draws);
+  const Dealt own = dealt(study.groups, secret, *place);
+  // A visit that presents all methods has its own orders of trials.
+  const bool is_again = visit > 1 && study.visits.methods == VisitMethods::all;
+  return {.secret = derive_key(secret, "participant " + std::to_string(enrolment) +
+                                           (is_again ? ", visit " + std::to_string(visit) : "")),
+          .method_order = row_of(study.groups.labels.empty()
+                                     ? secret
+                                     : derive_key(secret, "group " + std::to_string(own.group)),
+                                 method_orders(study), own.place),
+          .visit = visit};
+}
+
+std::optional<int> group_for(const Study& study, const Station& station, int enrolment,
+                             Draws draws) {
+  const std::optional<int> place = station.place_of(enrolment);
+  if (!place || study.groups.labels.empty()) return std::nullopt;
+  return dealt(study.groups, secret_for(station, draws), *place).group;
+}
+
+int order_block_of(const Study& study, std::span<const Station> stations, int enrolment,
+                   Draws draws) {
+  const int rows = method_orders(study);
+  const int groups = std::max(1, static_cast<int>(study.groups.labels.size()));
+  int before = 0;  // blocks of earlier stations
+  for (const Station& station : stations) {
+    if (const auto place = station.place_of(enrolment)) {
+      const Dealt own = dealt(study.groups, secret_for(station, draws), *place);
+      return before + own.place / rows * groups + own.group;
+    }
+    before += (station.size() / rows + 1) * groups;
+  }
+  return -1;
+}
+
+std::vector<Station> stations_named(std::span<const std::string> names) {
+  if (names.empty() || names.size() > kMostStations) {
+    throw UsageError("a plan is for 1 to " + std::to_string(kMostStations) + " stations");
+  }
+  std::vector<Station> stations;
+  std::set<std::string> known;
+  for (const std::string& name : names) {
+    require_station_name(name);
+    if (!known.insert(name).second) {
+      throw UsageError("station " + name + " is named twice; give every station its own name");
+    }
+    stations.push_back({.name = name, .ranges = {}});
+  }
+  return stations;
+}
+
+int enrolments_of(std::span<const Station> stations) noexcept {
+  int numbers = 0;
+  for (const Station& station : stations) numbers += station.size();
+  return numbers;
+}
+
+void hand_out_enrolments(std::span<Station> stations, int participants) {
+  const int had = enrolments_of(stations);
+  if (stations.empty() || participants < had || participants > kMostEnrolments) {
+    throw std::invalid_argument("hand_out_enrolments: no stations, or an impossible number");
+  }
+  const std::vector<int> more = shares(stations, participants - had);
+  int next = had + 1;
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    if (more[i] == 0) continue;
+    std::vector<EnrolmentRange>& ranges = stations[i].ranges;
+    if (!ranges.empty() && ranges.back().last == next - 1) {
+      ranges.back().last += more[i];
+    } else {
+      ranges.push_back({next, next + more[i] - 1});
+    }
+    next += more[i];
+  }
+}
+
+int next_enrolment_of(const Station& station, const std::set<int>& taken) {
+  for (const EnrolmentRange& range : station.ranges) {
+    for (int number = range.first; number <= range.last; ++number) {
+      if (!taken.contains(number)) return number;
+    }
+  }
+  throw StudyError(
+      "all enrolment numbers of station " + station.name +
+      " are taken; hand out more with `touchtrial plan --extend`, and give the station "
+      "its new file");
+}
+
+const Station* station_of(std::span<const Station> stations, int enrolment) noexcept {
+  const auto found = std::ranges::find_if(
+      stations, [enrolment](const Station& own) { return own.place_of(enrolment).has_value(); });
+  return found == stations.end() ? nullptr : &*found;
+}
+
+}  // namespace touchtrial::study

@@ -1,0 +1,301 @@
+#include "study/study_key.hpp"
+
+#include "core/errors.hpp"
+#include "core/text.hpp"
+#include "study/protocol.hpp"
+#include "study/study_sections.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace touchtrial::study {
+namespace {
+
+constexpr std::size_t kStudyIdBytes = 16;
+constexpr std::size_t kCodeBytes = 8;
+
+std::string first_hex(const Digest& digest, std::size_t bytes) {
+  return to_hex(ByteView(digest).first(bytes));
+}
+
+/// The code of a stimulus. It depends only on the stimulus itself, so that a stimulus keeps its
+/// code when others are added or removed.
+std::string code_for(const SecretKey& code_key, const Study& study, const StimulusIndex& stimulus) {
+  const StudyClass& shown = study.classes[static_cast<std::size_t>(stimulus.class_index)];
+  const auto& image = shown.images[static_cast<std::size_t>(stimulus.exemplar)];
+  const auto& method = study.methods[static_cast<std::size_t>(stimulus.method)];
+  const Digest identity = FieldHasher()
+                              .add("touchtrial code 1")
+                              .add(shown.label)
+                              .add(image.string())
+                              .add(method.label)
+                              .finish();
+  return first_hex(keyed_hash(code_key, ByteView(identity)), kCodeBytes);
+}
+
+std::vector<KeyedStimulus> keyed_stimuli(const SecretKey& master, const Study& study) {
+  const SecretKey code_key = derive_key(master, "codes");
+  std::vector<KeyedStimulus> stimuli;
+  std::set<std::string> codes;
+  for (int c = 0; c < static_cast<int>(study.classes.size()); ++c) {
+    const auto images = static_cast<int>(study.classes[static_cast<std::size_t>(c)].images.size());
+    for (int e = 0; e < images; ++e) {
+      for (int m = 0; m < study.presented_methods(); ++m) {
+        const StimulusIndex stimulus{c, e, m};
+        stimuli.push_back({code_for(code_key, study, stimulus), stimulus});
+        if (codes.insert(stimuli.back().code).second) continue;
+        throw StudyError("study " + study.name + ": /classes/" + std::to_string(c) + "/images/" +
+                         std::to_string(e) +
+                         ": has the code of another stimulus; rename the image or the label");
+      }
+    }
+  }
+  return stimuli;
+}
+
+std::string catch_code_of(const SecretKey& master) {
+  const Digest identity = FieldHasher().add("touchtrial catch code 1").finish();
+  return first_hex(keyed_hash(derive_key(master, "codes"), ByteView(identity)), kCodeBytes);
+}
+
+SecretKey station_secret(const SecretKey& master, const std::string& name) {
+  return derive_key(master, "station " + name);
+}
+
+Signer station_signer(const SecretKey& secret) {
+  return Signer(derive_key(secret, "signature"));
+}
+
+/// A keyed hash of all sections with texts, which only the key's holder can check. The texts
+/// include names of textures, so they do not appear in clear.
+std::string texts_tag(const StudyKey& key) {
+  const Study& study = key.study;
+  const nlohmann::json texts = {{"practice", to_json(study.practice)},
+                                {"session", to_json(study.session)},
+                                {"registration", to_json(study.registration)}};
+  const Digest hash = sha256(bytes_of(texts.dump()));
+  return to_hex(keyed_hash(derive_key(key.master, "texts"), ByteView(hash)));
+}
+
+/// Adds the sections that older studies do not have. A section that equals its default adds
+/// nothing, so that the configuration of an older study stays the same.
+void add_plans(nlohmann::json& configuration, const StudyKey& key) {
+  const Study& study = key.study;
+  if (study.practice != PracticePlan{}) {
+    configuration["practice"] = {{"positions", study.practice.classes.size()},
+                                 {"criterion", study.practice.criterion},
+                                 {"rounds", study.practice.rounds}};
+  }
+  if (study.session != SessionPlan{}) {
+    nlohmann::json session = to_json(study.session);
+    for (const char* text : {"instructions", "texts", "day_sheet", "consent_version",
+                             "ethics_number", "closing_questions"}) {
+      session.erase(text);
+    }
+    configuration["session"] = std::move(session);
+  }
+  if (study.visits != VisitPlan{}) {
+    configuration["visits"] = to_json(study.visits);
+    configuration["visits"]["needed"] = study.visits_needed();
+  }
+  if (study.groups != GroupPlan{}) configuration["groups"] = to_json(study.groups);
+  if (configuration.contains("practice") || configuration.contains("session") ||
+      study.registration != Registration{}) {
+    configuration["texts"] = texts_tag(key);
+  }
+}
+
+}  // namespace
+
+std::optional<StimulusIndex> StudyCodes::stimulus_of(const std::string& code) const {
+  const auto found = std::ranges::find(stimuli, code, &KeyedStimulus::code);
+  if (found == stimuli.end()) return std::nullopt;
+  return found->stimulus;
+}
+
+const std::string& StudyCodes::code_of(const StimulusIndex& stimulus) const {
+  const auto found = std::ranges::find(stimuli, stimulus, &KeyedStimulus::stimulus);
+  if (found == stimuli.end()) {
+    throw StudyError("study " + study.name + ": does not present class " +
+                     std::to_string(stimulus.class_index) + ", image " +
+                     std::to_string(stimulus.exemplar) + ", method " +
+                     std::to_string(stimulus.method) + "; use the key that was made for it");
+  }
+  return found->code;
+}
+
+ScheduleDraw StudyKey::draw_of(int enrolment, Draws draws, int visit) const {
+  const Station* const own = station_of(stations, enrolment);
+  if (own == nullptr) {
+    throw UsageError("study " + study.name + ": enrolment number " + std::to_string(enrolment) +
+                     " is no station's; hand out more with `touchtrial plan --extend`, as many as "
+                     "then if the key is from before it");
+  }
+  return draw_for(study, *own, enrolment, draws, visit);
+}
+
+std::optional<int> StudyKey::group_of(int enrolment, Draws draws) const {
+  const Station* const own = station_of(stations, enrolment);
+  return own == nullptr ? std::nullopt : group_for(study, *own, enrolment, draws);
+}
+
+BoxKeys StudyKey::box() const {
+  return box_keys(derive_key(master, "investigator's box"));
+}
+
+Signer StudyKey::signer() const {
+  return Signer(derive_key(master, "investigator's signature"));
+}
+
+ScheduleDraw StationKey::draw_of(int enrolment, Draws draws, int visit) const {
+  return draw_for(study, station, enrolment, draws, visit);
+}
+
+Signer StationKey::signer() const {
+  return station_signer(station.secret);
+}
+
+StudyKey make_study_key(const Study& study, Entropy& entropy, bool simulated) {
+  StudyKey key;
+  key.master = entropy.secret("touchtrial study key master");
+  key.study_id = first_hex(derive_key(key.master, "identity"), kStudyIdBytes);
+  key.simulated = simulated;
+  key.catch_code = catch_code_of(key.master);
+  key.investigator_box = key.box().public_half;
+  key.investigator_signature = key.signer().public_half();
+  divide(key, {{.name = kOnlyStation, .ranges = {{1, kMostEnrolments}}}});
+  return rekeyed(key, study);
+}
+
+StudyKey simulated_study_key(const Study& study) {
+  SeededEntropy entropy(study.seed);
+  return make_study_key(study, entropy, true);
+}
+
+StudyKey rekeyed(const StudyKey& key, const Study& study) {
+  StudyKey changed = key;
+  changed.study = study;
+  changed.stimuli = keyed_stimuli(key.master, study);
+  changed.configuration = blinded_configuration(changed);
+  changed.seal = study_seal(changed);
+  return changed;
+}
+
+void divide(StudyKey& key, std::vector<Station> stations) {
+  for (Station& station : stations) station.secret = station_secret(key.master, station.name);
+  key.stations = std::move(stations);
+}
+
+StationKey station_key(const StudyKey& key, const std::string& name) {
+  const auto found = std::ranges::find(key.stations, name, &Station::name);
+  if (found == key.stations.end()) {
+    throw UsageError("study " + key.study.name + ": has no station " + in_quotes(name) +
+                     "; it has " + listed(key.stations, ", ", &Station::name));
+  }
+  StationKey own{key, *found};
+  own.certificate =
+      key.signer().sign(station_statement(key.study_id, name, own.signer().public_half()));
+  return own;
+}
+
+std::string blinded_configuration(const StudyKey& key) {
+  const Study& study = key.study;
+  nlohmann::json methods = nlohmann::json::array();
+  for (const StudyMethod& method : study.methods) methods.push_back(to_json(method));
+  std::vector<std::string> codes;
+  for (const KeyedStimulus& stimulus : key.stimuli) codes.push_back(stimulus.code);
+  std::ranges::sort(codes);
+  nlohmann::json configuration = {{"study", study.name},
+                                  {"protocol", study.protocol_name()},
+                                  {"stimuli", codes},
+                                  {"positions", study.protocol->choices(study).size()},
+                                  {"methods", methods},
+                                  {"rendering", to_json(study.rendering)},
+                                  {"trials", to_json(study.trials)},
+                                  {"blinding", study.double_blind ? "double" : "participant"}};
+  if (const auto plan = study.protocol->interval_plan(study)) {
+    configuration["intervals"] = plan->count;
+  }
+  const std::string options = study.protocol->options_in_clear(study);
+  if (!options.empty()) {
+    configuration[std::string(study.protocol->section())] = nlohmann::json::parse(options);
+  }
+  add_plans(configuration, key);
+  return configuration.dump();
+}
+
+namespace {
+
+/// The parts of a study file, by their keys.
+nlohmann::json parts_of(const Study& study) {
+  nlohmann::json classes = nlohmann::json::array();
+  for (const StudyClass& shown : study.classes) {
+    nlohmann::json images = nlohmann::json::array();
+    for (const auto& image : shown.images) images.push_back(image.string());
+    classes.push_back({shown.label, images});
+  }
+  nlohmann::json methods = nlohmann::json::array();
+  for (const StudyMethod& method : study.methods) methods.push_back(to_json(method));
+  return {{"study", study.name},
+          {"protocol", {study.protocol_name(), study.protocol->options_in_clear(study)}},
+          {"classes", classes},
+          {"methods", methods},
+          {"rendering", to_json(study.rendering)},
+          {"device", study.device},
+          {"level", study.level ? nlohmann::json{study.level->db, study.level->curve} : nullptr},
+          {"trials", to_json(study.trials)},
+          {"practice", to_json(study.practice)},
+          {"session", to_json(study.session)},
+          {"visits", to_json(study.visits)},
+          {"groups", to_json(study.groups)},
+          {"registration", to_json(study.registration)},
+          {"blinding", study.double_blind},
+          {"protocol's own section", study.protocol->options_in_clear(study)},
+          {"seed", study.seed}};
+}
+
+}  // namespace
+
+bool are_same(const Study& one, const Study& other) {
+  return parts_of(one) == parts_of(other);
+}
+
+std::string misfit_of(const Study& study, const StudyCodes& key, const std::filesystem::path& file,
+                      const std::string& option) {
+  const std::string what = option == "--key" ? "key" : "file";
+  const std::string text = file.string() + ": is not the " + what + " of " + study.source;
+  if (study.name != key.study.name) {
+    return one_line(text + ", which is study " + in_quotes(study.name) + ": it is of study " +
+                    in_quotes(key.study.name) + "; name the right one with " + option);
+  }
+  const nlohmann::json ours = parts_of(study);
+  const nlohmann::json theirs = parts_of(key.study);
+  std::vector<std::string> differing;
+  for (const auto& [part, content] : ours.items()) {
+    if (content != theirs.at(part)) differing.push_back(part);
+  }
+  const std::string parts = differing.empty() ? "its seal" : listed(differing, ", ");
+  return one_line(text + " as it is now, which has changed since it was prepared: " + parts +
+                  " differ from study " + in_quotes(key.study.name) + " of that " + what +
+                  "; take the change back, name the right " + what + " with " + option +
+                  ", or, only if nobody has taken part yet, run `touchtrial prepare`");
+}
+
+Digest study_seal(const StudyKey& key) {
+  FieldHasher hasher;
+  hasher.add("touchtrial seal 2").add(ByteView(key.master));
+  hasher.add(static_cast<std::int64_t>(key.simulated ? 1 : 0));
+  hasher.add(static_cast<std::int64_t>(key.stimuli.size()));
+  for (const auto& [code, stimulus] : key.stimuli) {
+    const StudyClass& shown = key.study.classes[static_cast<std::size_t>(stimulus.class_index)];
+    const auto& method = key.study.methods[static_cast<std::size_t>(stimulus.method)];
+    hasher.add(code).add(shown.label);
+    hasher.add(shown.images[static_cast<std::size_t>(stimulus.exemplar)].string());
+    hasher.add(method.label);
+  }
+  hasher.add(schedule_rule(key.study)).add(static_cast<std::int64_t>(key.study.seed));
+  hasher.add(blinded_configuration(key));
+  return hasher.finish();
+}
+
+}  // namespace touchtrial::study

@@ -1,0 +1,138 @@
+/// \file The files of a study's secrets. `<study>.key` is the investigator's: it opens everything.
+/// `<study>.station` is one station's: it presents the station's own participants, and opens no
+/// session that has ended. Formats: docs/data-dictionary.md, "Key" and "Station file".
+#pragma once
+
+#include "core/public_keys.hpp"
+#include "study/schedule.hpp"
+#include "study/station.hpp"
+#include "study/study.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial::study {
+
+/// One code and its meaning.
+struct KeyedStimulus {
+  std::string code;
+  StimulusIndex stimulus;
+};
+
+/// What both files know: the study, the meaning of its codes, and its public identity.
+struct StudyCodes {
+  std::string study_id;  ///< hexadecimal; derived from the master secret, reveals nothing about it
+  Study study;           ///< as sealed: labels, image names, methods
+  std::vector<KeyedStimulus> stimuli;  ///< every presented class x exemplar x method
+  /// The code of the plane without texture. It looks like the code of a stimulus; no pack has a
+  /// field with this code.
+  std::string catch_code;
+  std::string configuration;           ///< see blinded_configuration
+  Digest seal{};                       ///< see study_seal
+  PublicKey investigator_box{};        ///< seals for the investigator
+  PublicKey investigator_signature{};  ///< verifies what the investigator signed
+  std::filesystem::path pack_folder;   ///< the pack's place when the file was written
+  bool simulated = false;
+
+  /// \return the stimulus with this code, or nothing if there is none
+  [[nodiscard]] std::optional<StimulusIndex> stimulus_of(const std::string& code) const;
+  /// \throws StudyError if the study does not present the stimulus
+  [[nodiscard]] const std::string& code_of(const StimulusIndex& stimulus) const;
+};
+
+/// The investigator's key.
+struct StudyKey : StudyCodes {
+  SecretKey master{};
+  std::vector<Station> stations;  ///< with their secrets; never empty
+
+  /// What a participant's schedule is drawn from, whichever station the number belongs to.
+  /// \throws UsageError if the number is no station's, or the study has no such visit
+  [[nodiscard]] ScheduleDraw draw_of(int enrolment, Draws draws, int visit = 1) const;
+  /// As group_for; empty also if the number is no station's.
+  [[nodiscard]] std::optional<int> group_of(int enrolment, Draws draws) const;
+  [[nodiscard]] BoxKeys box() const;
+  [[nodiscard]] Signer signer() const;
+};
+
+/// One station's file.
+struct StationKey : StudyCodes {
+  Station station;
+  /// The investigator's signature under station_statement.
+  Signature certificate{};
+
+  /// \throws UsageError if the number is not the station's, or the study has no such visit
+  [[nodiscard]] ScheduleDraw draw_of(int enrolment, Draws draws, int visit = 1) const;
+  [[nodiscard]] Signer signer() const;
+};
+
+/// Makes a new key with one station. `entropy` supplies the master secret, for the purpose
+/// "touchtrial study key master", from which all other secrets and the codes are derived. A code
+/// depends only on the master secret, the class label, the image path as written and the method
+/// label, so a stimulus keeps its code when others are added or removed.
+/// \throws StudyError if two stimuli get the same code (probability 2^-64 for each pair)
+[[nodiscard]] StudyKey make_study_key(const Study& study, Entropy& entropy, bool simulated);
+
+/// The key of a study's simulations and rehearsals. Its secrets follow from the study's seed, so
+/// that simulated databases of one study belong together and can be made again; no real study uses
+/// them.
+[[nodiscard]] StudyKey simulated_study_key(const Study& study);
+
+/// Makes a key with the same secrets and stations for a study file that has changed since.
+[[nodiscard]] StudyKey rekeyed(const StudyKey& key, const Study& study);
+
+/// Divides the study between stations: they replace those of the key, with secrets of their own.
+void divide(StudyKey& key, std::vector<Station> stations);
+
+/// The file of one of the key's stations.
+/// \throws UsageError, naming the stations that there are, if there is none of this name
+[[nodiscard]] StationKey station_key(const StudyKey& key, const std::string& name);
+
+/// Writes the file durably with mode 0600. The folders of study and pack are stored relative to the
+/// file, so that all three can be moved together.
+/// \throws FileError if the file cannot be written
+void save_study_key(const std::filesystem::path& path, const StudyKey& key);
+void save_station_key(const std::filesystem::path& path, const StationKey& key);
+
+/// \throws FileError if the file is missing, is malformed, has been altered since it was written,
+///   or can be read by others
+[[nodiscard]] StudyKey load_study_key(const std::filesystem::path& path);
+[[nodiscard]] StationKey load_station_key(const std::filesystem::path& path);
+
+/// Schedule and layout as the secret part of a session's opening event, with codes instead of
+/// indices.
+[[nodiscard]] std::string schedule_to_json(const Schedule& schedule, const StudyCodes& codes);
+/// \throws StoreError if the text is not a schedule, or names a code that the key does not have
+[[nodiscard]] Schedule schedule_from_json(const std::string& text, const StudyCodes& codes);
+
+/// A restarted block as the secret part of its event, in the form of a schedule's presentations.
+[[nodiscard]] std::string block_to_json(const std::vector<Presentation>& block,
+                                        const StudyCodes& codes);
+/// \throws StoreError if the text is not a block, or names a code that the key does not have
+[[nodiscard]] std::vector<Presentation> block_from_json(const std::string& text,
+                                                        const StudyCodes& codes);
+
+/// The study as a database stores it in clear: with codes instead of labels and image names, sorted
+/// by code, and without the seed. It has the settings of
+/// practice and session without their texts, and a keyed hash of practice, session and registration
+/// as a whole. Compact JSON.
+[[nodiscard]] std::string blinded_configuration(const StudyKey& key);
+
+/// Whether two studies say the same, wherever their files lie and however these are laid out.
+[[nodiscard]] bool are_same(const Study& one, const Study& other);
+
+/// Says why a file of secrets does not fit a study, with the remedy. Names the study that the file
+/// was made for, or, if that has the same name, the parts of the study file that differ.
+/// \param study  newly read from its file
+/// \param file  that of `key`
+/// \param option  of the command line that names another file, for instance "--key"
+[[nodiscard]] std::string misfit_of(const Study& study, const StudyCodes& key,
+                                    const std::filesystem::path& file, const std::string& option);
+
+/// The study's seal, which is written before trial 1: SHA-256 over key (master secret, whether it
+/// is simulated, meaning of each code), schedule rule, seed and blinded configuration. The study's
+/// folder, the layout of its file and its stations do not enter.
+[[nodiscard]] Digest study_seal(const StudyKey& key);
+
+}  // namespace touchtrial::study

@@ -1,0 +1,302 @@
+/// \file The files of key and station. Their bytes follow entirely from their content and one
+/// checksum over it, so that a change of any byte is detected.
+#include "core/errors.hpp"
+#include "study/key_protection.hpp"
+#include "study/study_key.hpp"
+
+#include <algorithm>
+#include <system_error>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial::study {
+namespace {
+
+using nlohmann::json;
+
+/// Supplies a stored secret, so that the same code makes and rebuilds a key.
+class StoredEntropy final : public Entropy {
+ public:
+  explicit StoredEntropy(const SecretKey& master) : master_(master) {}
+  [[nodiscard]] SecretKey secret(std::string_view) override { return master_; }
+
+ private:
+  SecretKey master_;
+};
+
+/// Of both files.
+constexpr int kVersion = 3;
+
+/// One kind of file and its words.
+struct Kind {
+  std::string_view format;
+  std::string_view title;
+  std::string_view remedy;  ///< where such a file comes from
+};
+constexpr Kind kKey{"touchtrial-key", "key", "give the .key file that `prepare` wrote"};
+constexpr Kind kStation{"touchtrial-station", "station file",
+                        "give the .station file that `prepare` or `plan` wrote"};
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& what) {
+  throw FileError(one_line(path.string() + ": " + what));
+}
+
+[[noreturn]] void refuse_damaged(const std::filesystem::path& path, const Kind& kind) {
+  refuse(path, "the " + std::string(kind.title) +
+                   " is altered or damaged since it was written; restore it from a backup");
+}
+
+std::filesystem::path whole(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto absolute = std::filesystem::absolute(path, error);
+  const auto canonical = std::filesystem::weakly_canonical(absolute, error);
+  return error ? absolute.lexically_normal() : canonical;
+}
+
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return whole(file).parent_path();
+}
+
+/// A path relative to the key, so that a study can be moved with its key. "" stays "".
+std::string relative_to_key(const std::filesystem::path& target, const std::filesystem::path& key) {
+  if (target.empty()) return "";
+  const auto relative = whole(target).lexically_relative(folder_of(key));
+  return relative.empty() ? whole(target).string() : relative.string();
+}
+
+std::filesystem::path found_from_key(const std::string& target, const std::filesystem::path& key) {
+  return target.empty() ? std::filesystem::path() : whole(folder_of(key) / target);
+}
+
+std::string text_of_document(json document) {
+  document.erase("check");
+  document["check"] = to_hex(sha256(bytes_of(document.dump())));
+  return document.dump(2) + "\n";
+}
+
+json stimuli_to_json(const StudyCodes& codes) {
+  json list = json::array();
+  for (const auto& [code, stimulus] : codes.stimuli) {
+    const StudyClass& shown = codes.study.classes[static_cast<std::size_t>(stimulus.class_index)];
+    list.push_back(
+        {{"code", code},
+         {"label", shown.label},
+         {"image", shown.images[static_cast<std::size_t>(stimulus.exemplar)].string()},
+         {"method", codes.study.methods[static_cast<std::size_t>(stimulus.method)].label}});
+  }
+  return list;
+}
+
+json ranges_to_json(const std::vector<EnrolmentRange>& ranges) {
+  json list = json::array();
+  for (const EnrolmentRange& range : ranges) list.push_back({range.first, range.last});
+  return list;
+}
+
+std::vector<EnrolmentRange> ranges_from(const json& list) {
+  std::vector<EnrolmentRange> ranges;
+  for (const json& ends : list) {
+    const EnrolmentRange range{ends.at(0).get<int>(), ends.at(1).get<int>()};
+    if (range.first < 1 || range.last < range.first || range.last > kMostEnrolments) {
+      throw FileError("a station's enrolment numbers are impossible");
+    }
+    ranges.push_back(range);
+  }
+  return ranges;
+}
+
+/// What both files hold.
+json common_document(const StudyCodes& codes, const Kind& kind, const std::filesystem::path& path) {
+  // An empty folder means the working directory; it is written relative to the key as well.
+  const auto study_folder = codes.study.folder.empty() ? "." : codes.study.folder;
+  return {{"format", kind.format},
+          {"version", kVersion},
+          {"study_id", codes.study_id},
+          {"simulated", codes.simulated},
+          {"study", codes.study.text},
+          {"study_folder", relative_to_key(study_folder, path)},
+          {"pack_folder", relative_to_key(codes.pack_folder, path)},
+          {"stimuli", stimuli_to_json(codes)}};
+}
+
+Study study_from(const json& document, const std::filesystem::path& path) {
+  const auto folder = found_from_key(document.at("study_folder").get<std::string>(), path);
+  return parse_study(document.at("study").get_ref<const std::string&>(), folder,
+                     path.string() + ": study");
+}
+
+Digest digest_from(const json& value) {
+  const auto digest = digest_from_hex(value.get_ref<const std::string&>());
+  if (!digest) throw FileError("a secret or hash is not 64 hexadecimal digits");
+  return *digest;
+}
+
+json document_of(const StudyKey& key, const std::filesystem::path& path) {
+  json document = common_document(key, kKey, path);
+  document["master"] = to_hex(key.master);
+  json stations = json::array();
+  for (const Station& station : key.stations) {
+    stations.push_back({{"name", station.name}, {"enrolments", ranges_to_json(station.ranges)}});
+  }
+  document["stations"] = std::move(stations);
+  return document;
+}
+
+StudyKey key_of(const json& document, const std::filesystem::path& path) {
+  std::vector<std::string> names;
+  for (const json& station : document.at("stations")) {
+    names.push_back(station.at("name").get<std::string>());
+  }
+  std::vector<Station> stations = stations_named(names);
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    stations[i].ranges = ranges_from(document["stations"][i].at("enrolments"));
+  }
+  StoredEntropy stored(digest_from(document.at("master")));
+  StudyKey key =
+      make_study_key(study_from(document, path), stored, document.at("simulated").get<bool>());
+  divide(key, std::move(stations));
+  key.pack_folder = found_from_key(document.at("pack_folder").get<std::string>(), path);
+  const bool same = key.study_id == document.at("study_id").get<std::string>() &&
+                    stimuli_to_json(key) == document.at("stimuli");
+  if (!same) refuse_damaged(path, kKey);
+  return key;
+}
+
+json document_of(const StationKey& key, const std::filesystem::path& path) {
+  json document = common_document(key, kStation, path);
+  document["station"] = key.station.name;
+  document["enrolments"] = ranges_to_json(key.station.ranges);
+  document["secret"] = to_hex(key.station.secret);
+  document["certificate"] = to_hex(ByteView(key.certificate));
+  document["catch_code"] = key.catch_code;
+  document["configuration"] = key.configuration;
+  document["seal"] = to_hex(key.seal);
+  document["investigator_box"] = to_hex(key.investigator_box);
+  document["investigator_signature"] = to_hex(key.investigator_signature);
+  return document;
+}
+
+/// The stimuli of a station file, whose codes the station cannot derive.
+std::vector<KeyedStimulus> stimuli_from(const json& list, const Study& study) {
+  std::vector<KeyedStimulus> stimuli;
+  for (int c = 0; c < static_cast<int>(study.classes.size()); ++c) {
+    const auto images = static_cast<int>(study.classes[static_cast<std::size_t>(c)].images.size());
+    for (int e = 0; e < images; ++e) {
+      for (int m = 0; m < study.presented_methods(); ++m) {
+        stimuli.push_back({list.at(stimuli.size()).at("code").get<std::string>(), {c, e, m}});
+      }
+    }
+  }
+  return stimuli;
+}
+
+StationKey station_of_document(const json& document, const std::filesystem::path& path) {
+  StationKey key;
+  key.study = study_from(document, path);
+  key.study_id = document.at("study_id").get<std::string>();
+  key.stimuli = stimuli_from(document.at("stimuli"), key.study);
+  key.catch_code = document.at("catch_code").get<std::string>();
+  key.configuration = document.at("configuration").get<std::string>();
+  key.seal = digest_from(document.at("seal"));
+  key.investigator_box = digest_from(document.at("investigator_box"));
+  key.investigator_signature = digest_from(document.at("investigator_signature"));
+  key.pack_folder = found_from_key(document.at("pack_folder").get<std::string>(), path);
+  key.simulated = document.at("simulated").get<bool>();
+  const std::vector<std::string> name = {document.at("station").get<std::string>()};
+  key.station = stations_named(name).front();
+  key.station.ranges = ranges_from(document.at("enrolments"));
+  key.station.secret = digest_from(document.at("secret"));
+  const auto certificate = from_hex(document.at("certificate").get_ref<const std::string&>());
+  const Bytes statement =
+      station_statement(key.study_id, key.station.name, key.signer().public_half());
+  const bool is_own =
+      certificate && is_signed_by(key.investigator_signature, statement, *certificate);
+  if (!is_own || stimuli_to_json(key) != document.at("stimuli")) refuse_damaged(path, kStation);
+  std::ranges::copy(*certificate, key.certificate.begin());
+  return key;
+}
+
+void check_format(const json& document, const std::filesystem::path& path, const Kind& kind) {
+  const bool is_known = document.is_object() && document.contains("format") &&
+                        document["format"] == kind.format && document.contains("version");
+  if (!is_known) {
+    refuse(path,
+           "is not a Touchtrial " + std::string(kind.title) + "; " + std::string(kind.remedy));
+  }
+  if (document["version"] != kVersion) {
+    refuse(path, "is a " + std::string(kind.title) + " of version " + document["version"].dump() +
+                     ", not " + std::to_string(kVersion) + "; use the program that wrote it");
+  }
+}
+
+template <typename Key>
+std::string text_of_key(const std::filesystem::path& path, const Key& key) {
+  try {
+    return text_of_document(document_of(key, path));
+  } catch (const json::exception&) {
+    refuse(path, "cannot be written: a folder's name is not UTF-8; rename the folder");
+  }
+}
+
+/// The document of a file's text, read strictly.
+json whole_document(const std::string& text, const std::filesystem::path& path, const Kind& kind) {
+  json document = json::parse(text, nullptr, false);
+  if (document.is_discarded()) {
+    if (text.find(kind.format) != std::string::npos) refuse_damaged(path, kind);
+    check_format(document, path, kind);
+  }
+  check_format(document, path, kind);
+  if (text_of_document(document) != text) refuse_damaged(path, kind);
+  return document;
+}
+
+/// Lets `made` make the key from the text of a file of secrets.
+template <typename Make>
+auto loaded(const std::filesystem::path& path, const std::string& text, const Kind& kind,
+            Make made) {
+  const json document = whole_document(text, path, kind);
+  try {
+    return made(document, path);
+  } catch (const json::exception&) {
+    refuse_damaged(path, kind);
+  } catch (const UsageError&) {  // a station's name
+    refuse_damaged(path, kind);
+  } catch (const StudyError& error) {
+    throw FileError(error.what());
+  }
+}
+
+}  // namespace
+
+void save_study_key(const std::filesystem::path& path, const StudyKey& key) {
+  save_secret_text(path, text_of_key(path, key), key.signer().public_half());
+}
+
+void save_study_key(const std::filesystem::path& path, const StudyKey& key,
+                    const std::string& passphrase, const PassphraseCost& cost) {
+  write_secret_text(path, text_of_key(path, key), key.signer().public_half(), passphrase, cost);
+}
+
+void save_station_key(const std::filesystem::path& path, const StationKey& key) {
+  save_secret_text(path, text_of_key(path, key), key.signer().public_half());
+}
+
+StudyKey load_study_key(const std::filesystem::path& path) {
+  return loaded(path, read_secret_text(path), kKey, key_of);
+}
+
+StationKey load_station_key(const std::filesystem::path& path) {
+  return loaded(path, read_secret_text(path), kStation, station_of_document);
+}
+
+void protect(const std::filesystem::path& file, const std::optional<std::string>& passphrase,
+             const PassphraseCost& cost) {
+  const std::string text = read_secret_text(file);
+  const bool is_station =
+      text.find("\"format\": \"" + std::string(kStation.format) + "\"") != std::string::npos;
+  const Signer signer = is_station ? loaded(file, text, kStation, station_of_document).signer()
+                                   : loaded(file, text, kKey, key_of).signer();
+  write_secret_text(file, text, signer.public_half(), passphrase, cost);
+}
+
+}  // namespace touchtrial::study

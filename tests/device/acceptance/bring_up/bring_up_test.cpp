@@ -1,0 +1,317 @@
+// A bring-up on device models: what it finds, what it never does before the signs are confirmed,
+// and what its file keeps.
+#include "device/acceptance/bring_up/bring_up.hpp"
+
+#include "device/acceptance/rehearsal.hpp"
+#include "device/drivers/registry.hpp"
+#include "device/platform/dynamic_library.hpp"
+#include "support/catch.hpp"
+#include "support/temp_folder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+namespace {
+
+using device::BringUp;
+using device::BringUpEnd;
+using device::BringUpStep;
+using device::DeviceAxis;
+using device::StepOutcome;
+
+struct Interrupted {};
+
+const std::vector<device::UnverifiedFact>& falcon_facts() {
+  return device::device_driver("falcon").unverified;
+}
+
+double& component(Vec3& v, DeviceAxis axis) {
+  if (axis == DeviceAxis::x) return v.x;
+  return axis == DeviceAxis::y ? v.y : v.z;
+}
+
+/// Bench and person in one, on a device model: a person who feels what the model delivers.
+class BringUpRig final : public device::AcceptanceBench, public device::AcceptancePerson {
+ public:
+  explicit BringUpRig(const device::DeviceModel& model)
+      : force_scale_(model.planted.force_sign_scale), rehearsal_(model) {}
+
+  bool feels = true;
+  bool suspends = true;
+  bool carries_elsewhere = false;
+  int calls_left = -1;  ///< until the person ends it; negative: never
+  std::set<std::string> skips{};
+
+  [[nodiscard]] device::DeviceInfo info() const override {
+    device::DeviceInfo info = rehearsal_.info();
+    info.name = "falcon";
+    info.serial = "SN-4711";
+    info.firmware = "1.2 of SN-4711";
+    return info;
+  }
+  [[nodiscard]] device::SafetyLimits limits() const override { return rehearsal_.limits(); }
+  void limit_force(double most_n) override { rehearsal_.limit_force(most_n); }
+  [[nodiscard]] device::ServoReport run(const std::string& name,
+                                        device::Measurement& measurement) override {
+    count();
+    const device::ServoReport report = rehearsal_.run(name, measurement);
+    last_n_ = {};
+    for (const device::ServoSample& sample : measurement.samples()) {
+      if (norm(sample.force_n) > norm(last_n_)) last_n_ = sample.force_n;
+    }
+    if (name != "stroke y" && name != "weight y" && name != "wall") {
+      greatest_n = std::max(greatest_n, norm(last_n_));
+      greatest_limit_n = std::max(greatest_limit_n, limits().max_force_n);
+    } else {
+      greatest_confirmed_n = std::max(greatest_confirmed_n, norm(last_n_));
+      confirmed_limit_n = limits().max_force_n;
+    }
+    return report;
+  }
+  [[nodiscard]] std::optional<device::ServoReport> run_suspended(
+      device::Measurement& measurement) override {
+    if (!suspends) return std::nullopt;
+    return run("suspend", measurement);
+  }
+
+  [[nodiscard]] device::Consent ready(const device::Prompt& prompt) override {
+    count();
+    if (skips.contains(std::string(prompt.step))) return device::Consent::skip;
+    device::Prompt done = prompt;
+    if (carries_elsewhere && prompt.axis == DeviceAxis::z) done.axis = DeviceAxis::x;
+    return rehearsal_.ready(done);
+  }
+  [[nodiscard]] std::optional<double> weight_n(DeviceAxis axis, double least_n,
+                                               double most_n) override {
+    count();
+    return rehearsal_.weight_n(axis, least_n, most_n);
+  }
+  [[nodiscard]] std::optional<double> temperature_c(const std::string& /*question*/) override {
+    return std::nullopt;
+  }
+  [[nodiscard]] std::string saw(const std::string& question) override {
+    count();
+    if (question.find("ruler") != std::string::npos) return "20.5";
+    if (question.find("Towards which side") == std::string::npos) return "1";
+    return std::to_string(feels ? side() : kNowhere);
+  }
+  void tell(const std::string& /*result*/) override {}
+
+  double greatest_n = 0.0;            ///< of every run before and beside the two below
+  double greatest_limit_n = 0.0;      ///< of the safety chain in the same runs
+  double greatest_confirmed_n = 0.0;  ///< of weight and wall
+  double confirmed_limit_n = 0.0;     ///< of the safety chain in these
+
+ private:
+  void count() {
+    if (calls_left == 0) throw Interrupted{};
+    --calls_left;
+  }
+  /// The number of the answer: right, left, up, down, towards, away.
+  [[nodiscard]] int side() const {
+    const Vec3 n = {last_n_.x * force_scale_.x, last_n_.y * force_scale_.y,
+                    last_n_.z * force_scale_.z};
+    if (std::abs(n.x) > 0.0) return n.x > 0.0 ? 1 : 2;
+    if (std::abs(n.y) > 0.0) return n.y > 0.0 ? 3 : 4;
+    return n.z > 0.0 ? 5 : 6;
+  }
+
+  static constexpr int kNowhere = 7;
+
+  Vec3 force_scale_;
+  device::Rehearsal rehearsal_;
+  Vec3 last_n_;
+};
+
+/// The record as its file has it after every step.
+BringUp brought_up(BringUpRig& rig) {
+  BringUp record = device::bring_up_of(rig.info());
+  record.program = "test";
+  record.scheduling = "other";
+  std::string saved;
+  const auto save = [&] { saved = device::bring_up_json(record); };
+  save();
+  try {
+    device::bring_up(rig, rig, falcon_facts(), record, save);
+  } catch (const Interrupted&) {
+    save();
+  }
+  CHECK(saved == device::bring_up_json(record));
+  return record;
+}
+
+}  // namespace
+
+TEST_CASE("a bring-up finds signs, lengths, readings, force and a wall of a sound device") {
+  for (const std::string name : {"falcon", "touch", "omega_3", "inverse3"}) {
+    CAPTURE(name);
+    BringUpRig rig(device::device_model(name));
+    const BringUp record = brought_up(rig);
+    CHECK(record.ended == BringUpEnd::complete);
+    CHECK(record.signs_confirmed());
+    CHECK(record.number("ruler_mm y") == 20.5);
+    CHECK(record.find("felt -z")->word == "away");
+    CHECK(record.number("new_readings_hz") == Approx(1000.0).epsilon(0.01));
+    CHECK(record.find("encoder_step_mm") != nullptr);
+    const std::vector<double> reach_mm = record.find("reach_mm x")->numbers;
+    CHECK(reach_mm.at(1) > reach_mm.at(0));
+    const std::vector<double> scale = record.find("force_scale_and_error")->numbers;
+    CHECK(scale.at(0) == Approx(1.0).margin(scale.at(1)));
+    CHECK(record.number("contact_s") > 1.0);
+    CHECK(record.find("time_ms")->numbers.size() > 1500);
+    CHECK(std::ranges::max(record.find("force_up_mn")->numbers) > 300.0);
+    CHECK(rig.greatest_confirmed_n <= device::kConfirmedN);
+    CHECK(rig.confirmed_limit_n == device::kConfirmedN);
+    CHECK(rig.greatest_n <= device::kSecondPushN + 1e-9);
+    CHECK(rig.greatest_limit_n <= device::kSecondPushN);
+    CHECK(record.find("lights")->word == "red");
+    CHECK(record.outcome(BringUpStep::cable) == StepOutcome::failed);  // nobody pulled it
+    CHECK(record.find("force_without_program") != nullptr);
+  }
+}
+
+TEST_CASE("a wrong sign of a force ends a bring-up after small pushes alone") {
+  for (const DeviceAxis axis : device::kDeviceAxes) {
+    CAPTURE(device::name_of(axis));
+    device::DeviceModel model = device::device_model("falcon");
+    component(model.planted.force_sign_scale, axis) = -1.0;
+    BringUpRig rig(model);
+    const BringUp record = brought_up(rig);
+    CHECK(record.ended == BringUpEnd::wrong_sign);
+    CHECK_FALSE(record.signs_confirmed());
+    CHECK(record.findings.back().name == "moved_mm +" + std::string(device::name_of(axis)));
+    CHECK(rig.greatest_n <= device::kFirstPushN + 1e-9);
+    CHECK(rig.greatest_confirmed_n == 0.0);
+    CHECK(record.outcome(BringUpStep::push) == StepOutcome::interrupted);
+    CHECK(record.outcome(BringUpStep::wall) == StepOutcome::not_reached);
+  }
+}
+
+TEST_CASE("a reading that runs along another axis ends a bring-up before any force") {
+  BringUpRig rig(device::device_model("falcon"));
+  rig.carries_elsewhere = true;
+  const BringUp record = brought_up(rig);
+  CHECK(record.ended == BringUpEnd::wrong_sign);
+  CHECK(record.findings.back().name == "carried_mm z");
+  CHECK(rig.greatest_n == 0.0);
+  CHECK(record.outcome(BringUpStep::push) == StepOutcome::not_reached);
+}
+
+TEST_CASE("pushes that nobody feels, or that were left out, confirm nothing") {
+  BringUpRig numb(device::device_model("falcon"));
+  numb.feels = false;
+  const BringUp felt_nothing = brought_up(numb);
+  CHECK(felt_nothing.ended == BringUpEnd::complete);
+  CHECK(felt_nothing.number("push_n -z") == device::kSecondPushN);
+  for (const std::string step : {"ways", "push"}) {
+    BringUpRig skipping(device::device_model("falcon"));
+    skipping.skips = {step};
+    const BringUp record = brought_up(skipping);
+    CHECK(record.ended == BringUpEnd::complete);
+    CHECK(skipping.greatest_confirmed_n == 0.0);
+    CHECK(record.outcome(BringUpStep::weight) == StepOutcome::left_out);
+  }
+  CHECK(numb.greatest_n <= device::kSecondPushN + 1e-9);
+  CHECK(numb.greatest_confirmed_n == 0.0);
+  CHECK(felt_nothing.outcome(BringUpStep::wall) == StepOutcome::left_out);
+}
+
+TEST_CASE("a bring-up that ends at any moment keeps what it has and names the rest") {
+  int calls = 0;
+  std::set<BringUpStep> interrupted;
+  for (; calls < 200; ++calls) {
+    BringUpRig rig(device::device_model("falcon"));
+    rig.calls_left = calls;
+    const BringUp record = brought_up(rig);
+    if (record.ended == BringUpEnd::complete) break;
+    CAPTURE(calls);
+    CHECK(record.ended == BringUpEnd::stopped);
+    const auto at = std::ranges::find(record.outcomes, StepOutcome::interrupted);
+    REQUIRE(at != record.outcomes.end());
+    const auto is_reached = [](StepOutcome outcome) { return outcome > StepOutcome::interrupted; };
+    CHECK(std::all_of(record.outcomes.begin(), at, is_reached));
+    CHECK(std::all_of(at + 1, record.outcomes.end(),
+                      [](StepOutcome outcome) { return outcome == StepOutcome::not_reached; }));
+    interrupted.insert(static_cast<BringUpStep>(at - record.outcomes.begin()));
+  }
+  CHECK(calls < 200);
+  CHECK(interrupted.size() == device::kBringUpSteps - 1);  // it is opened before
+}
+
+TEST_CASE("a device that is lost ends a bring-up as a fault") {
+  device::DeviceModel model = device::device_model("falcon");
+  model.planted.lost_after_s = 40.0;
+  BringUpRig rig(model);
+  const BringUp record = brought_up(rig);
+  CHECK(record.ended == BringUpEnd::fault);
+  CHECK_FALSE(record.why.empty());
+  CHECK(record.find("noise_mm") != nullptr);
+}
+
+TEST_CASE("the file of a bring-up has no serial number, and tells two devices apart") {
+  BringUpRig rig(device::device_model("falcon"));
+  const std::string file = device::bring_up_json(brought_up(rig));
+  CHECK(file.find("4711") == std::string::npos);
+  CHECK_THAT(file, holds_text(R"("name": "noise_mm")") && holds_text(R"("value": "right")"));
+  device::DeviceInfo one;
+  one.name = "falcon";
+  CHECK(device::bring_up_of(one).device_mark.empty());
+  one.serial = "A1";
+  device::DeviceInfo other = one;
+  other.serial = "A2";
+  CHECK(device::bring_up_of(one).device_mark.size() == 4);
+  CHECK(device::bring_up_of(one).device_mark != device::bring_up_of(other).device_mark);
+}
+
+TEST_CASE("a stand-in is called one") {
+  device::DeviceInfo real;
+  real.name = "dhd";
+  real.model = "omega.3";
+  real.library = "3.17.5.1900";
+  CHECK(device::stand_in_of(real, {}).empty());
+  const auto is_stand_in = [&](auto&& change) {
+    device::DeviceInfo info = real;
+    device::DeviceSettings settings;
+    change(info, settings);
+    return !device::stand_in_of(info, settings).empty();
+  };
+  CHECK(is_stand_in([](auto& info, auto&) { info.simulated = true; }));
+  CHECK(is_stand_in([](auto& info, auto&) { info.visual = true; }));
+  CHECK(is_stand_in([](auto& info, auto&) { info.model = "omega Simulator"; }));
+  CHECK(is_stand_in([](auto& info, auto&) { info.library = "3.17 (EMULATED)"; }));
+  CHECK(is_stand_in([](auto&, auto& settings) { settings.dhd.library = "/opt/libfake_dhd.so"; }));
+  CHECK(is_stand_in([](auto&, auto& settings) { settings.dhd.library = "/opt/fake/libdhd.so"; }));
+}
+
+TEST_CASE("a loaded stand-in is marked under any name") {
+  const TempFolder folder;
+  device::DeviceInfo info;
+  info.name = "openhaptics";
+  device::DeviceSettings settings;
+  settings.openhaptics.library = folder.path() / "libHD.so.3.4";
+  std::filesystem::copy_file(TOUCHTRIAL_FAKE_HD, settings.openhaptics.library);
+  CHECK(device::stand_in_of(info, settings).empty());
+  const device::DynamicLibrary loaded(settings.openhaptics.library, device::Unload::never, "");
+  CHECK_FALSE(device::stand_in_of(info, settings).empty());
+}
+
+TEST_CASE("every driver with hardware lists what is unverified, each fact once") {
+  for (const std::string driver : {"falcon", "dhd", "openhaptics", "inverse3"}) {
+    CAPTURE(driver);
+    std::set<std::string> ids;
+    for (const device::UnverifiedFact& fact : device::device_driver(driver).unverified) {
+      CAPTURE(fact.id);
+      CHECK(ids.insert(fact.id).second);
+      CHECK_FALSE(fact.what.empty());
+      CHECK(fact.question.empty() == fact.answers.empty());
+    }
+    CHECK(ids.size() >= 5);
+  }
+}
+
+}  // namespace touchtrial

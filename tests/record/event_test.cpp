@@ -1,0 +1,102 @@
+#include "record/event.hpp"
+
+#include "support/catch.hpp"
+
+#include <functional>
+#include <set>
+#include <vector>
+
+using namespace touchtrial;
+using namespace touchtrial::record;
+
+namespace {
+
+Event an_event() {
+  Event event{.session = 2,
+              .sequence = 0,
+              .kind = EventKind::presented,
+              .at = std::chrono::nanoseconds(12345),
+              .body = R"({"block":0,"trial":1})",
+              .sealed = {1, 2, 3},
+              .previous = {},
+              .hash = {}};
+  event.hash = event_hash(event);
+  return event;
+}
+
+}  // namespace
+
+TEST_CASE("every kind of event has a name of its own that reads back") {
+  std::set<std::string_view> names;
+  for (int k = 0; k <= static_cast<int>(EventKind::closed); ++k) {
+    const auto kind = static_cast<EventKind>(k);
+    REQUIRE(event_kind_from_name(name_of(kind)) == kind);
+    REQUIRE(names.insert(name_of(kind)).second);
+  }
+  REQUIRE(name_of(EventKind::first_contact) == "first-contact");
+  REQUIRE_FALSE(event_kind_from_name("first_contact"));
+  REQUIRE_FALSE(event_kind_from_name(""));
+}
+
+TEST_CASE("the hash of an event is BLAKE2b over its length-prefixed members") {
+  const Event event = an_event();
+  const Digest expected = FieldHasher(HashFunction::blake2b)
+                              .add(std::int64_t{2})
+                              .add(std::int64_t{0})
+                              .add("presented")
+                              .add(std::int64_t{12345})
+                              .add(event.body)
+                              .add(event.sealed)
+                              .add(event.previous)
+                              .finish();
+  REQUIRE(event_hash(event) == expected);
+}
+
+TEST_CASE("the hash of an event changes with each of its members") {
+  const std::vector<std::function<void(Event&)>> changes = {
+      [](Event& e) { e.session = 3; },
+      [](Event& e) { e.sequence = 1; },
+      [](Event& e) { e.kind = EventKind::timed_out; },
+      [](Event& e) { e.at += std::chrono::nanoseconds(1); },
+      [](Event& e) { e.body += ' '; },
+      [](Event& e) { e.sealed.push_back(0); },
+      [](Event& e) { e.previous[31] = 1; },
+  };
+  for (const auto& change : changes) {
+    Event event = an_event();
+    change(event);
+    REQUIRE(event_hash(event) != an_event().hash);
+  }
+  Event rehashed = an_event();
+  rehashed.hash = {};
+  REQUIRE(event_hash(rehashed) == an_event().hash);
+}
+
+TEST_CASE("a chain takes what follows and says why it does not take the rest") {
+  ChainLink chain(2);
+  Event first = an_event();
+  REQUIRE(chain.broken_by(first).value() == "the time of the event is not sealed");
+  first.at = {};
+  first.hash = event_hash(first);
+  REQUIRE_FALSE(chain.broken_by(first));
+  chain.extend(first);
+  REQUIRE(chain.length() == 1);
+  REQUIRE(chain.head() == first.hash);
+
+  Event second = first;
+  REQUIRE(chain.broken_by(second).value() == "the sequence number repeats");
+  second.sequence = 2;
+  REQUIRE(chain.broken_by(second).value() == "sequence gap: event 1 is missing");
+  second.sequence = 1;
+  REQUIRE(chain.broken_by(second).value() ==
+          "previous does not match the hash of the event before");
+  second.previous = first.hash;
+  REQUIRE(chain.broken_by(second).value() == "the hash of the event does not match its content");
+  second.kind = EventKind::study_closed;
+  second.hash = event_hash(second);
+  REQUIRE(chain.broken_by(second).value() ==
+          "an event of kind 'study-closed' does not belong here");
+  second.kind = EventKind::timed_out;
+  second.hash = event_hash(second);
+  REQUIRE_FALSE(chain.broken_by(second));
+}

@@ -1,0 +1,498 @@
+#include "core/files.hpp"
+#include "record/damage.hpp"
+#include "record/file_chain.hpp"
+#include "record/payload_json.hpp"
+#include "record/person_texts.hpp"
+#include "record/store_fixture.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <thread>
+
+using namespace touchtrial;
+using namespace touchtrial::record;
+using namespace touchtrial::fixture;
+
+namespace {
+
+BufferedEvents stopped_session(int session, const SessionOpening& how) {
+  BufferedEvents events;
+  SessionRecorder recorder(session, participant_key(session), events);
+  recorder.opened(nanoseconds(0), how, "{}");
+  recorder.remarked(seconds(1), EventKind::stopped, "left");
+  recorder.closed(seconds(1), false);
+  return events;
+}
+
+SessionOpening opening_of(int session, const std::string& participant, int enrolment) {
+  SessionOpening how = opening(session);
+  how.participant = participant;
+  how.enrolment = enrolment;
+  return how;
+}
+
+void add_stopped(StudyStore& store, int session, const std::string& participant, int enrolment) {
+  store.add_session(stopped_session(session, opening_of(session, participant, enrolment)),
+                    wrapped_key_of(session), kUtc);
+}
+
+void add_complete(StudyStore& store, int session, const std::string& participant, int enrolment) {
+  store.add_session(
+      session_of(session, 2, stroking(20, 0.05), opening_of(session, participant, enrolment)),
+      wrapped_key_of(session), kUtc);
+}
+
+PersonKeys all_keys(int session) {
+  return {.participant = participant_key(session), .safety = safety_key(participant_key(session))};
+}
+
+/// The bodies of the events about session 1, as far as these keys open them.
+std::vector<std::string> texts_of(const StudyStore& store, const PersonKeys& keys) {
+  std::vector<std::string> bodies;
+  for (const Event& event : store.events(0)) {
+    if (event.sealed.empty() || session_about(event) != 1) continue;
+    if (const auto opened = opened_person_text(event, 1, keys)) bodies.push_back(opened->body);
+  }
+  return bodies;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "the successor of a replaced participant inherits the enrolment number, and nobody else does") {
+  StoredFixture study(1);
+  StudyStore& store = *study.store;
+  add_stopped(store, 2, "P2", 2);
+  store.replace(2, "P21", kUtc, "left after two trials");
+  REQUIRE(store.sessions().at(1).replaced_by == "P21");
+  REQUIRE(store.enrolment_for("P21") == 2);
+  REQUIRE(store.next_enrolment() == 3);
+  REQUIRE(store.enrolment_for("P3") == 3);
+  REQUIRE_FALSE(store.session_of("P2"));
+  REQUIRE(store.sessions_of("P2").size() == 1);
+  REQUIRE(contains(refusal_of([&] { add_complete(store, 3, "P3", 2); }),
+                   "enrolment 2 is kept for participant P21"));
+  REQUIRE(contains(refusal_of([&] { add_complete(store, 3, "P21", 3); }),
+                   "participant P21 replaces somebody and inherits enrolment 2"));
+  REQUIRE(contains(refusal_of([&] { add_complete(store, 3, "P2", 3); }),
+                   "participant P2 was replaced by participant P21 (session 2)"));
+  add_complete(store, 3, "P21", 2);
+  REQUIRE(store.session_of("P21").value().session == 3);
+  REQUIRE(store.next_enrolment() == 3);
+  REQUIRE_FALSE(store.first_fault());
+}
+
+TEST_CASE("a place can change hands again and again") {
+  StoredFixture study;
+  StudyStore& store = *study.store;
+  add_stopped(store, 1, "P1", 1);
+  store.replace(1, "P1", kUtc, "restarted");
+  REQUIRE(store.enrolment_for("P1") == 1);
+  add_stopped(store, 2, "P1", 1);
+  store.replace(2, "P2", kUtc, "left");
+  REQUIRE(store.enrolment_for("P2") == 1);
+  REQUIRE(contains(refusal_of([&] { add_stopped(store, 3, "P1", 1); }), "kept for participant P2"));
+  add_complete(store, 3, "P2", 1);
+  REQUIRE(store.sessions_of("P1").size() == 2);
+  REQUIRE_FALSE(store.first_fault());
+}
+
+TEST_CASE("only a participant who cannot go on is replaced, once, and by somebody new") {
+  StoredFixture study(2);
+  StudyStore& store = *study.store;
+  const auto refusal = [&](int session, const std::string& by, const std::string& reason = "left") {
+    return refusal_of([&] { store.replace(session, by, kUtc, reason); });
+  };
+  REQUIRE(contains(refusal(1, "P9"), "session 1 (participant P1) is complete"));
+  store.exclude(1, kUtc, "did not follow the instructions");
+  REQUIRE(contains(refusal(1, "P9", ""), "a replacement needs a reason"));
+  REQUIRE(contains(refusal(1, "P 9"), "'P 9' is no participant id"));
+  REQUIRE(contains(refusal(1, "P2"), "participant P2 already has session 2"));
+  REQUIRE(contains(refusal(7, "P9"), "there is no session 7"));
+  REQUIRE(refusal(1, "P9").empty());
+  REQUIRE(contains(refusal(1, "P8"), "session 1 (participant P1) was already replaced"));
+  store.withdraw(2, kUtc, "asked to");
+  REQUIRE(contains(refusal(2, "P9"), "participant P9 already replaces somebody"));
+  store.close_study(kUtc);
+  REQUIRE(contains(refusal(2, "P8"), "the study is closed"));
+  REQUIRE_FALSE(store.first_fault());
+}
+
+TEST_CASE("an open session is replaced only if it was excluded, and then cannot go on") {
+  StoredFixture study;
+  StudyStore& store = *study.store;
+  const auto sink = store.begin_session(1, wrapped_key_of(1));
+  SessionRecorder recorder(1, participant_key(1), *sink);
+  recorder.opened(nanoseconds(0), opening(1), "{}");
+  REQUIRE(contains(refusal_of([&] { store.replace(1, "P9", kUtc, "left"); }), "is still open"));
+  store.exclude(1, kUtc, "left after the power cut");
+  store.replace(1, "P9", kUtc, "left");
+  REQUIRE(contains(refusal_of([&] { (void)store.continue_session(1); }),
+                   "it was replaced by participant P9"));
+  REQUIRE(contains(refusal_of([&] { recorder.presented(seconds(1), 1, 0); }),
+                   "participant P1 was replaced by participant P9; end session 1"));
+  recorder.closed(seconds(2), false);
+  REQUIRE_FALSE(store.first_fault());
+}
+
+TEST_CASE("a note on a participant stands on the file's chain, with its code") {
+  StoredFixture study(1);
+  StudyStore& store = *study.store;
+  store.note(1, kUtc, "no-masking-noise", "headphones broken");
+  const NoteBody note = note_from_json(store.last_event(0).value().body);
+  REQUIRE(note.session == 1);
+  REQUIRE(note.code == "no-masking-noise");
+  REQUIRE(note.text.empty());  // sealed
+  REQUIRE(texts_of(store, all_keys(1)).back() ==
+          R"({"code":"no-masking-noise","session":1,"text":"headphones broken"})");
+  REQUIRE(contains(refusal_of([&] { store.note(1, kUtc, "", ""); }), "the note is empty"));
+  REQUIRE(contains(refusal_of([&] { store.note(2, kUtc, "", "x"); }), "there is no session 2"));
+  REQUIRE_FALSE(store.first_fault());
+}
+
+TEST_CASE("all sessions of a participant withdraw together or none does") {
+  StoredFixture study;
+  StudyStore& store = *study.store;
+  add_stopped(store, 1, "P1", 1);
+  store.replace(1, "P1", kUtc, "restarted");
+  add_complete(store, 2, "P1", 1);
+  const std::vector<int> unknown = {1, 7};
+  REQUIRE_FALSE(refusal_of([&] { store.withdraw(unknown, kUtc, "asked to"); }).empty());
+  REQUIRE(store.wrapped_key(1));
+  const std::vector<int> both = {1, 2};
+  store.withdraw(both, kUtc, "asked to");
+  REQUIRE_FALSE(store.wrapped_key(1));
+  REQUIRE_FALSE(store.wrapped_key(2));
+  REQUIRE_FALSE(store.first_fault());
+}
+
+TEST_CASE("a file's chain on which two sessions have one participant or number is refused") {
+  StoredFixture study(1);
+  FileChain chain;
+  for (const Event& event : study.store->events(0)) chain.add(event);
+  const auto opened = [](const std::string& participant, int enrolment) {
+    Event event;
+    event.sequence = 3;
+    event.kind = EventKind::session_opened;
+    event.body = to_json(SessionOpenedBody{
+        .session = 2, .participant = participant, .enrolment = enrolment, .first = {}, .key = {}});
+    return event;
+  };
+  REQUIRE(contains(refusal_of([&] { chain.add(opened("P1", 2)); }), "has a session already"));
+  FileChain other;
+  for (const Event& event : study.store->events(0)) other.add(event);
+  REQUIRE(contains(refusal_of([&] { other.add(opened("P2", 1)); }), "enrolment 1 is taken"));
+  // On a collected study's chain only the final state must be unique; the code that collects the
+  // study ensures it.
+  FileChain collected(UniquePlaces::in_the_end);
+  for (const Event& event : study.store->events(0)) collected.add(event);
+  collected.add(opened("P1", 1));
+  REQUIRE(collected.sessions().size() == 2);
+}
+
+TEST_CASE("what is written about a person opens with that person's keys alone") {
+  StoredFixture study(2);
+  StudyStore& store = *study.store;
+  store.note(1, kUtc, "", "tall, with a limp");
+  store.note(1, kUtc, "no-curtain", "in the wash");
+  store.exclude(1, kUtc, "drunk");
+  store.replace(1, "P9", kUtc, "sent home");
+  store.withdraw(1, kUtc, "moves away", Kept::data);
+  const std::vector<std::string> expected = {
+      R"({"code":"","session":1,"text":"tall, with a limp"})",
+      R"({"code":"no-curtain","session":1,"text":"in the wash"})",
+      R"({"reason":"drunk","session":1})", R"({"by":"P9","reason":"sent home","session":1})",
+      R"({"kept":"data","reason":"moves away","session":1})"};
+  REQUIRE(texts_of(store, all_keys(1)) == expected);
+  // The safety key opens all but the remark, and the participant's key the remark alone.
+  const PersonKeys safety{.participant = {}, .safety = all_keys(1).safety};
+  REQUIRE(texts_of(store, safety) ==
+          std::vector<std::string>(expected.begin() + 1, expected.end()));
+  const PersonKeys own{.participant = participant_key(1), .safety = {}};
+  REQUIRE(texts_of(store, own) == std::vector<std::string>{expected.front()});
+  REQUIRE(texts_of(store, all_keys(2)).empty());
+  // No text lies in the file in clear, and equal texts look different.
+  store.note(2, kUtc, "", "tall, with a limp");
+  REQUIRE(store.last_event(0)->sealed.size() == store.events(0)[5].sealed.size());
+  REQUIRE(store.last_event(0)->sealed != store.events(0)[5].sealed);
+  REQUIRE_FALSE(store.first_fault());
+  study.store.reset();
+  const Bytes file = read_file(study.path);
+  for (const std::string words : {"limp", "wash", "drunk", "sent home", "moves away"}) {
+    const ByteView sought = bytes_of(words);
+    REQUIRE(std::search(file.begin(), file.end(), sought.begin(), sought.end()) == file.end());
+  }
+}
+
+TEST_CASE("a sealed text is bound to its event and its session") {
+  StoredFixture study(1);
+  study.store->note(1, kUtc, "no-curtain", "in the wash");
+  const Event stored = study.store->last_event(0).value();
+  REQUIRE(opened_person_text(stored, 1, all_keys(1)));
+  REQUIRE_FALSE(opened_person_text(stored, 2, all_keys(1)));
+  Event moved = stored;
+  moved.at += nanoseconds(1);
+  REQUIRE_FALSE(opened_person_text(moved, 1, all_keys(1)));
+  moved = stored;
+  moved.kind = EventKind::participant_excluded;
+  REQUIRE_FALSE(opened_person_text(moved, 1, all_keys(1)));
+  moved = stored;
+  moved.sealed.back() ^= 1U;
+  REQUIRE_FALSE(opened_person_text(moved, 1, all_keys(1)));
+}
+
+TEST_CASE("who withdraws may let the data be used, and have them erased later, but not back") {
+  StoredFixture study(2);
+  StudyStore& store = *study.store;
+  store.withdraw(1, kUtc, "moves away", Kept::data);
+  REQUIRE(store.sessions()[0].withdrawn);
+  REQUIRE_FALSE(store.sessions()[0].erased);
+  REQUIRE(store.wrapped_keys(1) ==
+          WrappedKeys{wrapped_key_of(1).participant, wrapped_key_of(1).safety});
+  REQUIRE(contains(refusal_of([&] { store.withdraw(1, kUtc, "again", Kept::data); }),
+                   "has already withdrawn"));
+  REQUIRE_FALSE(store.first_fault());
+  store.withdraw(1, kUtc, "changed her mind");
+  REQUIRE(store.sessions()[0].erased);
+  REQUIRE_FALSE(store.wrapped_key(1));
+  REQUIRE(store.wrapped_keys(1).safety == wrapped_key_of(1).safety);
+  for (const Kept kept : {Kept::data, Kept::safety_record}) {
+    REQUIRE(contains(refusal_of([&] { store.withdraw(1, kUtc, "again", kept); }),
+                     "already withdrawn, and the data are erased"));
+  }
+  REQUIRE_FALSE(store.first_fault());
+}
+
+TEST_CASE("of an open session whose participant withdraws only the end is recorded") {
+  const Kept kept = GENERATE(Kept::data, Kept::safety_record);
+  StoredFixture study;
+  StudyStore& store = *study.store;
+  const auto sink = store.begin_session(1, wrapped_key_of(1), {}, Bytes{1, 2});
+  SessionRecorder recorder(1, participant_key(1), *sink);
+  recorder.opened(nanoseconds(0), opening(1), "{}");
+  store.withdraw(1, kUtc, "moves away", kept);
+  REQUIRE_FALSE(store.kept_key(1));
+  REQUIRE_FALSE(store.first_fault());
+  REQUIRE(contains(refusal_of([&] { (void)store.continue_session(1); }), "has withdrawn"));
+  REQUIRE(contains(refusal_of([&] { recorder.presented(seconds(1), 1, 0); }),
+                   "participant P1 has withdrawn; end session 1"));
+  recorder.stopped(seconds(2), {.code = "", .text = "moves away"});
+  recorder.closed(seconds(2), false);
+  REQUIRE_FALSE(store.first_fault());
+}
+
+TEST_CASE("a safety record is kept for as many years as the study says, to the day") {
+  StoredFixture study(1);  // on 14 November 2023, kept for ten years
+  StudyStore& store = *study.store;
+  const auto erase = [&](nanoseconds at) {
+    return refusal_of([&] { store.withdraw(1, at, "", Kept::nothing); });
+  };
+  constexpr std::chrono::days kTenYears(10 * 365 + 3);  // 2024, 2028 and 2032 are leap years
+  REQUIRE(contains(erase(kUtc + kTenYears), "erase those first"));
+  store.withdraw(1, kUtc, "asked to");
+  REQUIRE(contains(erase(kUtc), "is kept until 2033-11-14"));
+  REQUIRE(contains(erase(kUtc + kTenYears - nanoseconds(1)), "is kept until 2033-11-14"));
+  REQUIRE(store.wrapped_keys(1).safety);
+  REQUIRE(erase(kUtc + kTenYears).empty());
+  REQUIRE(store.wrapped_keys(1) == WrappedKeys{});
+  REQUIRE(contains(erase(kUtc + kTenYears), "already erased"));
+  REQUIRE_FALSE(store.first_fault());
+}
+
+TEST_CASE(
+    "of an erased person nobody can open more than the safety record, and that until it goes") {
+  StoredFixture study;
+  StudyStore& store = *study.store;
+  const SecretKey station = digest_of("station");
+  {
+    const auto sink = store.begin_session(
+        1, wrapped_key_of(1), [] { return kUtc; },
+        keep_participant_key(station, 1, participant_key(1)));
+    SessionRecorder recorder(1, participant_key(1), *sink);
+    record(recorder, 1, 3, stroking(20, 0.05), opening(1));
+  }
+  store.note(1, kUtc, "", "tall, with a limp");
+  store.note(1, kUtc, "no-curtain", "in the wash");
+  add(store, 2);
+  store.withdraw(1, kUtc, "asked to");
+  study.store.reset();
+  study.store = StudyStore::open(study.path, StudyStore::Access::read_only);
+
+  // The attacker has the file, the investigator's keys and the station's secret, and tries every
+  // key that follows from them, and every row of every table that holds keys.
+  const BoxKeys investigator = box_keys(study_master());
+  std::vector<SecretKey> keys = {study_master(), investigator.secret_half, station,
+                                 derive_key(station, "participant keys"), participant_key(2)};
+  const SecretKey safety =
+      unwrap_safety_key(investigator, 1, study.store->wrapped_keys(1).safety.value()).value();
+  for (const char* const purpose : {"safety", "reasons", "remarks", "nonce", "cipher"}) {
+    keys.push_back(derive_key(safety, purpose));
+  }
+  keys.push_back(safety);
+  REQUIRE_FALSE(study.store->wrapped_key(1));
+  REQUIRE_FALSE(study.store->kept_key(1));
+  for (const SecretKey& key : keys) {
+    for (const Event& event : study.store->events(1)) {
+      REQUIRE_FALSE(opened_event(event, key));
+      REQUIRE_FALSE(unseal(key, "", event.sealed, 1));
+    }
+    for (int trial = 1; trial <= 3; ++trial) {
+      REQUIRE_FALSE(unsealed_trace(study.store->sealed_trace(1, trial).value(), key));
+    }
+    for (const std::string& text : texts_of(*study.store, {.participant = key, .safety = {}})) {
+      REQUIRE_FALSE(contains(text, "limp"));
+    }
+    for (const Bytes& wrapped : {study.store->wrapped_keys(1).safety.value()}) {
+      REQUIRE_FALSE(unwrap_participant_key(box_keys(key), 1, wrapped));
+    }
+  }
+  const PersonKeys left{.participant = {}, .safety = safety};
+  REQUIRE(texts_of(*study.store, left) ==
+          std::vector<std::string>{R"({"code":"no-curtain","session":1,"text":"in the wash"})",
+                                   R"({"kept":"safety-record","reason":"asked to","session":1})"});
+  // The pages that held the key hold it no more, nor does anything beside the file.
+  study.store.reset();
+  const Bytes wrapped = wrapped_key_of(1).participant;
+  const Bytes file = read_file(study.path);
+  REQUIRE(std::search(file.begin(), file.end(), wrapped.begin(), wrapped.begin() + 16) ==
+          file.end());
+}
+
+TEST_CASE("a look sees the session that begins while it waits for the database") {
+  StoredFixture study(2);
+  StudyStore other = writable(study.path);
+  std::string said;
+  std::thread look;
+  // The clock is asked inside the transaction that stores the opening.
+  const auto sink = study.store->begin_session(3, wrapped_key_of(3), [&] {
+    look = std::thread([&] { said = refusal_of([&] { other.look_at("P3", kUtc, "asked"); }); });
+    std::this_thread::sleep_for(milliseconds(200));  // enough to read too early
+    return kUtc;
+  });
+  SessionRecorder recorder(3, participant_key(3), *sink);
+  recorder.opened(nanoseconds(0), opening(3), "{}");
+  look.join();
+  REQUIRE(contains(said, "may still go on"));
+}
+
+TEST_CASE("a look at one participant shows the sessions of that participant so far") {
+  StoredFixture study(2);
+  StudyStore& store = *study.store;
+  const auto refusal = [&](const std::string& participant, const std::string& reason) {
+    return refusal_of([&] { store.look_at(participant, kUtc, reason); });
+  };
+  REQUIRE(contains(refusal("P1", ""), "needs a reason"));
+  REQUIRE(contains(refusal("P9", "asked"), "participant P9 has no session"));
+  REQUIRE(refusal("P1", "asked").empty());
+  REQUIRE_FALSE(store.state().unblinded);
+  REQUIRE(store.state().shows(1));
+  REQUIRE_FALSE(store.state().reports(1));
+  REQUIRE_FALSE(store.state().shows(2));
+  REQUIRE(store.state().looks == std::vector<PersonLook>{{"P1", "asked", kUtc}});
+  const auto sink = store.begin_session(3, wrapped_key_of(3));
+  SessionRecorder recorder(3, participant_key(3), *sink);
+  recorder.opened(nanoseconds(0), opening(3), "{}");
+  REQUIRE(contains(refusal("P3", "asked"), "may still go on"));
+  store.withdraw(2, kUtc, "asked to");
+  REQUIRE(contains(refusal("P2", "asked"), "the data are erased"));
+  store.exclude(1, kUtc, "bad figures");
+  REQUIRE(participant_from_json(store.last_event(0)->body).after_outcomes);
+  store.close_study(kUtc);
+  REQUIRE(refusal("P1", "asked again").empty());
+  store.unblind(kUtc, "planned", false);
+  REQUIRE(store.state().reports(1));
+  REQUIRE(store.state().looks.size() == 2);
+  REQUIRE_FALSE(store.first_fault());
+}
+
+TEST_CASE("a file's chain that brings erased data back, or erases them twice, is refused") {
+  StoredFixture study(1);
+  FileChain chain;
+  for (const Event& event : study.store->events(0)) chain.add(event);
+  const auto add = [&](Kept kept) {
+    Event event;
+    event.sequence = 3;
+    event.kind = EventKind::participant_withdrawn;
+    event.body = to_json(WithdrawalBody{.session = 1, .kept = kept, .reason = ""});
+    return refusal_of([&] { chain.add(event); });
+  };
+  REQUIRE(contains(add(Kept::nothing), "loses its safety record before its outcomes"));
+  REQUIRE(add(Kept::data).empty());
+  REQUIRE(add(Kept::safety_record).empty());
+  REQUIRE(contains(add(Kept::data), "keeps data that were erased"));
+  REQUIRE(contains(add(Kept::safety_record), "is erased twice"));
+  REQUIRE(add(Kept::nothing).empty());
+}
+
+TEST_CASE("a second visit follows a complete one of the same participant and number") {
+  StoredFixture study;
+  StudyStore& store = *study.store;
+  const auto visit_of = [](int session, const std::string& participant, int enrolment, int visit) {
+    SessionOpening how = opening_of(session, participant, enrolment);
+    how.visit = visit;
+    return how;
+  };
+  const auto add = [&](int session, const std::string& participant, int enrolment, int visit) {
+    store.add_session(session_of(session, 2, stroking(20, 0.05),
+                                 visit_of(session, participant, enrolment, visit)),
+                      wrapped_key_of(session), kUtc);
+  };
+  REQUIRE(contains(refusal_of([&] { add(1, "P1", 1, 2); }), "has no visit before visit 2"));
+  add(1, "P1", 1, 1);
+  REQUIRE(contains(refusal_of([&] { add(2, "P1", 1, 1); }), "already has session 1"));
+  REQUIRE(contains(refusal_of([&] { add(2, "P1", 1, 3); }), "does not follow session 1"));
+  REQUIRE(contains(refusal_of([&] { add(2, "P1", 2, 2); }), "does not follow session 1"));
+  REQUIRE(contains(refusal_of([&] { add(2, "P2", 1, 2); }), "belongs to participant P1"));
+  add(2, "P1", 1, 2);
+  REQUIRE(store.sessions().at(1).visit == 2);
+  REQUIRE(store.session_of("P1").value().session == 2);
+  REQUIRE(store.sessions_of("P1").size() == 2);
+  store.add_session(stopped_session(3, visit_of(3, "P1", 1, 3)), wrapped_key_of(3), kUtc);
+  REQUIRE(contains(refusal_of([&] { add(4, "P1", 1, 4); }), "does not follow session 3"));
+  // The visit is begun again under the same number.
+  store.replace(3, "P1", kUtc, "restarted");
+  add(4, "P1", 1, 3);
+  REQUIRE(store.next_enrolment() == 2);
+  REQUIRE_FALSE(store.first_fault());
+}
+
+TEST_CASE("who replaces a participant takes the place at all visits") {
+  StoredFixture study;
+  StudyStore& store = *study.store;
+  add_complete(store, 1, "P1", 1);
+  SessionOpening again = opening_of(2, "P1", 1);
+  again.visit = 2;
+  store.add_session(stopped_session(2, again), wrapped_key_of(2), kUtc);
+  store.replace(2, "P9", kUtc, "moved away");
+  for (const SessionRow& row : store.sessions()) REQUIRE(row.replaced_by == "P9");
+  REQUIRE(store.enrolment_for("P9") == 1);
+  REQUIRE_FALSE(store.session_of("P1"));
+  add_complete(store, 3, "P9", 1);
+  REQUIRE_FALSE(store.first_fault());
+}
+
+TEST_CASE("on a file's chain a visit follows a complete one") {
+  StoredFixture study;
+  add_complete(*study.store, 1, "P1", 1);
+  const std::vector<Event> chain = study.store->events(0);
+  FileChain file;
+  for (const Event& event : chain) file.add(event);
+  const auto opened = [&](const std::string& participant, int enrolment, int visit) {
+    Event event = chain.back();
+    event.sequence += 1;
+    event.kind = EventKind::session_opened;
+    event.body = to_json(SessionOpenedBody{.session = 2,
+                                           .participant = participant,
+                                           .enrolment = enrolment,
+                                           .visit = visit,
+                                           .first = {},
+                                           .key = {}});
+    FileChain longer = file;
+    longer.add(event);
+  };
+  REQUIRE_NOTHROW(opened("P1", 1, 2));
+  REQUIRE_THROWS_AS(opened("P1", 1, 3), EventFault);
+  REQUIRE_THROWS_AS(opened("P1", 2, 2), EventFault);
+  REQUIRE_THROWS_AS(opened("P2", 1, 2), EventFault);
+  REQUIRE_THROWS_AS(opened("P1", 1, 1), EventFault);
+}
