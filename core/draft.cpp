@@ -139,7 +139,8 @@ bool Draft::make(Kind kind, FileMode mode) {
 
 Draft::~Draft() {
   std::error_code ignored;
-  if (!path_.empty()) fs::remove_all(path_, ignored);
+  // Unlike remove_all, unlink needs no memory.
+  if (!path_.empty() && ::unlink(path_.c_str()) != 0) fs::remove_all(path_, ignored);
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 

@@ -1,5 +1,7 @@
 #include "core/labels.hpp"
 
+#include "core/errors.hpp"
+#include "core/strict_json.hpp"
 #include "core/text.hpp"
 
 #include <array>
@@ -85,6 +87,24 @@ std::string fault_of_label(const std::string& label) {
     return "mixes Latin letters with those of another alphabet in one word";
   }
   return "";
+}
+
+std::string remark_on_alphabets(const std::vector<std::string>& labels) {
+  std::vector<std::string> latin;
+  std::vector<std::string> other;
+  for (const std::string& label : labels) {
+    const Alphabets alphabets = alphabets_of(label);
+    if (alphabets.latin) latin.push_back(in_quotes(label));
+    if (alphabets.other) other.push_back(in_quotes(label));
+  }
+  if (latin.empty() || other.empty()) return "";
+  return "labels have Latin letters (" + first_of(latin) + ") and others (" + first_of(other) +
+         "); look whether any two look alike, and rename one";
+}
+
+std::string first_of(const std::vector<std::string>& texts) {
+  const std::size_t more = texts.size() - 1;
+  return one_line(texts.front()) + (more > 0 ? " and " + std::to_string(more) + " more" : "");
 }
 
 }  // namespace touchtrial

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace touchtrial {
 
@@ -23,5 +24,13 @@ struct Alphabets {
 /// Why tables, screens and other programs could not show a text as the label of a class: the rest
 /// of a sentence that starts with the label; empty if they can. A label has 1 to 64 bytes.
 [[nodiscard]] std::string fault_of_label(const std::string& label);
+
+/// What a person should look at if labels of one study have Latin letters, and others those of
+/// another alphabet, of which skeleton_of compares only some; else empty.
+[[nodiscard]] std::string remark_on_alphabets(const std::vector<std::string>& labels);
+
+/// The text that one remark is about several of: the first by name, the others by number.
+/// \param texts  at least one
+[[nodiscard]] std::string first_of(const std::vector<std::string>& texts);
 
 }  // namespace touchtrial

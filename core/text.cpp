@@ -10,9 +10,42 @@
 
 namespace touchtrial {
 
+namespace {
+
+/// Letters without a capital that look like Latin ones, or whose capitals do. The Greek m is also
+/// the sign of a millionth, and nobody reads um for mm.
+constexpr std::u32string_view kCyrillicAndGreek =
+    U"\u0430\u0432\u0435\u043a\u043c\u043d\u043e\u0440\u0441\u0442\u0443\u0445\u0455\u0456\u0458"
+    U"\u0501\u04bb\u051b\u051d\u03b1\u03b2\u03b5\u03b6\u03b7\u03b9\u03ba\u03bd\u03bf\u03c1\u03c4"
+    U"\u03c5\u03c7";
+constexpr std::string_view kLatinForThem = "abekmhopctyxsijdhqwabezhiknoptyx";
+static_assert(kCyrillicAndGreek.size() == kLatinForThem.size());
+
+/// Puts Latin letters in the place of others that look like them.
+std::string in_latin(const std::string& text) {
+  std::string latin;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto lead = static_cast<unsigned char>(text[i]);
+    const bool has_two_bytes = (lead & 0xe0U) == 0xc0U;
+    const char32_t letter =
+        has_two_bytes ? (lead & 0x1fU) << 6U | (static_cast<unsigned char>(text[i + 1]) & 0x3fU)
+                      : U'\0';
+    if (const std::size_t at = kCyrillicAndGreek.find(letter); at != std::u32string_view::npos) {
+      latin += kLatinForThem[at];
+      ++i;
+    } else {
+      latin += text[i];
+    }
+  }
+  return latin;
+}
+
+}  // namespace
+
 std::string skeleton_of(const std::string& name) {
-  constexpr int kFolded = UTF8PROC_STABLE | UTF8PROC_COMPOSE | UTF8PROC_COMPAT | UTF8PROC_CASEFOLD |
-                          UTF8PROC_IGNORE | UTF8PROC_LUMP;
+  // Taken apart, a letter is the same whatever its accents are.
+  constexpr int kFolded = UTF8PROC_STABLE | UTF8PROC_DECOMPOSE | UTF8PROC_COMPAT |
+                          UTF8PROC_CASEFOLD | UTF8PROC_IGNORE | UTF8PROC_LUMP;
   utf8proc_uint8_t* bytes = nullptr;
   const utf8proc_ssize_t size = utf8proc_map(reinterpret_cast<const utf8proc_uint8_t*>(name.data()),
                                              static_cast<utf8proc_ssize_t>(name.size()), &bytes,
@@ -21,7 +54,7 @@ std::string skeleton_of(const std::string& name) {
   if (size < 0) return name;
   std::string folded(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(size));
   std::erase_if(folded, [](char c) { return c == ' ' || c == '-'; });
-  return folded;
+  return in_latin(folded);
 }
 
 bool begins_like_formula(std::string_view text) noexcept {

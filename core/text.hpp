@@ -24,7 +24,8 @@ template <typename Number>
 }
 
 /// What is left of a name without what a reader does not see, or cannot say aloud: capitals, blanks
-/// and hyphens of any kind, the way in which accents are encoded, wide and other forms of a letter.
+/// and hyphens of any kind, the way in which accents are encoded, wide and other forms of a letter,
+/// Cyrillic and Greek letters that look like Latin ones, or whose capitals do.
 /// Names of equal skeletons look alike, and some file systems take them for one.
 /// \return the text itself if it is not UTF-8
 /// Source: Unicode Standard Annex 15 and its case folding.

@@ -18,10 +18,10 @@ namespace touchtrial::device {
 
 struct FalconSettings {
   static constexpr double kMaxGravityBiasN = 1.0;
-  std::filesystem::path firmware;  ///< the vendor's image; needed unless it is already loaded
-  std::string serial;              ///< of the device to use; empty: the only one
+  std::filesystem::path firmware{};  ///< the vendor's image; needed unless it is already loaded
+  std::string serial{};              ///< of the device to use; empty: the only one
   /// The device's support force, device frame; norm <= kMaxGravityBiasN.
-  Vec3 gravity_bias_n;
+  Vec3 gravity_bias_n{};
   std::array<int, 3> led_order = {2, 0, 1};  ///< bits of red, green and blue
   /// Limits of each motor, in motor values (6,616 for 1 N m): the greatest, that which it holds
   /// for ever, and how long a cold motor may have the greatest, s. Guesses, until a lab measures
@@ -33,7 +33,7 @@ struct FalconSettings {
 
 struct OpenHapticsSettings {
   std::filesystem::path library = "libHD.so";
-  std::string device;            ///< its name in the vendor's configuration; empty: the default
+  std::string device{};          ///< its name in the vendor's configuration; empty: the default
   unsigned long rate_hz = 1000;  ///< of the vendor's scheduler
 };
 
@@ -45,10 +45,10 @@ struct DhdSettings {
   double effector_mass_kg = 0.0;     ///< 0: as the device knows it
   /// \name What the library does not tell; nothing: by the device's model
   ///@{
-  std::optional<double> max_force_n;         ///< > 0
-  std::optional<double> continuous_force_n;  ///< 0: no limit is known
+  std::optional<double> max_force_n{};         ///< > 0
+  std::optional<double> continuous_force_n{};  ///< 0: no limit is known
   /// Width, height and depth of the ellipsoid that the device reaches; each > 0.
-  std::optional<Vec3> workspace_mm;
+  std::optional<Vec3> workspace_mm{};
   ///@}
 };
 
@@ -62,7 +62,7 @@ struct Inverse3Settings {
   int port = 10001;                ///< of its simulation channel, 1 to 65535; mostly of HTTP too
   int events_port = 10020;         ///< of its events channel, 1 to 65535
   int http_port = 10000;           ///< of HTTP where `port` has none, 1 to 65535
-  std::string device_id;           ///< of the device to use; empty: the only one
+  std::string device_id{};         ///< of the device to use; empty: the only one
   double max_force_n = 5.0;        ///< along each axis, which nobody publishes; > 0
 };
 
@@ -73,10 +73,10 @@ struct ReplaySettings {
 /// Limits that a lab sets for one of its devices, in addition to those of the study and of the
 /// device: they only make a limit stricter. Nothing: the lab sets none.
 struct LabLimits {
-  std::optional<double> max_force_n;         ///< SafetyLimits::max_force_n, > 0
-  std::optional<double> continuous_force_n;  ///< SafetyLimits::continuous_force_n, > 0
-  std::optional<double> max_slew_n_per_s;    ///< SafetyLimits::max_slew_n_per_s, > 0
-  std::optional<double> max_speed_mm_s;      ///< SafetyLimits::max_speed_mm_s, > 0
+  std::optional<double> max_force_n{};         ///< SafetyLimits::max_force_n, > 0
+  std::optional<double> continuous_force_n{};  ///< SafetyLimits::continuous_force_n, > 0
+  std::optional<double> max_slew_n_per_s{};    ///< SafetyLimits::max_slew_n_per_s, > 0
+  std::optional<double> max_speed_mm_s{};      ///< SafetyLimits::max_speed_mm_s, > 0
 };
 
 /// How a lab uses one of its devices, whatever the driver.

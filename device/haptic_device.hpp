@@ -74,8 +74,8 @@ struct DeviceScale {
 
 /// What a session records of its device.
 struct DeviceInfo {
-  std::string name;          ///< driver name, for instance "simulated"
-  std::string serial;        ///< empty if the device has none
+  std::string name{};        ///< driver name, for instance "simulated"
+  std::string serial{};      ///< empty if the device has none
   double max_force_n = 0.0;  ///< peak
   bool simulated = false;
   double continuous_force_n = 0.0;  ///< which it can hold for ever; 0: no limit is known

@@ -131,7 +131,7 @@ struct ExtractionOptions {
   double sigma_px = 2.0;                ///< (0, kMaxSigma_px] (gaussian)
   double threshold_grey = 4.0;          ///< [0, 255] (median)
   double divisor = 4.0;                 ///< kMinDivisor .. kMaxDivisor (edge)
-  TvGaborOptions tv_gabor;
+  TvGaborOptions tv_gabor{};
   Control control = Control::none;  ///< made from the method's texture (every method)
   std::uint64_t control_seed = 0;   ///< of the phases (Control::phase_scrambled)
 

@@ -57,7 +57,7 @@ void check_range(const GreyScale& scale) {
           std::to_string(to_8_bit(static_cast<std::uint16_t>(limit - 1)) + 1) +
           " grey levels would be left",
       "give --bits with the bits of its camera or scanner, for instance 12, or 16 if it is just "
-      "dark; for a study, to `touchtrial stimuli import`"};
+      "dark; for a study, to `touchtrial stimuli import` or `touchtrial new`"};
 }
 
 Picture decode_file(ByteView file, const SampleScale& samples) {
@@ -74,6 +74,7 @@ Picture decode_file(ByteView file, const SampleScale& samples) {
   picture.notes.orientation = stated.orientation;
   picture.notes.pixels_per_mm = stated.pixels_per_mm;
   picture.notes.camera_dpi = stated.camera_dpi;
+  picture.notes.has_one_bit = stated.has_one_bit;
   const WideSamples& wide = scale.wide();
   if (samples.bits != 0 && wide.count() > 0) {
     picture.notes.cut_share = share(wide.above(samples.bits), wide.count());

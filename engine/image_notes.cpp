@@ -70,6 +70,7 @@ ImageNotes notes_of_tiff(ByteView file, Maker& maker) {
   maker = maker_of(file, directory);
   ImageNotes notes;
   notes.orientation = static_cast<int>(directory.value(TiffTag::orientation, 1));
+  notes.has_one_bit = directory.value(TiffTag::bits_per_sample, 0) == 1;
   const auto x = directory.fraction(TiffTag::x_resolution);
   const auto y = directory.fraction(TiffTag::y_resolution);
   constexpr std::uint32_t kInch = 2;
@@ -85,6 +86,7 @@ void take_exif(ByteView exif, ImageNotes& notes, Maker& maker) {
   try {
     const ImageNotes said = notes_of_tiff(exif, maker);
     notes.orientation = said.orientation;
+    notes.has_one_bit |= said.has_one_bit;
     if (said.pixels_per_mm) notes.pixels_per_mm = said.pixels_per_mm;
   } catch (const ImageFault&) {
     // Damaged notes count as absent; the rest of the file may still have some.
@@ -121,6 +123,7 @@ void take_png(ByteView file, ImageNotes& notes, Maker& maker) {
     const ByteView data = bytes_at(file, at + 8, big32(file, at));
     const std::string type = text_of(bytes_at(file, at + 4, 4));
     if (type == "IEND") return;
+    if (type == "IHDR" && data.size() == 13) notes.has_one_bit = data[8] == 1;
     if (type == "pHYs" && data.size() == 9 && data[8] == 1) {
       notes.pixels_per_mm = resolution(big32(data, 0), big32(data, 4), kMmPerMetre);
     }
@@ -130,6 +133,7 @@ void take_png(ByteView file, ImageNotes& notes, Maker& maker) {
 }
 
 void take_bmp(ByteView file, ImageNotes& notes) {
+  notes.has_one_bit = little16(file, 28) == 1;
   notes.pixels_per_mm = resolution(little32(file, 38), little32(file, 42), kMmPerMetre);
 }
 
@@ -172,6 +176,15 @@ std::string rounded(double number) {
 
 std::vector<std::string> remarks_on(const ImageNotes& notes) {
   std::vector<std::string> remarks;
+  if (notes.orientation != 1) {
+    remarks.emplace_back(
+        "is used as it is stored, turned or mirrored; turn it upright and save it again, or import "
+        "it, which does that");
+  }
+  if (notes.has_one_bit) {
+    remarks.emplace_back(
+        "has 1 bit a pixel, black or white; scan or export it in grey if it is a photograph");
+  }
   if (notes.pictures > 1) {
     remarks.push_back(
         "holds " + std::to_string(notes.pictures) +

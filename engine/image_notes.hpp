@@ -22,6 +22,7 @@ struct ImageNotes {
   std::optional<double> pixels_per_mm;
   /// The dots per inch that a camera wrote; nothing if it is no camera's, or it wrote none.
   std::optional<double> camera_dpi;
+  bool has_one_bit = false;  ///< a pixel: black or white, with no grey between
 
   // What follows is known only once the picture is decoded.
   int pictures = 1;                ///< in the file, without reduced copies; the first one is read

@@ -162,15 +162,15 @@ struct StationRecord {
 /// `opened`, the first event of a session's chain. Its sealed part holds the schedule and the
 /// answer layout.
 struct SessionOpening {
-  std::string participant;  ///< 1 to 32 of [0-9A-Za-z+-_]; unique in a study
-  int enrolment = 0;        ///< from 1; decides the schedule; unique in a study
-  int visit = 1;            ///< of the participant, from 1
-  std::string group{};      ///< the participant's, if the study's groups are open; else empty
-  std::string study_id;
+  std::string participant{};  ///< 1 to 32 of [0-9A-Za-z+-_]; unique in a study
+  int enrolment = 0;          ///< from 1; decides the schedule; unique in a study
+  int visit = 1;              ///< of the participant, from 1
+  std::string group{};        ///< the participant's, if the study's groups are open; else empty
+  std::string study_id{};
   Digest seal{};
-  std::string device;         ///< driver name
-  std::string device_serial;  ///< empty if none
-  std::string opened_utc;     ///< ISO 8601, empty for simulated sessions
+  std::string device{};         ///< driver name
+  std::string device_serial{};  ///< empty if none
+  std::string opened_utc{};     ///< ISO 8601, empty for simulated sessions
   bool simulated = false;
   bool pilot = false;
   std::optional<StationRecord> station{};  ///< real time only

@@ -40,12 +40,21 @@ void Course::finish(std::optional<int> position) {
   choose();
 }
 
+std::ptrdiff_t Course::places_before_repeats(int block) const {
+  if (!order_) return std::ssize(queue_);
+  const auto& all = schedule_.presentations;
+  const auto is_of_block = [&](std::size_t i) { return all[i].block == block; };
+  return std::ranges::find_if_not(queue_, is_of_block) - queue_.begin();
+}
+
 void Course::spoil() {
   const std::size_t spoilt = queue_.front();
+  if (order_) ++schedule_.presentations[spoilt].interruptions;
   switch (policy_) {
     case OnInterruption::repeat:
       queue_.pop_front();
-      queue_.push_back(spoilt);
+      queue_.insert(queue_.begin() + places_before_repeats(schedule_.presentations[spoilt].block),
+                    spoilt);
       choose();
       return;
     case OnInterruption::leave_out:

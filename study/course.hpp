@@ -58,7 +58,8 @@ class Course {
   /// \pre there is a current presentation; the layout has the position
   void finish(std::optional<int> position);
   /// Marks the current presentation as interrupted. Depending on the policy, it is repeated at the
-  /// end, is left out, or waits for its block's restart.
+  /// end (if an order chooses, at the end of its block), is left out, or waits for its block's
+  /// restart.
   /// \pre there is a current presentation
   void spoil();
 
@@ -77,6 +78,8 @@ class Course {
  private:
   /// Lets the order choose the current presentation.
   void choose();
+  /// How many of the queue come before an interrupted presentation of this block is repeated.
+  [[nodiscard]] std::ptrdiff_t places_before_repeats(int block) const;
 
   Schedule schedule_;
   OnInterruption policy_;

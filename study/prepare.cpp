@@ -91,7 +91,8 @@ void refuse_images(std::vector<std::string> faults) {
   if (faults.empty()) return;
   const std::size_t count = faults.size();
   faults.resize(std::min(count, kMaxNamed));
-  const std::string all = listed(faults, "; ");
+  std::string all;
+  for (const std::string& fault : faults) all += (all.empty() ? "" : "; ") + fault;
   throw StudyError(count == 1 ? all : all + " (" + std::to_string(count) + " pictures in all)");
 }
 
@@ -378,6 +379,9 @@ class Preparation {
     for (auto& warning : validity_warnings(key_.study)) {
       report_.warnings.push_back(std::move(warning));
     }
+    if (auto warning = label_warning(key_.study); !warning.empty()) {
+      report_.warnings.push_back(std::move(warning));
+    }
     std::vector<Digest> pixels;
     for (const ImageOfStudy& image : images_) {
       pixels.push_back(image.pixels);
@@ -392,7 +396,7 @@ class Preparation {
       if (!solver_warnings_[i].empty()) report_.warnings.push_back(solver_warnings_[i]);
       if (measured_.flat[i] == 0) continue;
       report_.warnings.push_back(described(key_.study, key_.stimuli[i].stimulus) +
-                                 ": is flat, nothing of it can be felt");
+                                 ": is flat, nothing of it can be felt; take another picture");
     }
   }
 
@@ -520,13 +524,20 @@ PlaneGeometry plane_of(const Study& study) {
   const std::vector<ImageOfStudy> images = images_of(study);
   std::vector<std::pair<int, int>> sizes(images.size());
   std::vector<std::string> faults(images.size());
-  in_parallel(0, images.size(), [&](std::size_t i) {
-    try {
-      sizes[i] = engine::size_of_image(images[i].path);
-    } catch (const FileError& error) {
-      faults[i] = error.what();
-    }
-  });
+  const auto note_faults = [&](const auto& read) {
+    in_parallel(0, images.size(), [&](std::size_t i) {
+      try {
+        if (faults[i].empty()) read(i);
+      } catch (const FileError& error) {
+        faults[i] = error.what();
+      }
+    });
+  };
+  note_faults([&](std::size_t i) { sizes[i] = engine::size_of_image(images[i].path); });
+  // Headers do not tell of all damage, and one run should name every picture.
+  if (std::ranges::any_of(faults, [](const std::string& fault) { return !fault.empty(); })) {
+    note_faults([&](std::size_t i) { static_cast<void>(engine::read_grey_image(images[i].path)); });
+  }
   const auto words = [](const std::pair<int, int>& size) {
     return std::to_string(size.first) + " x " + std::to_string(size.second) + " pixels";
   };

@@ -1,6 +1,7 @@
 #include "study/prepare_advice.hpp"
 
 #include "core/errors.hpp"
+#include "core/labels.hpp"
 #include "core/strict_json.hpp"
 
 #include <algorithm>
@@ -112,10 +113,19 @@ std::vector<std::string> twin_warnings(const Study& study, std::span<const Diges
     for (int e = 0; e < static_cast<int>(exemplars); ++e) {
       const std::string words = image_in_words(study, c, e);
       const auto [first, is_new] = seen.emplace(pixels[image++], words);
-      if (!is_new) warnings.push_back(words + ": has the same pixels as " + first->second);
+      if (is_new) continue;
+      warnings.push_back(words + ": has the same pixels as " + first->second +
+                         ", and nobody can tell them apart; take another picture");
     }
   }
   return warnings;
+}
+
+std::string label_warning(const Study& study) {
+  std::vector<std::string> labels;
+  for (const StudyClass& one : study.classes) labels.push_back(one.label);
+  const std::string remark = remark_on_alphabets(labels);
+  return remark.empty() ? "" : "/classes: " + remark;
 }
 
 }  // namespace touchtrial::study

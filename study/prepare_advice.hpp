@@ -35,4 +35,7 @@ namespace touchtrial::study {
 [[nodiscard]] std::vector<std::string> twin_warnings(const Study& study,
                                                      std::span<const Digest> pixels);
 
+/// \return a warning if labels of classes may look alike (remark_on_alphabets), else empty
+[[nodiscard]] std::string label_warning(const Study& study);
+
 }  // namespace touchtrial::study

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace touchtrial::study {
@@ -22,8 +23,16 @@ struct StimulusIndex {
   friend auto operator<=>(const StimulusIndex&, const StimulusIndex&) = default;
 };
 
-/// A catch trial presents a plane without texture; its `stimulus` has no meaning.
-enum class PresentationKind { scored, lead_in, catch_trial };
+/// What a trial is for.
+enum class Role {
+  scored,
+  lead_in,      ///< begins a block, and is not scored
+  catch_trial,  ///< shows whether the participant attends; the `stimulus` has no meaning
+  control,      ///< without the hand: whether the answer can be heard
+};
+
+/// "scored", "lead-in", "catch" or "control"
+[[nodiscard]] std::string_view name_of(Role role);
 
 /// What an adaptive order chose for a presentation.
 struct ChosenLevel {
@@ -48,16 +57,17 @@ struct Interval {
 };
 
 struct Presentation {
-  int trial = 0;  ///< from 1
-  int block = 0;  ///< from 0
-  PresentationKind kind = PresentationKind::scored;
+  int trial = 0;          ///< from 1
+  int block = 0;          ///< from 0
+  int interruptions = 0;  ///< of this trial so far, in a session
+  Role role = Role::scored;
   StimulusIndex stimulus;  ///< with intervals: without meaning
   double gain_db = 0.0;    ///< re the pack's gain of the stimulus; with intervals: without meaning
   /// Nothing: the schedule says what is presented, or the order has not chosen yet.
   std::optional<ChosenLevel> chosen{};
   /// Empty: one plane, which is explored for as long as the participant wants.
   std::vector<Interval> intervals{};
-  bool hand_off = false;  ///< the device moves by itself, and is only heard
+  bool hand_off = false;  ///< the device moves by itself, and is only heard: of a control
 
   friend bool operator==(const Presentation&, const Presentation&) = default;
 };

@@ -1,5 +1,6 @@
 /// \file Schedules and blocks as JSON, for the secret parts of a session's events.
 #include "core/errors.hpp"
+#include "core/named.hpp"
 #include "study/protocol.hpp"
 #include "study/study_key.hpp"
 
@@ -12,9 +13,10 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::string_view kScored = "scored";
-constexpr std::string_view kLeadIn = "lead-in";
-constexpr std::string_view kCatch = "catch";
+constexpr auto kRoles = std::to_array<Named<Role>>({{"scored", Role::scored},
+                                                    {"lead-in", Role::lead_in},
+                                                    {"catch", Role::catch_trial},
+                                                    {"control", Role::control}});
 
 [[noreturn]] void refuse(const std::string& what) {
   throw StoreError("session schedule: " + what + "; use the key that the session was run with");
@@ -26,25 +28,18 @@ StimulusIndex meaning_of(const json& code, const StudyCodes& codes) {
   return *stimulus;
 }
 
-std::string_view word_of(PresentationKind kind) {
-  if (kind == PresentationKind::catch_trial) return kCatch;
-  return kind == PresentationKind::scored ? kScored : kLeadIn;
-}
-
-PresentationKind kind_of(const std::string& word) {
-  using enum PresentationKind;
-  for (const PresentationKind kind : {scored, lead_in, catch_trial}) {
-    if (word == word_of(kind)) return kind;
-  }
+Role role_of(const std::string& word) {
+  if (const auto role = value_in(kRoles, word)) return *role;
   refuse("has a presentation of an unknown kind");
 }
 
 Presentation presentation_from(const json& object, const StudyCodes& codes) {
   Presentation shown{.trial = object.at("trial").get<int>(),
                      .block = object.at("block").get<int>(),
-                     .kind = kind_of(object.at("kind").get_ref<const std::string&>()),
+                     .role = role_of(object.at("kind").get_ref<const std::string&>()),
                      .stimulus = {}};
-  if (shown.kind != PresentationKind::catch_trial) {
+  shown.hand_off = shown.role == Role::control;
+  if (shown.role != Role::catch_trial) {
     shown.stimulus = meaning_of(object.at("code"), codes);
     shown.gain_db = object.value("gain_db", 0.0);
   } else if (object.at("code") != codes.catch_code) {
@@ -62,10 +57,10 @@ std::vector<Presentation> presentations_from(const json& list, const StudyCodes&
 json json_of(const std::vector<Presentation>& presentations, const StudyCodes& codes) {
   json list = json::array();
   for (const Presentation& shown : presentations) {
-    const bool is_catch = shown.kind == PresentationKind::catch_trial;
+    const bool is_catch = shown.role == Role::catch_trial;
     list.push_back({{"trial", shown.trial},
                     {"block", shown.block},
-                    {"kind", word_of(shown.kind)},
+                    {"kind", name_of(shown.role)},
                     {"code", is_catch ? codes.catch_code : codes.code_of(shown.stimulus)}});
     // Left out where there is none, so that sessions without it keep their bytes.
     if (shown.gain_db != 0.0) list.back()["gain_db"] = shown.gain_db;
@@ -101,6 +96,10 @@ Schedule schedule_of(const json& document, const StudyCodes& codes) {
 }
 
 }  // namespace
+
+std::string_view name_of(Role role) {
+  return name_in(kRoles, role);
+}
 
 std::string schedule_to_json(const Schedule& schedule, const StudyCodes& codes) {
   // The layout names a class's picture by the code of its first stimulus, any other choice by

@@ -2,7 +2,6 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "core/nearest_name.hpp"
 #include "core/text.hpp"
 #include "study/protocol.hpp"
 #include "study/study_sections.hpp"
@@ -100,7 +99,7 @@ void check_practice_class(const JsonValue& place, const Study& study, std::size_
                                [&](const auto& path) { return path.lexically_normal() == image; });
   };
   const auto has_label = [&](const StudyClass& other) {
-    return edit_distance(learnt.label, other.label) == 0;
+    return skeleton_of(learnt.label) == skeleton_of(other.label);
   };
   if (std::ranges::any_of(study.classes, has_label)) {
     place.refuse_below(

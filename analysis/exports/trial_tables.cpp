@@ -10,9 +10,8 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// A trial with a chosen level presents several planes, and no single stimulus.
 bool has_stimulus(const TrialView& trial) {
-  return trial.outcome->kind != study::PresentationKind::catch_trial && !trial.outcome->chosen;
+  return trial.outcome->has_stimulus();
 }
 
 DataCell response_of(const TrialView& trial) {
@@ -31,7 +30,7 @@ DataCell correctness_of(const TrialView& trial) {
 
 /// A trial with several planes: of which class and method its track is.
 bool is_of_track(const TrialView& trial) {
-  return trial.outcome->chosen && trial.outcome->kind == study::PresentationKind::scored;
+  return trial.outcome->chosen && trial.outcome->role == study::Role::scored;
 }
 
 DataCell method_of(const TrialView& trial) {
@@ -55,15 +54,7 @@ DataCell gain_of(const TrialView& trial) {
 }
 
 DataCell kind_of(const TrialView& trial) {
-  switch (trial.outcome->kind) {
-    case study::PresentationKind::lead_in:
-      return std::string(trial.outcome->chosen ? "control" : "lead-in");
-    case study::PresentationKind::catch_trial:
-      return std::string("catch");
-    case study::PresentationKind::scored:
-      break;
-  }
-  return std::string("scored");
+  return std::string(name_of(trial.outcome->role));
 }
 
 DataCell state_of(const TrialView& trial) {

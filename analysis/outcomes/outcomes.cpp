@@ -86,19 +86,20 @@ TrialOutcome outcome_of(const record::TrialRow& row, const SessionOutcome& sessi
   trial.row = row;
   trial.stimulus = presentation.stimulus;
   trial.gain_db = presentation.gain_db;
-  trial.kind = presentation.kind;
+  trial.role = presentation.role;
+  trial.has_planes = study.protocol->interval_plan(study).has_value();
   if (row.track && row.level && row.target) {
     trial.chosen = {*row.track, *row.level, *row.target};
     trial.stimulus = study.protocol->stimulus_of(study, *trial.chosen);
-    const bool in_track = trial.kind == study::PresentationKind::scored;
-    if (in_track && *row.track == 0) trial.kind = study::PresentationKind::catch_trial;
+    const bool in_track = trial.role == study::Role::scored;
+    if (in_track && *row.track == 0) trial.role = study::Role::catch_trial;
   }
-  trial.scored = trial.kind == study::PresentationKind::scored;
+  trial.scored = trial.role == study::Role::scored;
   trial.counted = session.counted && trial.scored && ended;
   trial.response = response_of(row, schedule);
   if (trial.chosen) {
     trial.right = trial.chosen->target;
-  } else if (trial.kind != study::PresentationKind::catch_trial) {
+  } else if (trial.role != study::Role::catch_trial) {
     trial.right = study.protocol->right_choice(study, presentation);
   }
   return trial;

@@ -29,8 +29,9 @@ struct TrialOutcome {
   record::TrialRow row;
   study::StimulusIndex stimulus;  ///< without meaning for a catch trial
   double gain_db = 0.0;           ///< study::Presentation::gain_db
-  study::PresentationKind kind = study::PresentationKind::scored;
+  study::Role role = study::Role::scored;
   std::optional<study::ChosenLevel> chosen{};  ///< by an adaptive order
+  bool has_planes = false;                     ///< several, one after the other
   bool scored = false;                         ///< by the schedule; not a lead-in or catch trial
   bool counted = false;                        ///< counts towards accuracy
   std::optional<int> response;  ///< index of the chosen alternative; empty: no response
@@ -39,6 +40,11 @@ struct TrialOutcome {
   int visit = 1;
   std::optional<int> group{};  ///< index into the study's groups
 
+  /// Whether one stimulus was presented. Of a trial with several planes it is not known before the
+  /// order chose.
+  [[nodiscard]] bool has_stimulus() const noexcept {
+    return role != study::Role::catch_trial && !has_planes && !chosen;
+  }
   /// Whether the response is right. A trial without a response is wrong.
   [[nodiscard]] bool correct() const noexcept { return response && response == right; }
   /// Whether the trial is valid by the whole validity rule: its part in clear and its sealed part.

@@ -42,7 +42,7 @@ FitCounts count_answers(const analysis::Outcomes& outcomes,
   std::map<int, std::size_t> person_of_session;
   const std::size_t cells = stimuli.size() * counts.classes.size();
   for (const analysis::TrialOutcome& trial : outcomes.trials) {
-    if (!trial.counted || trial.kind != study::PresentationKind::scored) continue;
+    if (!trial.counted || trial.role != study::Role::scored) continue;
     if (!trial.response) {
       ++counts.no_response;
       continue;

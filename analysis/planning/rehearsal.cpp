@@ -56,7 +56,7 @@ analysis::TrialOutcome answered_trial(int number, int session, int visit,
   trial.row.state = record::TrialState::answered;
   trial.row.position = position;
   trial.stimulus = presentation.stimulus;
-  trial.kind = presentation.kind;
+  trial.role = presentation.role;
   trial.scored = true;
   trial.counted = true;
   trial.response = schedule.layout[position];

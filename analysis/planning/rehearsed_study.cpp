@@ -199,7 +199,7 @@ void RehearsedStudy::add_visit(Person& person, int visit, const Answering& answe
                   simulation::SimulatedParticipant::trials_before(visit), 0};
   for (std::size_t i = 0; i < planned.course.size(); ++i) {
     const study::Presentation& presentation = planned.schedule.presentations[i];
-    const bool is_scored = presentation.kind == study::PresentationKind::scored;
+    const bool is_scored = presentation.role == study::Role::scored;
     simulation::TrialPlace place = planned.course[i];
     const int begun = static_cast<int>(i) + 1;
     if (planned.break_before[i]) condition.rest(begun - 1);

@@ -138,7 +138,7 @@ analysis::Outcomes StatedRehearsal::outcomes(int participants, Hypothesis hypoth
       outcomes.sessions.push_back(completed_session(number, session, visit, planned.order_block));
       const std::vector<int>& layout = planned.schedule.layout;
       for (const study::Presentation& one : planned.schedule.presentations) {
-        if (one.kind != study::PresentationKind::scored) continue;
+        if (one.role != study::Role::scored) continue;
         const auto right =
             static_cast<int>(std::ranges::find(layout, one.stimulus.class_index) - layout.begin());
         const bool is_right = random.uniform() < share_right(person, one.stimulus.method, test_);

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -79,12 +80,12 @@ class Stimuli {
  public:
   Stimuli(const study::StudyKey& key, const engine::Pack& pack) : key_(key), pack_(pack) {}
 
-  void add(const study::KeyedStimulus& keyed, Table& table, Tiles& tiles) const {
+  void add(const study::KeyedStimulus& keyed, Table& table, Tiles& tiles) {
     const study::StimulusIndex& stimulus = keyed.stimulus;
     const study::StudyClass& of =
         key_.study.classes[static_cast<std::size_t>(stimulus.class_index)];
     const auto exemplar = static_cast<std::size_t>(stimulus.exemplar);
-    const GreyImage image = engine::read_grey_image(key_.study.folder / of.images[exemplar]);
+    const auto [image, notes] = engine::read_picture(key_.study.folder / of.images[exemplar]);
     const engine::PackEntry& entry = checked_entry(keyed, image, of.images[exemplar]);
     const engine::MappedField field = pack_.map(keyed.code);
     Plane<float> plane =
@@ -95,6 +96,9 @@ class Stimuli {
     const engine::FieldStatistics statistics =
         engine::field_statistics(field.view(), entry.gains, key_.study.rendering);
     const PlaneGeometry& geometry = field.view().geometry;
+    for (const std::string& remark : engine::remarks_on(notes)) {
+      remarks_.insert(one_line(of.images[exemplar].string() + ": " + remark));
+    }
     const std::string title =
         of.images.size() > 1 ? fmt::format("{}, {} of {}", of.label, exemplar + 1, of.images.size())
                              : of.label;
@@ -111,6 +115,11 @@ class Stimuli {
         {engine::png_bytes(fitted(image)),
          engine::png_bytes(fitted(enhanced_picture(std::move(plane)))),
          engine::png_bytes(engine::force_arrows(texture, force, patch, kPictureSide_px))});
+  }
+
+  /// On the pictures, as `prepare` prints them; empty if there are none.
+  [[nodiscard]] Warnings remarks() const {
+    return {{remarks_.begin(), remarks_.end()}, "Of the pictures"};
   }
 
   [[noreturn]] void refuse(const std::string& what) const {
@@ -133,6 +142,7 @@ class Stimuli {
 
   const study::StudyKey& key_;
   const engine::Pack& pack_;
+  std::set<std::string> remarks_;
 };
 
 Picture picture_of(const Tiles& tiles, std::size_t number) {
@@ -156,7 +166,7 @@ Document make_stimulus_sheet(const study::StudyKey& key, const engine::Pack& pac
         "sheets of studies with fewer images",
         key.stimuli.size(), kMaxSheetStimuli));
   }
-  const Stimuli stimuli(key, pack);
+  Stimuli stimuli(key, pack);
   if (pack.manifest().study_id != key.study_id) {
     stimuli.refuse("is unfinished, or belongs to another key");
   }
@@ -191,6 +201,9 @@ Document make_stimulus_sheet(const study::StudyKey& key, const engine::Pack& pac
         Section{fmt::format("method-{}", method + 1), key.study.methods[method].label, {}});
     section.blocks.emplace_back(std::move(table));
     std::ranges::move(drawn, std::back_inserter(section.blocks));
+  }
+  if (!stimuli.remarks().sentences.empty()) {
+    sheet.sections.front().blocks.emplace_back(stimuli.remarks());
   }
   return sheet;
 }

@@ -20,16 +20,15 @@ std::pair<double, double> range_in(const std::string& text) {
   const auto high =
       comma == std::string::npos ? std::nullopt : number_in<double>(text.substr(comma + 1));
   if (low && high && *low < *high && std::isfinite(*high - *low)) return {*low, *high};
-  throw CLI::ValidationError("--heights",
-                             "must be LOWEST,HIGHEST, two numbers, not " + in_quotes(text));
+  throw CLI::ValidationError(
+      "--heights", "must be LOWEST,HIGHEST, two numbers, the lower first, not " + in_quotes(text));
 }
 
 }  // namespace
 
 void add_sample_options(CLI::App& command, engine::SampleScale& scale) {
   command
-      .add_option("--bits", scale.bits,
-                  "Bits that the camera or scanner of 16-bit pictures has, 9 to 16")
+      .add_option("--bits", scale.bits, "Bits that the camera or scanner of 16-bit pictures has")
       ->check(CLI::Range(9, 16));
   command.add_option_function<std::string>(
       "--heights", [&scale](const std::string& text) { scale.heights = range_in(text); },

@@ -59,6 +59,7 @@ struct NewArguments {
   Answers answers;
   int size_px = stimuli::kDefaultStimulusSizePx;
   int crops = 5;
+  engine::SampleScale scale;
   bool yes = false;
 };
 
@@ -148,7 +149,7 @@ std::vector<NewQuestion> new_questions() {
            "; for thresholds, copy a ready study with touchtrial examples",
        CLI::IsMember(protocols), always(protocols.front())},
       {"--pictures", "Folder of your photographs; empty: five textures of the program's own",
-       allowed_if(is_folder, "is no folder", "FOLDER"), always("")},
+       allowed_if(is_folder, "is no folder; check the path", "FOLDER"), always("")},
       {"--device",
        "Device that the study is for, as touch or omega; empty: none, and then simulated people "
        "hold an ideal device, which nobody sells",
@@ -201,6 +202,7 @@ stimuli::ImportOptions import_options(const NewArguments& arguments) {
   options.photographs = arguments.answers.at("--pictures");
   options.size_px = arguments.size_px;
   options.crops = arguments.crops;
+  options.scale = arguments.scale;
   options.protocol = arguments.answers.at("--protocol");
   options.methods = methods_of(arguments.answers);
   return options;
@@ -299,8 +301,11 @@ void import_pictures(const NewArguments& arguments, NewStudy& study) {
   study.seed = imported.at("seed").get<std::uint64_t>();
 }
 
-bool has_label(const Json& classes, const Json& label) {
-  return std::ranges::any_of(classes, [&](const Json& one) { return one.at("label") == label; });
+/// Whether one of the classes has a label that looks like another.
+bool has_label(const Json& classes, const std::string& label) {
+  return std::ranges::any_of(classes, [&](const Json& one) {
+    return skeleton_of(one.at("label").get<std::string>()) == skeleton_of(label);
+  });
 }
 
 /// Practice textures have the classes' size. There is no practice if the study's own labels leave
@@ -308,7 +313,8 @@ bool has_label(const Json& classes, const Json& label) {
 void add_practice(NewStudy& study, int size_px) {
   for (const Json& one :
        generated_classes(study, ".practice", stimuli::StimulusKind::practice, size_px)) {
-    if (!has_label(study.classes, one.at("label"))) study.practice.push_back(one);
+    if (!has_label(study.classes, one.at("label").get<std::string>()))
+      study.practice.push_back(one);
   }
   if (study.practice.size() < 2) study.practice.clear();
 }
@@ -453,6 +459,7 @@ void add_new_command(CLI::App& program, Action& action) {
                    stimuli::kMinCropSizePx, stimuli::kMaxCropSizePx);
   add_count_option(command, "--crops", arguments.crops, "Crops of the photographs of each texture",
                    1, stimuli::kMaxCropsOfClass);
+  add_sample_options(command, arguments.scale);
   command.add_flag("--yes", arguments.yes, "Take the usual answers, and ask nothing");
 }
 

@@ -103,10 +103,13 @@ void add_device_options(CLI::App& command, RunOptions& options) {
 }
 
 void add_simulation_options(CLI::App& command, RunOptions& options) {
-  command.add_option(
+  CLI::Option* const subject = command.add_option(
       "--subject", options.subject,
       "Simulate the participant by this subject model, or by the built-in one if empty; without a "
       "window");
+  command.add_flag("--headless")
+      ->needs(subject)
+      ->description("Without a window, as every simulated participant is");
   add_on_option(command, options.on);
   add_seed_option(command, options.seed, "Seed of the simulated participant");
   command.add_flag("--real-time", options.real_time, "Simulate the participant in real time");

@@ -74,7 +74,7 @@ struct RenderingOptions {
   double damping_n_s_per_mm = 0.0;          ///< of the wall, >= 0
   double filter_mm = 0.4;                   ///< reconstruction filter's standard deviation, >= 0
   double texture_stiffness_n_per_mm = 0.4;  ///< the stiffness budget, > 0
-  std::optional<Gains> gains;               ///< explicit gains; empty: from the budget
+  std::optional<Gains> gains{};             ///< explicit gains; empty: from the budget
   Equalise equalise = Equalise::none;
   double reference_grey = 128.0;  ///< paper: G_ref, grey levels, 0 .. 255
   double friction = 0.0;          ///< surface: friction coefficient mu, >= 0; 0: no friction

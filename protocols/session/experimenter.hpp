@@ -22,9 +22,9 @@ struct HandLevels {
 
 /// What the experimenter is shown. Nothing in it depends on a stimulus or an outcome.
 struct SessionStatus {
-  std::string participant;
+  std::string participant{};
   /// "day sheet", "instructions", "practice", "ready", "exploring", "answering", ...
-  std::string stage;
+  std::string stage{};
   /// As the participant's window counts: presentations begun, with the current one and with the one
   /// that is announced; in practice, those of the round. 0: none yet.
   int trial = 0;
@@ -33,10 +33,10 @@ struct SessionStatus {
   bool participant_stopped = false;    ///< the participant's comfort stop is not settled yet
   bool needs_consent = false;          ///< no force until the experimenter consents
   std::chrono::nanoseconds elapsed{};  ///< since the session's opening
-  std::string device;                  ///< its name, and what it needs
-  std::string alert;                   ///< what somebody must do now; empty: nothing
+  std::string device{};                ///< its name, and what it needs
+  std::string alert{};                 ///< what somebody must do now; empty: nothing
   /// While a plane is on in real time, and the hand at it.
-  std::optional<HandLevels> hand;
+  std::optional<HandLevels> hand{};
   // Of the last exploration in real time.
   double rate_hz = 0.0;
   double lateness_p99_us = 0.0;

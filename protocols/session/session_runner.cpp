@@ -95,7 +95,7 @@ void TrialRun::run() {
 
 engine::RenderingModel TrialRun::model() const {
   const study::Presentation& presentation = *session_.current();
-  if (presentation.kind == study::PresentationKind::catch_trial) return parts_.source.flat();
+  if (presentation.role == study::Role::catch_trial) return parts_.source.flat();
   return parts_.source.model(parts_.key.code_of(presentation.stimulus), presentation.gain_db);
 }
 

@@ -30,7 +30,7 @@ struct ClassBias {
 struct SubjectModel {
   /// The thresholds by which accelerations of the tip are felt; nothing: a flat sense of the
   /// servo's forces, with a threshold of 2 mN.
-  std::optional<engine::ThresholdCurve> sense;
+  std::optional<engine::ThresholdCurve> sense{};
   /// Differences between participants: standard deviation of all their thresholds, dB, >= 0. Of no
   /// effect on the flat sense.
   double threshold_spread_db = 0.0;
@@ -47,12 +47,12 @@ struct SubjectModel {
   /// Log odds by which the first picture is preferred to the last; falls linearly in between.
   double position_bias = 0.0;
   double position_bias_spread = 0.0;  ///< its standard deviation between participants, >= 0
-  std::vector<ClassBias> class_bias;
+  std::vector<ClassBias> class_bias{};
   /// Standard deviation between participants of the preference for each class, >= 0.
   double class_bias_spread = 0.0;
   /// Pairs of labels whose pictures the participants exchange: each is matched to what the other
   /// feels like.
-  std::vector<std::pair<std::string, std::string>> label_swap;
+  std::vector<std::pair<std::string, std::string>> label_swap{};
   double explore_s = 10.0;  ///< exploration time of a trial, > 0
   double push_n = 0.7;      ///< force towards the plane, > 0
   double slowest_mm_s = 50.0;
@@ -66,21 +66,21 @@ struct SubjectModel {
   /// Standard deviation of the error, in every felt log intensity, with which a participant
   /// remembers a stimulus, >= 0.
   double memory_noise = 0.0;
-  Learning learning;
+  Learning learning{};
   /// Differences between the blocks and visits of a participant: standard deviation of the natural
   /// logarithm of the noise, >= 0.
   double period_noise_spread = 0.0;
-  SerialDependence serial;
-  Fatigue fatigue;
+  SerialDependence serial{};
+  Fatigue fatigue{};
   /// Nothing: from 0.8 to 4 s, each time equally likely, whatever is felt.
-  std::optional<ThoughtTime> thought;
+  std::optional<ThoughtTime> thought{};
   /// Nothing: answers follow from what is felt.
-  std::optional<GivenFunction> given_function;
+  std::optional<GivenFunction> given_function{};
 
   /// What the hand holds; an ideal device unless a command or the study names one. Not in the file.
-  device::DeviceModel device;
+  device::DeviceModel device{};
 
-  std::string source;  ///< the file, for error messages
+  std::string source{};  ///< the file, for error messages
 
   /// Checks that the study has every label.
   /// \throws StudyError with this file's JSON pointer if it lacks one

@@ -9,7 +9,7 @@ TrialCourse course_of(const study::Study& study, const study::Schedule& schedule
   for (const study::Presentation& presentation : schedule.presentations) {
     TrialPlace& place = course.emplace_back();
     place.block = presentation.block;
-    place.carries_over = presentation.kind != study::PresentationKind::catch_trial;
+    place.carries_over = presentation.role != study::Role::catch_trial;
     if (place.carries_over) {
       place.label =
           study.classes[static_cast<std::size_t>(presentation.stimulus.class_index)].label;

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numeric>
 #include <system_error>
+#include <utility>
 
 namespace touchtrial::stimuli {
 namespace {
@@ -123,27 +124,53 @@ bool all_fit(const std::vector<SizedClass>& classes, int side_px, int crops) {
                       side_px >= kMinCropSizePx ? side_px : 0);
 }
 
-std::string scale_warning_of(const ImportedClass& one, const ImportOptions& options) {
-  const double side_mm = options.size_px * options.pitch_mm;
-  const std::string size =
-      "class \"" + one.label + "\": features of about " + rounded(one.feature_mm) + " mm are ";
-  if (one.feature_mm < kFinestFeatureMm) {
-    return size +
-           "finer than devices render well; give a larger --pitch-mm, or photographs from "
-           "closer up";
-  }
-  if (one.feature_mm > side_mm / kFewestFeatures) {
-    return size + "coarse for a picture of " + rounded(side_mm) +
-           " mm, which will feel like a few slopes; give a smaller --pitch-mm, a larger --size, or "
-           "photographs from farther away";
-  }
-  return {};
-}
+/// The classes that one warning is about, and the sizes of their features.
+struct ClassesAlike {
+  std::vector<std::string> labels;
+  std::vector<double> features_mm;
 
-/// The photographs or labels that one warning is about: the first by name, the others by number.
-std::string first_of(const std::vector<std::string>& names) {
-  const std::size_t more = names.size() - 1;
-  return one_line(names.front()) + (more > 0 ? " and " + std::to_string(more) + " more" : "");
+  void add(const ImportedClass& one) {
+    labels.push_back(in_quotes(one.label));
+    features_mm.push_back(one.feature_mm);
+  }
+  [[nodiscard]] std::string named() const { return "class " + first_of(labels) + ": "; }
+  [[nodiscard]] std::string features() const {
+    const auto [least, most] = std::ranges::minmax(features_mm);
+    const std::string range = rounded(least) == rounded(most) ? "" : " to " + rounded(most);
+    return "features of about " + rounded(least) + range + " mm are ";
+  }
+};
+
+void add_class_warnings(const std::vector<ImportedClass>& classes, const ImportOptions& options,
+                        std::vector<std::string>& warnings) {
+  const double side_mm = options.size_px * options.pitch_mm;
+  ClassesAlike overlapping;
+  ClassesAlike fine;
+  ClassesAlike coarse;
+  for (const ImportedClass& one : classes) {
+    if (one.overlapping) overlapping.add(one);
+    if (one.feature_mm < kFinestFeatureMm) {
+      fine.add(one);
+    } else if (one.feature_mm > side_mm / kFewestFeatures) {
+      coarse.add(one);
+    }
+  }
+  if (!overlapping.labels.empty()) {
+    warnings.push_back(overlapping.named() +
+                       "some crops overlap, by up to half their side; larger or more photographs "
+                       "give separate crops");
+  }
+  if (!fine.labels.empty()) {
+    warnings.push_back(fine.named() + fine.features() +
+                       "finer than devices render well; give `touchtrial stimuli import` a larger "
+                       "--pitch-mm, or photographs from closer up");
+  }
+  if (!coarse.labels.empty()) {
+    warnings.push_back(coarse.named() + coarse.features() + "coarse for a picture of " +
+                       rounded(side_mm) +
+                       " mm, which will feel like a few slopes; give a larger --size, `touchtrial "
+                       "stimuli import` a smaller --pitch-mm, or photographs from farther away");
+  }
 }
 
 void add_resolution_warnings(const ImportRecord& record, const ImportOptions& options,
@@ -174,17 +201,19 @@ void add_resolution_warnings(const ImportRecord& record, const ImportOptions& op
         "import` --pixels-per-mm");
   }
   if (!unused.empty()) {
-    warnings.push_back(first_of(unused) +
-                       ": the file states its resolution; if that is of the object, as a "
-                       "scanner's is, the crops feel " +
-                       rounded(magnified) +
-                       " times life-size; give --pixels-per-mm file for life-size");
+    warnings.push_back(
+        first_of(unused) +
+        ": the file states its resolution; if that is of the object, as a "
+        "scanner's is, the crops feel " +
+        rounded(magnified) +
+        " times life-size; for life-size, give `touchtrial stimuli import` --pixels-per-mm file");
   }
 }
 
-/// Crops do not lie where a photograph is transparent.
+/// Photographs are turned upright, and crops do not lie where one is transparent.
 std::vector<std::string> remarks_of(const Photograph& photo) {
   engine::ImageNotes notes = photo.notes;
+  notes.orientation = 1;
   notes.transparent_share = 0.0;
   std::vector<std::string> remarks = engine::remarks_on(notes);
   if (photo.opaque) {
@@ -195,21 +224,6 @@ std::vector<std::string> remarks_of(const Photograph& photo) {
                       "; for crops from elsewhere, fill its background, and export it again");
   }
   return remarks;
-}
-
-/// Whole words of two alphabets can look alike, too.
-void warn_of_alphabets(const std::vector<ImportedClass>& classes,
-                       std::vector<std::string>& warnings) {
-  std::vector<std::string> latin;
-  std::vector<std::string> other;
-  for (const ImportedClass& one : classes) {
-    const Alphabets alphabets = alphabets_of(one.label);
-    if (alphabets.latin) latin.push_back(in_quotes(one.label));
-    if (alphabets.other) other.push_back(in_quotes(one.label));
-  }
-  if (latin.empty() || other.empty()) return;
-  warnings.push_back("labels have Latin letters (" + first_of(latin) + ") and others (" +
-                     first_of(other) + "); look whether any two look alike, and rename one");
 }
 
 }  // namespace
@@ -229,7 +243,8 @@ void check_classes(const PhotoFolder& folder, const ImportOptions& options) {
   if (classes > kMostClasses) {
     throw FileError(name + ": holds " + std::to_string(classes) + " classes, more than " +
                     std::to_string(kMostClasses) +
-                    "; to make several photographs one class, put them into a folder of its name");
+                    "; to make several photographs one class, put them into a folder of its name, "
+                    "or give `touchtrial stimuli import` --names");
   }
   if (static_cast<int>(classes) * options.crops * options.methods > kMostStimuli) {
     throw FileError(name + ": " + std::to_string(classes) + " classes of " +
@@ -301,17 +316,13 @@ std::vector<std::string> import_warnings(const ImportReport& report, const Impor
       warnings.push_back(one_line(photograph.file + ": " + remark));
     }
   }
-  warn_of_alphabets(report.classes, warnings);
-  add_resolution_warnings(record, options, warnings);
-  for (const ImportedClass& one : report.classes) {
-    if (one.overlapping) {
-      warnings.push_back("class \"" + one.label +
-                         "\": some crops overlap, by up to half their side; larger or more "
-                         "photographs give separate crops");
-    }
-    const std::string scale = scale_warning_of(one, options);
-    if (!scale.empty()) warnings.push_back(scale);
+  std::vector<std::string> labels;
+  for (const ImportedClass& one : report.classes) labels.push_back(one.label);
+  if (auto remark = remark_on_alphabets(labels); !remark.empty()) {
+    warnings.push_back(std::move(remark));
   }
+  add_resolution_warnings(record, options, warnings);
+  add_class_warnings(report.classes, options, warnings);
   constexpr double kNoticeableShare = 0.01;
   for (const ImportedPicture& picture : record.pictures) {
     if (picture.clipped_share <= kNoticeableShare) continue;

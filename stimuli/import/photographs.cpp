@@ -104,7 +104,9 @@ class Classes {
     const std::string fault = fault_of_label(label);
     const auto [other, is_new] = origins_.emplace(skeleton_of(label), origin);
     if (!fault.empty()) {
-      refuse(origin, "its name " + fault + " and cannot be a label; rename it");
+      const bool is_name = label == origin.stem().string() || label == origin.filename().string();
+      refuse(origin, (is_name ? "its name " : "the class in its name, " + in_quotes(label) + ", ") +
+                         fault + " and cannot be a label; rename it");
     } else if (!is_new) {
       refuse(origin, "would be the class \"" + label + "\", which looks like that of " +
                          other->second.filename().string() + "; rename one, or put both into a " +
@@ -247,7 +249,7 @@ bool naturally_before(const std::string& a, const std::string& b) {
       if (left.size() != right.size()) return left.size() < right.size();
       if (left != right) return left < right;
     } else if (a[i] != b[j]) {
-      return a[i] < b[j];
+      return static_cast<unsigned char>(a[i]) < static_cast<unsigned char>(b[j]);
     } else {
       ++i;
       ++j;

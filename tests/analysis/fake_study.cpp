@@ -102,16 +102,14 @@ void record_trial(record::SessionRecorder& recorder, const FakeSession& session,
   const milliseconds start(10'000 * place);
   recorder.presented(start, shown.trial, shown.block);
   recorder.first_contact(start + milliseconds(500), shown.trial);
-  if (const auto answer = session.answers(shown)) {
+  const FakeAnswers answers = session.answers ? session.answers : FakeStudy::always_right();
+  if (const auto answer = answers(shown)) {
     recorder.answered(start + milliseconds(4250),
                       {shown.trial, position_of(schedule, *answer), std::nullopt, std::nullopt});
   } else {
     recorder.timed_out(start + milliseconds(4250), shown.trial);
   }
-  record::TraceBody body;
-  body.trial = shown.trial;
-  body.rate_hz = 1000.0;
-  body.valid = session.valid;
+  record::TraceBody body{.trial = shown.trial, .rate_hz = 1000.0, .valid = session.valid};
   if (shown.trial % 2 == 0) body.hand = session.hand;
   body.servo = session.servo;
   recorder.trace_stored(start + milliseconds(4500), body,
@@ -124,7 +122,6 @@ void record_trial(record::SessionRecorder& recorder, const FakeSession& session,
 FakeSession talkative(const std::string& participant, int enrolment, const std::string& closing) {
   return {.participant = participant,
           .enrolment = enrolment,
-          .answers = FakeStudy::always_right(),
           .before_trials = [closing](record::SessionRecorder& recorder) {
             recorder.questioned(
                 milliseconds(10), "handedness",
@@ -167,8 +164,7 @@ void FakeStudy::add(const FakeSession& session) {
       key_.simulated || store_.commitment().pilot ? study::Draws::rehearsal : study::Draws::people;
   const study::Schedule schedule =
       study::make_schedule(key_.study, key_.draw_of(session.enrolment, draws, session.visit));
-  record::SessionOpening opening;
-  opening.visit = session.visit;
+  record::SessionOpening opening{.visit = session.visit};
   const study::GroupPlan& groups = key_.study.groups;
   const auto group = key_.group_of(session.enrolment, draws);
   if (group && groups.open) opening.group = groups.labels[static_cast<std::size_t>(*group)];

@@ -24,7 +24,7 @@ using FakeTraces = std::function<record::Trace(const study::Presentation&)>;
 struct FakeSession {
   std::string participant;
   int enrolment = 1;
-  FakeAnswers answers;
+  FakeAnswers answers{};  ///< empty: everything right
   bool complete = true;
   bool valid = true;
   bool within_limits = true;                       ///< by the sealed measures
@@ -59,6 +59,9 @@ struct FakeOptions {
 class FakeStudy {
  public:
   explicit FakeStudy(const study::Protocol& protocol, const FakeOptions& options = {});
+  /// A classification.
+  explicit FakeStudy(const FakeOptions& options)
+      : FakeStudy(study::identification::classification(), options) {}
 
   [[nodiscard]] const study::StudyKey& key() const noexcept { return key_; }
   [[nodiscard]] record::StudyStore& store() noexcept { return store_; }

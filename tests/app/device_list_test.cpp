@@ -33,8 +33,7 @@ TEST_CASE("device list names every driver and which devices are ready, as text a
 
 TEST_CASE("device list says what a device renders, for studies") {
   const DeviceFolder folder(json{{"openhaptics", {{"library", TOUCHTRIAL_FAKE_HD}}}});
-  CHECK_THAT(succeeded(folder.device("list")).output,
-             holds_text("renders a stiffness of at most 0.4 N/mm and a damping of"));
+  CHECK_THAT(succeeded(folder.device("list")).output, holds_text("at most 0.4 N/mm"));
 }
 
 TEST_CASE("device list refuses settings that break their schema with the place") {

@@ -101,7 +101,7 @@ TEST_CASE("device test that a signal ends says so, and exits with the code that 
   test.program.send_signal(signal);
   CHECK(test.program.finish() == 128 + signal);
   CHECK_THAT(test.program.output(),
-             holds_text("stopped by " + name) && holds_text("the force is zero"));
+             holds_text("stopped by " + name) && holds_text("force is zero"));
   CHECK_FALSE(fs::exists(test.in("device-test-simulated-fault.csv")));
 }
 
@@ -278,8 +278,7 @@ TEST_CASE("device accept rehearses on a device model, and says that it proves no
   const int code = rehearsal.finish();
   INFO(rehearsal.output());
   REQUIRE(code == 0);
-  CHECK_THAT(rehearsal.output(),
-             holds_text("REHEARSAL") && holds_text("proves the program, not a device"));
+  CHECK_THAT(rehearsal.output(), holds_text("REHEARSAL") && holds_text("not a device"));
   json certificate = folder.object_in("emulated-falcon-certificate.json");
   CHECK(certificate.at("emulated") == "falcon");
   CHECK(certificate.at("passed") == true);

@@ -27,8 +27,7 @@ TEST_CASE("a new study is prepared, registered, simulated and reported as it was
     const Desk desk;
     const ProgramResult made = succeeded(desk.make("felt", {"--yes", "--protocol", protocol}));
     CHECK_THAT(made.output, holds_text("touchtrial prepare " + desk.in("felt/felt.json")));
-    CHECK_THAT(made.output,
-               holds_text("touchtrial preview ") && holds_text("touchtrial simulate "));
+    CHECK_THAT(made.output, holds_text("touchtrial preview ") && holds_text("trial simulate "));
     desk.done("prepare @felt/felt.json");
     const ProgramResult page = desk.done("prereg @felt/felt.json");
     CHECK(page.errors.empty());
@@ -132,6 +131,28 @@ TEST_CASE("photographs become the classes, and practice has none of their labels
   CHECK_FALSE(study.contains("practice"));  // sand alone would be left
   CHECK(study.at("trials").at("practice") == 0);
   desk.done("prepare @mine/mine.json");
+}
+
+TEST_CASE("photographs of more than 8 bits are taken by the options of an import") {
+  const Desk desk;
+  fs::create_directory(desk.in("album"));
+  for (const std::string name : {"felt", "linen", "\xd1\x81\xd0\xbe\xd1\x81\xd0\xbd\xd0\xb0"}) {
+    std::string file = "P5 60 60 65535\n";  // 12 bits in 16
+    for (std::size_t i = 0; i < 3600; ++i) {
+      const std::size_t sample = i * (40 + name.size()) % 4096;
+      file += static_cast<char>(sample / 256);
+      file += static_cast<char>(sample % 256);
+    }
+    replace_file(desk.in("album/" + name + ".pgm"), file);
+  }
+  const std::vector<std::string> album = {"--yes", "--crops", "1", "--pictures", desk.in("album")};
+  const ProgramResult dark = desk.make("mine", album);
+  CHECK_THAT(dark.errors, holds_text("uses only 12 of its 16 bits"));
+  std::vector<std::string> scaled = album;
+  scaled.insert(scaled.end(), {"--bits", "12"});
+  CHECK_THAT(succeeded(desk.make("mine", scaled)).errors,
+             holds_text("labels have Latin letters (\"felt\" and 1 more)"));
+  CHECK_THAT(desk.done("prepare @mine/mine.json").errors, holds_text("labels have Latin letters"));
 }
 
 TEST_CASE("photographs are tried when they are named, and what they lack is asked for") {

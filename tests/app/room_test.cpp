@@ -3,9 +3,7 @@
 #include "support/catch.hpp"
 #include "support/child_process.hpp"
 
-#include <chrono>
 #include <string>
-#include <thread>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 

@@ -74,7 +74,7 @@ void check_balanced(const StudyFolder& study, int participants) {
 
 TEST_CASE("run makes the database, acknowledges every response, and is refused a second time") {
   const StudyFolder study;
-  const ProgramResult first = succeeded(run(study, "P01"));
+  const ProgramResult first = succeeded(run(study, "P01", {"--headless"}));
   CHECK(acknowledged(first.output) == 6);
   CHECK(first.output.find("complete") != std::string::npos);
   CHECK(first.output.find("SIMULATED") != std::string::npos);
@@ -162,15 +162,13 @@ TEST_CASE("a session on a device with force needs an acceptance of that very dev
   for (const bool is_pilot : {false, true}) {
     const std::vector<std::string> kind =
         is_pilot ? std::vector<std::string>{"--pilot"} : std::vector<std::string>{};
-    CHECK_THAT(refused(kind),
-               holds_text("touchtrial device accept dhd") && holds_text("--allow-unverified"));
+    CHECK_THAT(refused(kind), holds_text("device accept dhd") && holds_text("--allow-unverified"));
   }
   study.done("device accept --emulate omega_3 --certificate @rehearsed.json");
-  CHECK_THAT(refused({"--certificate", study.in("rehearsed.json")}),
-             holds_text("proves no device"));
+  CHECK_THAT(refused({"--certificate", study.in("rehearsed.json")}), holds_text("no device"));
   // Only the terminal is missing then, whether or not the machine allows real time.
   CHECK_THAT(refused({"--allow-unverified", "--allow-late"}),
-             holds_text("UNVERIFIED DEVICE") && holds_text("is not a terminal"));
+             holds_text("UNVERIFIED DEVICE") && holds_text("terminal"));
 }
 
 TEST_CASE("a database in a folder that is not there is refused before anything else") {
@@ -195,11 +193,9 @@ TEST_CASE("stations use their own numbers of a plan, and a replacement uses its 
   check_refused(run(study, "P01", {"--station", "roof"}), 2, {"cloths.roof.station"});
 
   succeeded(run(study, "P01", {"--station", "cellar"}));
-  check_refused(run(study, "P02", {"--station", "attic"}), 1,
-                {"is the database of station cellar"});
+  check_refused(run(study, "P02", {"--station", "attic"}), 1, {"station cellar"});
   succeeded(run(study, "P02", {"--station", "cellar"}));
-  check_refused(run(study, "P03", {"--station", "cellar"}), 2,
-                {"numbers of station cellar are taken"});
+  check_refused(run(study, "P03", {"--station", "cellar"}), 2, {"are taken"});
   succeeded(plan({"6", "--extend"}));
   succeeded(run(study, "P03", {"--station", "cellar"}));
   study.done("exclude @db --participant P01 --reason test");
@@ -225,8 +221,7 @@ TEST_CASE("a session that a signal ends stays open, says so, and can be resumed"
 
 TEST_CASE("a mistyped --on-existing names the words that there are") {
   const StudyFolder study;
-  check_refused(run(study, "P01", {"--on-existing", "resum"}), 2,
-                {"--on-existing: 'resum' is unknown; give refuse, resume or restart"});
+  check_refused(run(study, "P01", {"--on-existing", "resum"}), 2, {"refuse, resume"});
 }
 
 TEST_CASE("pilot sessions and changed studies are refused") {

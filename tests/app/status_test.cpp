@@ -44,14 +44,13 @@ void add_session(const StudyFolder& folder, const std::string& participant, int 
   const SecretKey own = entropy.secret("participant");
   record::BufferedEvents buffer;
   record::SessionRecorder recorder(number, own, buffer);
-  record::SessionOpening opening;
-  opening.participant = participant;
-  opening.enrolment = enrolment;
-  opening.visit = visit;
-  opening.study_id = key.study_id;
-  opening.seal = key.seal;
-  opening.device = "falcon";
-  opening.pilot = store.commitment().pilot;
+  record::SessionOpening opening{.participant = participant,
+                                 .enrolment = enrolment,
+                                 .visit = visit,
+                                 .study_id = key.study_id,
+                                 .seal = key.seal,
+                                 .device = "falcon",
+                                 .pilot = store.commitment().pilot};
   recorder.opened({}, opening, "{}");
   recorder.closed(std::chrono::seconds(1), true);
   const auto now = std::chrono::system_clock::now().time_since_epoch();

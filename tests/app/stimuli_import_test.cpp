@@ -1,8 +1,8 @@
 // A user's photographs, from their folder to an accuracy table and a contact sheet.
 #include "app/study_folder.hpp"
+#include "engine/image_samples.hpp"
 #include "support/catch.hpp"
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -84,7 +84,24 @@ TEST_CASE("a contact sheet shows every code, and only its owner can read it") {
     CHECK_THAT(html, holds_text(stimulus.at("code").get<std::string>()));
   }
   CHECK_THAT(html, holds_text("This sheet unblinds"));
+  CHECK_THAT(html, !holds_text("Of the pictures"));
   CHECK_THAT(html, holds_text("D2, 2 of 2") && holds_text("data:image/png;base64,"));
+}
+
+TEST_CASE("what prepare says of a picture is printed again, and stands in the contact sheet") {
+  const Album album;
+  succeeded(album.import_with({}));
+  Bytes pixels;
+  for (int i = 0; i < 60 * 60; ++i) pixels.push_back(static_cast<std::uint8_t>(i % 251));
+  replace_file(album.in("mine.pictures/D2-1.png"),
+               samples::Tiff(60, 60, pixels).with(274, {6}).bytes());
+  for (int time = 0; time < 2; ++time) {
+    CHECK_THAT(album.done("prepare @mine.json").errors,
+               holds_text("D2-1.png: is used as it is stored, turned or mirrored"));
+  }
+  succeeded(album.sheet("sheet.html"));
+  CHECK_THAT(text_of(read_file(album.in("sheet.html"))),
+             holds_text("mine.pictures/D2-1.png: is used as it is stored"));
 }
 
 TEST_CASE("a contact sheet is drawn with a key that is kept elsewhere") {
@@ -93,7 +110,7 @@ TEST_CASE("a contact sheet is drawn with a key that is kept elsewhere") {
   album.done("prepare @mine.json");
   fs::create_directories(album.in("drawer/stick"));
   fs::rename(album.in("mine.key"), album.in("drawer/stick/away.key"));
-  check_refused(album.sheet("sheet.html"), 1, {"there is no key, which a sheet needs"});
+  check_refused(album.sheet("sheet.html"), 1, {"there is no key"});
   succeeded(album.sheet("sheet.html", {"--key", album.in("drawer/stick/away.key")}));
   CHECK(is_there(album.in("sheet.html")));
 }
@@ -109,10 +126,10 @@ TEST_CASE("the table of an import says when its levels are those before equalisi
 TEST_CASE("without its key, or with another study's key, there is no sheet") {
   const Album album;
   succeeded(album.import_with({}));
-  check_refused(album.sheet("sheet.html"), 1, {"there is no key, which a sheet needs"});
+  check_refused(album.sheet("sheet.html"), 1, {"there is no key"});
   album.done("prepare @mine.json");
   check_refused(album.sheet("sheet.html", {"--key", album.in("other.key")}), 1,
-                {"there is no key, which a sheet needs"});
+                {"there is no key"});
   check_refused(album.sheet("sheet.svg"), 2, {"sheet.svg", ".html"});
   write_png(album.in("mine.pictures/D1-1.png"), photograph(3));
   check_refused(album.sheet("sheet.html"), 3, {"was not made from"});

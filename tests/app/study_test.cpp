@@ -119,8 +119,7 @@ TEST_CASE("before unblinding, report and export show quality and no outcome") {
   }
   study.done("export @a.db --out @csv");
   for (const std::string format : {"r", "events"}) {
-    check_refused(study.type("export @a.db --out @none --format " + format), 1,
-                  {"is not unblinded"});
+    check_refused(study.type("export @a.db --out @none --format " + format), 1, {"not unblinded"});
     CHECK_FALSE(fs::exists(study.path() / "none"));
   }
   const std::string trials = content(study.path() / "csv" / "trials.csv");
@@ -177,11 +176,10 @@ TEST_CASE("a registered look shows the registered question alone") {
   CHECK_FALSE(fs::exists(study.path() / "csv" / "confusion_adaptive.csv"));
   CHECK_THAT(content(study.path() / "csv" / "trials.csv"), !holds_text("granite"));
   CHECK_THAT(content(study.path() / "csv" / "participants.csv"), !holds_text("order_block"));
-  CHECK_THAT(study.type("export @a.db --format r --out @r").errors,
-             holds_text("blind but for the registered question"));
-  CHECK_THAT(study.type("fit @a.db").errors, holds_text("blind but for the registered question"));
+  CHECK_THAT(study.type("export @a.db --format r --out @r").errors, holds_text("blind but for"));
+  CHECK_THAT(study.type("fit @a.db").errors, holds_text("blind but for"));
   CHECK_THAT(study.type("export @a.db --participant P001 --key @a.db.key --out @one").errors,
-             holds_text("no look at the outcomes of participant P001 is recorded"));
+             holds_text("no look at the outcomes"));
 
   CHECK_THAT(study.type("status @a.db").output, holds_text("; a registered look was made"));
   const json quoted = study.printed("report @a.db --json");
@@ -196,7 +194,7 @@ TEST_CASE("a registered look shows the registered question alone") {
 TEST_CASE("a session of a study that is not prepared names the command that prepares it") {
   const StudyFolder study;
   check_refused(study.type("run @cloths.json --participant P01 --db @study.db"), 2,
-                {"is not prepared yet; run `touchtrial prepare "});
+                {"touchtrial prepare "});
   CHECK_FALSE(fs::exists(study.path() / "study.db"));
 }
 
@@ -205,7 +203,7 @@ TEST_CASE("an interim look at a number of participants that was not registered i
   study.write_study(registered_looks({3, 6}));
   succeeded(study.simulate("a.db", {"--keep-blind"}));
   check_refused(study.type("unblind @a.db --interim --reason curious"), 1,
-                {"4 participants are complete, and the registered looks are at 3 and 6"});
+                {"4 participants", "3 and 6"});
   CHECK_FALSE(study.printed("report @a.db --json").contains("primary"));
 }
 

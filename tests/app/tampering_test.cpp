@@ -184,9 +184,7 @@ TEST_CASE("what was altered before the first session is refused, and built anew 
   const fs::path list = study.path() / "cloths.pack/pack.json";
   const json whole = json::parse(content(list));
   const auto refused = [&](const std::string& part) {
-    check_refused(study.type("run @cloths.json --participant P01 --db @study.db --subject "
-                             "@quick.json"),
-                  1, {part});
+    check_refused(study.session("P01"), 1, {part});
     const ProgramResult checked = study.type("key check @cloths.json");
     CHECK(checked.exit_code == 3);
     CHECK_THAT(checked.output, holds_text(part));
@@ -221,9 +219,7 @@ TEST_CASE("what was altered before the first session is refused, and built anew 
     forged.erase("check");
     forged["check"] = to_hex(sha256(bytes_of(forged.dump())));
     replace_file(study.path() / "cloths.station", forged.dump(2) + "\n", FileMode::owner_only);
-    check_refused(study.type("run @cloths.json --participant P01 --db @study.db --subject "
-                             "@quick.json"),
-                  1, {"seals for another investigator"});
+    check_refused(study.session("P01"), 1, {"seals for another investigator"});
     CHECK(study.type("key check @cloths.json").exit_code == 3);
     CHECK_THAT(prepared(), holds_text("built 0, reused 3"));
   }

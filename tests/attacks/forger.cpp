@@ -89,12 +89,11 @@ void AttackedStudy::begin_open_session() {
   recorder_.emplace(open_session(), own_, *sink_);
   schedule_ =
       study::make_schedule(station_.study, station_.draw_of(kEnrolment, study::Draws::people));
-  record::SessionOpening opening;
-  opening.participant = "P04";
-  opening.enrolment = kEnrolment;
-  opening.study_id = station_.study_id;
-  opening.seal = station_.seal;
-  opening.device = "simulated";
+  record::SessionOpening opening{.participant = "P04",
+                                 .enrolment = kEnrolment,
+                                 .study_id = station_.study_id,
+                                 .seal = station_.seal,
+                                 .device = "simulated"};
   recorder_->opened({}, opening, study::schedule_to_json(schedule_, station_));
 }
 

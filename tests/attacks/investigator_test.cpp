@@ -3,7 +3,6 @@
 #include "record/payload_json.hpp"
 #include "support/catch.hpp"
 
-#include <string>
 #include <vector>
 
 using namespace touchtrial;

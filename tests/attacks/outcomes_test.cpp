@@ -121,7 +121,7 @@ void open(const record::StudyStore& store, const study::StudyKey& key, Numbers& 
     const auto place = static_cast<std::size_t>(row.trial - 1);
     const study::Presentation& shown = schedule.presentations.at(place);
     const int answer = schedule.layout.at(static_cast<std::size_t>(row.position.value()));
-    const bool is_blank = !row.target && shown.kind == study::PresentationKind::catch_trial;
+    const bool is_blank = !row.target && shown.role == study::Role::catch_trial;
     const int target = is_blank ? -1 : row.target.value_or(shown.stimulus.class_index);
     const double right = answer == target ? 1.0 : 0.0;
     truth.add("right", row.session, right);
@@ -212,17 +212,15 @@ std::set<std::string> telling(const Numbers& numbers, const Numbers& truth) {
 
 /// People who differ much in how well they feel, in how often they lapse and in what they prefer.
 simulation::SubjectModel people() {
-  simulation::SubjectModel subject;
-  subject.sense = engine::ThresholdCurve::israr_2006;
-  subject.threshold_spread_db = 6.0;
-  subject.feature_noise = 0.25;
-  subject.feature_noise_spread = 1.0;
-  subject.lapse = 0.05;
-  subject.lapse_spread = 1.0;
-  subject.position_bias_spread = 0.3;
-  subject.training_passes = 2;
-  subject.explore_s = 0.6;
-  return subject;
+  return {.sense = engine::ThresholdCurve::israr_2006,
+          .threshold_spread_db = 6.0,
+          .feature_noise = 0.25,
+          .feature_noise_spread = 1.0,
+          .lapse = 0.05,
+          .lapse_spread = 1.0,
+          .position_bias_spread = 0.3,
+          .explore_s = 0.6,
+          .training_passes = 2};
 }
 
 /// \param telling_if_clear  of what is sealed

@@ -30,8 +30,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a texture of ten times the stiffness makes the hand chatter under model paper") {
-  engine::RenderingOptions options;
-  options.texture_stiffness_n_per_mm = 4.0;
+  engine::RenderingOptions options{.texture_stiffness_n_per_mm = 4.0};
   const Plane<double> texture = texture_of("cloth");
   CHECK(stroke_texture(texture, options).vibration_mm_s >
         20.0 * stroke_texture(texture, engine::RenderingOptions{}).vibration_mm_s);

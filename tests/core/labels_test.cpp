@@ -2,6 +2,7 @@
 
 #include "support/catch.hpp"
 
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -45,4 +46,14 @@ TEST_CASE("a label may have letters of any alphabet, but a word of Latin ones no
   }
   CHECK((alphabets_of("cork").latin && !alphabets_of("cork 9").other));
   CHECK((!alphabets_of(kCyrillic).latin && alphabets_of(kCyrillic).other));
+}
+
+TEST_CASE("labels of several alphabets are to be looked at, those of one are not") {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
+      {{"cork", "silk"}, ""},
+      {{kCyrillic, "9"}, ""},
+      {{"cork", "silk", kCyrillic},
+       "labels have Latin letters (\"cork\" and 1 more) and others (\"" + kCyrillic +
+           "\"); look whether any two look alike, and rename one"}};
+  for (const auto& [labels, remark] : cases) CHECK(remark_on_alphabets(labels) == remark);
 }

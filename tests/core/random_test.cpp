@@ -2,12 +2,9 @@
 
 #include "support/catch.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
-#include <vector>
 
 using namespace touchtrial;
 

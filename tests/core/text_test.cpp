@@ -2,6 +2,10 @@
 
 #include "support/catch.hpp"
 
+#include <string>
+#include <utility>
+#include <vector>
+
 using namespace touchtrial;
 
 TEST_CASE(
@@ -29,6 +33,18 @@ TEST_CASE("names that look alike have one skeleton, others do not") {
   CHECK(skeleton_of("\xef\xbc\xa4"
                     "9") == skeleton_of("d9"));                // a wide D
   CHECK(skeleton_of("a\xe2\x80\x93z") == skeleton_of("a z"));  // an en dash
+  const std::vector<std::pair<std::string, std::string>> alphabets = {
+      {"oak", "\xd0\xbe\xd0\xb0\xd0\xba"},  // Cyrillic letters
+      {"COMET", "\xd0\xa1\xd0\x9e\xd0\x9c\xd0\x95\xd0\xa2"},
+      {"e\xcc\x88", "\xd1\x91"},
+      {"t\xc3\xa1p", "\xcf\x84\xce\xac\xcf\x81"},  // Greek ones
+      {"ZINA", "\xce\x96\xce\x99\xce\x9d\xce\x91"}};
+  for (const auto& [latin, other] : alphabets) {
+    CAPTURE(latin);
+    CHECK(skeleton_of(latin) == skeleton_of(other));
+  }
+  CHECK(skeleton_of("50 \xc2\xb5m") != skeleton_of("50 mm"));
+  CHECK(skeleton_of("\xd1\x81\xd0\xbe\xd1\x81\xd0\xbd\xd0\xb0") != skeleton_of("cocoa"));
   CHECK(skeleton_of("bark") != skeleton_of("bark2"));
   CHECK(skeleton_of("Noel") != skeleton_of(no_el));
   CHECK(skeleton_of("latin\xe9") == "latin\xe9");

@@ -3,8 +3,8 @@
 #include "core/files.hpp"
 #include "device/device_settings.hpp"
 #include "device/drivers/registry.hpp"
-#include "device/schema_against_reader.hpp"
 #include "support/catch.hpp"
+#include "support/schema_against_reader.hpp"
 
 #include <string>
 

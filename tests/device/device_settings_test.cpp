@@ -108,9 +108,7 @@ TEST_CASE("scales are one number for all axes, or one for each, and 1 otherwise"
 
 TEST_CASE("a lab's limits make limits stricter and never looser") {
   const device::SafetyLimits usual;
-  device::LabLimits lab;
-  lab.max_force_n = 50.0;
-  lab.max_speed_mm_s = 500.0;
+  device::LabLimits lab{.max_force_n = 50.0, .max_speed_mm_s = 500.0};
   const device::SafetyLimits limits = device::stricter_of(usual, lab);
   CHECK(limits.max_force_n == usual.max_force_n);
   CHECK(limits.max_speed_mm_s == 500.0);
@@ -119,16 +117,14 @@ TEST_CASE("a lab's limits make limits stricter and never looser") {
 }
 
 TEST_CASE("a lab's slew limit does not keep a force from being let go") {
-  device::LabLimits lab;
-  lab.max_slew_n_per_s = 1.0;
+  device::LabLimits lab{.max_slew_n_per_s = 1.0};
   const device::SafetyLimits limits = device::stricter_of({}, lab);
   CHECK(limits.max_slew_n_per_s == limits.max_force_n / device::kLongestLetGoS);
   CHECK(device::is_sound(limits));
 }
 
 TEST_CASE("a lab's continuous force holds if none is known or the known one is larger") {
-  device::LabLimits lab;
-  lab.continuous_force_n = 0.9;
+  device::LabLimits lab{.continuous_force_n = 0.9};
   device::SafetyLimits known;
   CHECK(device::stricter_of(known, lab).continuous_force_n == 0.9);
   known.continuous_force_n = 0.5;

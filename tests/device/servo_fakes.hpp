@@ -125,13 +125,11 @@ class NoSamples final : public device::SampleSink {
 
 /// \return limits of which only the norm limit affects a device that behaves
 [[nodiscard]] inline device::SafetyLimits norm_limit_alone(double max_force_n = 3.3) {
-  device::SafetyLimits limits;
-  limits.max_force_n = max_force_n;
-  limits.max_slew_n_per_s = std::numeric_limits<double>::infinity();
-  limits.max_speed_mm_s = std::numeric_limits<double>::infinity();
-  limits.engage_force_n = std::numeric_limits<double>::infinity();
-  limits.ramp_up_s = 0.0;
-  return limits;
+  return {.max_force_n = max_force_n,
+          .max_slew_n_per_s = std::numeric_limits<double>::infinity(),
+          .max_speed_mm_s = std::numeric_limits<double>::infinity(),
+          .engage_force_n = std::numeric_limits<double>::infinity(),
+          .ramp_up_s = 0.0};
 }
 
 }  // namespace touchtrial

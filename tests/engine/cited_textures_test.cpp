@@ -9,10 +9,10 @@
 namespace touchtrial {
 namespace {
 
-engine::ExtractionOptions options_of(engine::Method method) {
-  engine::ExtractionOptions options;
-  options.method = method;
-  return options;
+using namespace engine;
+
+ExtractionOptions options_of(Method method) {
+  return {.method = method};
 }
 
 TEST_CASE("the gaussian texture agrees with its definition") {
@@ -56,28 +56,23 @@ TEST_CASE("the edge texture agrees with its definition and ends at 127") {
 
 TEST_CASE("the luminance texture's picture is the image") {
   const GreyImage image = noise_image({10, 13});
-  CHECK(engine::luminance_texture<double>(image).at(3, 4) == image.at(3, 4) - 128.0);
-  const auto texture =
-      engine::extract_texture<float>(image, options_of(engine::Method::luminance)).texture;
+  CHECK(luminance_texture<double>(image).at(3, 4) == image.at(3, 4) - 128.0);
+  const auto texture = extract_texture<float>(image, options_of(Method::luminance)).texture;
   CHECK(engine::texture_picture(texture) == image);
 }
 
 TEST_CASE("a float texture of the cited extractors is the double one rounded") {
   const GreyImage image = cloth_image({31, 20});
-  for (const engine::Method method : {engine::Method::gaussian, engine::Method::median,
-                                      engine::Method::edge, engine::Method::luminance}) {
-    const auto exact = engine::extract_texture<double>(image, options_of(method)).texture;
-    CHECK(engine::extract_texture<float>(image, options_of(method)).texture ==
-          converted<float>(exact));
+  for (const Method method : {Method::gaussian, Method::median, Method::edge, Method::luminance}) {
+    const auto exact = extract_texture<double>(image, options_of(method)).texture;
+    CHECK(extract_texture<float>(image, options_of(method)).texture == converted<float>(exact));
   }
 }
 
 TEST_CASE("the cited extractors give the enhanced image and no other by-product") {
   const GreyImage image = cloth_image({12, 12});
-  for (const engine::Method method : {engine::Method::gaussian, engine::Method::median,
-                                      engine::Method::edge, engine::Method::luminance}) {
-    const auto result =
-        engine::extract_texture<double>(image, options_of(method), engine::WantedPlanes::all());
+  for (const Method method : {Method::gaussian, Method::median, Method::edge, Method::luminance}) {
+    const auto result = extract_texture<double>(image, options_of(method), WantedPlanes::all());
     CHECK(result.enhanced.at(5, 6) == image.at(5, 6) + result.texture.at(5, 6));
     CHECK(result.order.empty());
     CHECK(result.csgv.empty());

@@ -5,8 +5,6 @@
 #include "engine/reference/extraction_reference.hpp"
 #include "support/catch.hpp"
 
-#include <algorithm>
-#include <cstdint>
 #include <stdexcept>
 
 namespace touchtrial {

@@ -15,9 +15,7 @@ namespace touchtrial {
 namespace {
 
 GreyImage fixed_picture(const GreyImage& image, double order) {
-  engine::ExtractionOptions options;
-  options.method = engine::Method::fixed;
-  options.order = order;
+  engine::ExtractionOptions options{.method = engine::Method::fixed, .order = order};
   return engine::texture_picture(engine::extract_texture<double>(image, options).texture);
 }
 

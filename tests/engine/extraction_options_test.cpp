@@ -19,56 +19,52 @@
 namespace touchtrial {
 namespace {
 
+using namespace engine;
+
 TEST_CASE("methods have the names that study files use") {
-  CHECK(engine::method_names() == std::vector<std::string>{"adaptive", "fixed", "tv-gabor",
-                                                           "gaussian", "median", "edge",
-                                                           "luminance"});
-  for (const std::string& name : engine::method_names()) {
-    const auto method = engine::method_from_name(name);
+  CHECK(method_names() == std::vector<std::string>{"adaptive", "fixed", "tv-gabor", "gaussian",
+                                                   "median", "edge", "luminance"});
+  for (const std::string& name : method_names()) {
+    const auto method = method_from_name(name);
     REQUIRE(method.has_value());
-    CHECK(engine::name_of(*method) == name);
+    CHECK(name_of(*method) == name);
   }
-  CHECK_FALSE(engine::method_from_name("tv_gabor").has_value());
-  CHECK_FALSE(engine::method_from_name("").has_value());
+  CHECK_FALSE(method_from_name("tv_gabor").has_value());
+  CHECK_FALSE(method_from_name("").has_value());
 }
 
 TEST_CASE("a parameter belongs to the methods that use it, in the order of the enumeration") {
-  using engine::Method;
-  using engine::Parameter;
-  CHECK(engine::methods_with(Parameter::radius) ==
+  CHECK(methods_with(Parameter::radius) ==
         std::vector{Method::adaptive, Method::fixed, Method::median});
-  CHECK(engine::methods_with(Parameter::norm) == std::vector{Method::adaptive, Method::fixed});
-  CHECK(engine::methods_with(Parameter::divisor) == std::vector{Method::edge});
-  CHECK(engine::methods_with(Parameter::max_steps) == std::vector{Method::tv_gabor});
+  CHECK(methods_with(Parameter::norm) == std::vector{Method::adaptive, Method::fixed});
+  CHECK(methods_with(Parameter::divisor) == std::vector{Method::edge});
+  CHECK(methods_with(Parameter::max_steps) == std::vector{Method::tv_gabor});
 }
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLargestInt = std::numeric_limits<int>::max();
 
-std::string refusal_of_options(const engine::ExtractionOptions& options) {
-  return refusal_of([&] { engine::check_options(options); });
+std::string refusal_of_options(const ExtractionOptions& options) {
+  return refusal_of([&] { check_options(options); });
 }
 
-std::string refusal_of_tv_gabor(const engine::TvGaborOptions& tv_gabor) {
-  engine::ExtractionOptions options;
-  options.method = engine::Method::tv_gabor;
-  options.tv_gabor = tv_gabor;
+std::string refusal_of_tv_gabor(const TvGaborOptions& tv_gabor) {
+  ExtractionOptions options{.method = Method::tv_gabor, .tv_gabor = tv_gabor};
   return refusal_of_options(options);
 }
 
 /// A parameter of a method, and values that it cannot have besides those that are not finite.
 struct Refused {
   std::string name;
-  engine::Method method;
-  std::function<void(engine::ExtractionOptions&, double)> set;
+  Method method;
+  std::function<void(ExtractionOptions&, double)> set;
   std::vector<double> values;
   bool is_whole = false;
 };
 
 std::vector<Refused> refused_options() {
-  using engine::Method;
-  using Options = engine::ExtractionOptions;
+  using Options = ExtractionOptions;
   const auto radius = [](Options& o, double value) { o.radius = static_cast<int>(value); };
   const std::vector<double> radii = {-1.0, 0.0, 64.0, kLargestInt};
   return {
@@ -129,78 +125,59 @@ TEST_CASE("a parameter that is not finite or out of its range is refused by name
     if (!one.is_whole) one.values.insert(one.values.end(), {kNan, kInfinity, -kInfinity});
     for (const double value : one.values) {
       INFO(one.name << " " << value);
-      engine::ExtractionOptions options;
-      options.method = one.method;
+      ExtractionOptions options{.method = one.method};
       one.set(options, value);
       CHECK(refusal_of_options(options).starts_with(one.name + ":"));
       CHECK_THAT(refusal_of([&] {
-                   (void)engine::extract_texture<float>(noise_image({4, 4}), options);
+                   (void)extract_texture<float>(noise_image({4, 4}), options);
                  }),
                  holds_text(one.name + ":"));
     }
   }
-  engine::TvGaborOptions none;
-  none.components = {};
+  TvGaborOptions none{.components = {}};
   CHECK(refusal_of_tv_gabor(none).starts_with("components:"));
 }
 
 TEST_CASE("the ends of every range are accepted") {
-  engine::ExtractionOptions options;
-  options.method = engine::Method::fixed;
-  options.order = 0.0;
-  options.radius = 1;
+  ExtractionOptions options{.method = Method::fixed, .radius = 1, .order = 0.0};
   CHECK(refusal_of_options(options).empty());
   options.order = std::nextafter(1.0, 0.0);
-  options.radius = engine::ExtractionOptions::kMaxRadius;
+  options.radius = ExtractionOptions::kMaxRadius;
   CHECK(refusal_of_options(options).empty());
-  engine::TvGaborOptions tv_gabor;
-  tv_gabor.lambda = engine::TvGaborOptions::kMinLambda;
-  tv_gabor.components = {{0.5, -720.0}};
-  tv_gabor.max_steps = 1;
+  TvGaborOptions tv_gabor{
+      .lambda = TvGaborOptions::kMinLambda, .components = {{0.5, -720.0}}, .max_steps = 1};
   CHECK(refusal_of_tv_gabor(tv_gabor).empty());
-  tv_gabor.lambda = engine::TvGaborOptions::kMaxLambda;
+  tv_gabor.lambda = TvGaborOptions::kMaxLambda;
   CHECK(refusal_of_tv_gabor(tv_gabor).empty());
 }
 
 TEST_CASE("parameters of other methods are ignored") {
-  engine::ExtractionOptions options;
-  options.order = kNan;
+  ExtractionOptions options{.order = kNan};
   options.tv_gabor.lambda = kNan;
   CHECK(refusal_of_options(options).empty());
   options = {};
-  options.method = engine::Method::tv_gabor;
+  options.method = Method::tv_gabor;
   options.radius = 0;
   CHECK(refusal_of_options(options).empty());
 }
 
 // The norms, gradients, combinations and levels of the adaptive and the fixed method.
 
-engine::ExtractionOptions fixed_with(engine::Norm norm, double order, int radius = 2) {
-  engine::ExtractionOptions options;
-  options.method = engine::Method::fixed;
-  options.norm = norm;
-  options.order = order;
-  options.radius = radius;
-  return options;
+ExtractionOptions fixed_with(Norm norm, double order, int radius = 2) {
+  return {.method = Method::fixed, .radius = radius, .order = order, .norm = norm};
 }
 
-engine::ExtractionOptions adaptive_with(int levels, engine::Gradient gradient,
-                                        engine::Combine combine) {
-  engine::ExtractionOptions options;
-  options.levels = levels;
-  options.gradient = gradient;
-  options.combine = combine;
-  return options;
+ExtractionOptions adaptive_with(int levels, Gradient gradient, Combine combine) {
+  return {.gradient = gradient, .combine = combine, .levels = levels};
 }
 
-void check_csgv(const GreyImage& image, int levels, engine::Gradient gradient,
-                engine::Combine combine) {
-  const engine::WantedPlanes wanted{.csgv = true, .order = true};
+void check_csgv(const GreyImage& image, int levels, Gradient gradient, Combine combine) {
+  const WantedPlanes wanted{.csgv = true, .order = true};
   const auto result =
-      engine::extract_texture<double>(image, adaptive_with(levels, gradient, combine), wanted);
+      extract_texture<double>(image, adaptive_with(levels, gradient, combine), wanted);
   const Plane<double> expected =
-      reference::csgv(image, levels, std::string(name_in(engine::kGradientNames, gradient)),
-                      std::string(name_in(engine::kCombineNames, combine)));
+      reference::csgv(image, levels, std::string(name_in(kGradientNames, gradient)),
+                      std::string(name_in(kCombineNames, combine)));
   CHECK(largest_relative_difference(result.csgv, expected) < 1e-10);  // ll grows by 2 a level
   CHECK(largest_difference(result.order, reference::order_map(result.csgv)) < 1e-12);
   CHECK(largest_difference(result.texture, reference::texture(image, result.order, 2)) < 1e-10);
@@ -208,14 +185,12 @@ void check_csgv(const GreyImage& image, int levels, engine::Gradient gradient,
 
 TEST_CASE("every gradient and combination agrees with its definition at every level") {
   for (const Size size : {Size{1, 1}, Size{2, 3}, Size{9, 12}, Size{33, 47}}) {
-    for (const int levels : {1, 2, 3, engine::ExtractionOptions::kMaxLevels}) {
-      for (const engine::Gradient gradient :
-           {engine::Gradient::sobel, engine::Gradient::prewitt, engine::Gradient::central}) {
-        for (const engine::Combine combine :
-             {engine::Combine::sum, engine::Combine::l2, engine::Combine::max}) {
+    for (const int levels : {1, 2, 3, ExtractionOptions::kMaxLevels}) {
+      for (const Gradient gradient : {Gradient::sobel, Gradient::prewitt, Gradient::central}) {
+        for (const Combine combine : {Combine::sum, Combine::l2, Combine::max}) {
           INFO(size.height << " x " << size.width << ", levels " << levels << ", "
-                           << name_in(engine::kGradientNames, gradient) << ", "
-                           << name_in(engine::kCombineNames, combine));
+                           << name_in(kGradientNames, gradient) << ", "
+                           << name_in(kCombineNames, combine));
           check_csgv(cloth_image(size), levels, gradient, combine);
         }
       }
@@ -225,19 +200,17 @@ TEST_CASE("every gradient and combination agrees with its definition at every le
 
 TEST_CASE("every norm agrees with its definition at fixed orders") {
   const GreyImage image = cloth_image({23, 30});
-  for (const auto& [norm, name] :
-       {std::pair{engine::Norm::additive, "additive"}, std::pair{engine::Norm::sum, "sum"},
-        std::pair{engine::Norm::none, "none"}}) {
+  for (const auto& [norm, name] : {std::pair{Norm::additive, "additive"},
+                                   std::pair{Norm::sum, "sum"}, std::pair{Norm::none, "none"}}) {
     for (const double order : {0.0, 1e-300, 0.05, 0.5, 0.999}) {
       for (const int radius : {1, 2, 7, 40}) {
         INFO(name << ", order " << order << ", radius " << radius);
         const Plane<double> orders(23, 30, order);
         const Plane<double> expected = reference::texture(image, orders, radius, name);
-        const double gain =
-            norm == engine::Norm::sum ? 1.0 / engine::gl_weight_sum(order, radius) : 1.0;
+        const double gain = norm == Norm::sum ? 1.0 / gl_weight_sum(order, radius) : 1.0;
         const auto options = fixed_with(norm, order, radius);
-        CHECK(largest_difference(engine::extract_texture<double>(image, options).texture,
-                                 expected) < 1e-11 * std::max(gain, 1.0));
+        CHECK(largest_difference(extract_texture<double>(image, options).texture, expected) <
+              1e-11 * std::max(gain, 1.0));
       }
     }
   }
@@ -245,12 +218,9 @@ TEST_CASE("every norm agrees with its definition at fixed orders") {
 
 TEST_CASE("every norm agrees with its definition at adaptive orders") {
   const GreyImage image = cloth_image({41, 30});
-  for (const auto& [norm, name] :
-       {std::pair{engine::Norm::sum, "sum"}, std::pair{engine::Norm::none, "none"}}) {
-    engine::ExtractionOptions options;
-    options.norm = norm;
-    const auto result =
-        engine::extract_texture<double>(image, options, engine::WantedPlanes::all());
+  for (const auto& [norm, name] : {std::pair{Norm::sum, "sum"}, std::pair{Norm::none, "none"}}) {
+    ExtractionOptions options{.norm = norm};
+    const auto result = extract_texture<double>(image, options, WantedPlanes::all());
     CHECK(largest_difference(result.texture, reference::texture(image, result.order, 2, name)) <
           1e-8);
   }
@@ -258,11 +228,11 @@ TEST_CASE("every norm agrees with its definition at adaptive orders") {
 
 TEST_CASE("float textures of other norms are the double ones rounded") {
   const GreyImage image = noise_image({40, 31});
-  for (const engine::Norm norm : {engine::Norm::sum, engine::Norm::none}) {
+  for (const Norm norm : {Norm::sum, Norm::none}) {
     for (const double order : {0.3, 0.999, std::nextafter(1.0, 0.0)}) {
       const auto options = fixed_with(norm, order);
-      const auto exact = engine::extract_texture<double>(image, options).texture;
-      CHECK(engine::extract_texture<float>(image, options).texture == converted<float>(exact));
+      const auto exact = extract_texture<double>(image, options).texture;
+      CHECK(extract_texture<float>(image, options).texture == converted<float>(exact));
     }
   }
 }

@@ -11,32 +11,27 @@
 #include <limits>
 #include <stdexcept>
 #include <utility>
-#include <vector>
 
 namespace touchtrial {
 namespace {
 
+using namespace engine;
+
 constexpr double kDoubleTolerance = 1e-10;
 constexpr double kFloatTolerance = 4e-5;
 
-engine::ExtractionOptions adaptive_options(int radius = 2) {
-  engine::ExtractionOptions options;
-  options.radius = radius;
-  return options;
+ExtractionOptions adaptive_options(int radius = 2) {
+  return {.radius = radius};
 }
 
-engine::ExtractionOptions fixed_options(double order, int radius = 2) {
-  engine::ExtractionOptions options;
-  options.method = engine::Method::fixed;
-  options.order = order;
-  options.radius = radius;
-  return options;
+ExtractionOptions fixed_options(double order, int radius = 2) {
+  return {.method = Method::fixed, .radius = radius, .order = order};
 }
 
 template <typename Real>
 double texture_error(const GreyImage& image, const Plane<double>& csgv,
                      const Plane<double>& expected, int radius) {
-  Plane<Real> texture = engine::extract_texture<Real>(image, adaptive_options(radius)).texture;
+  Plane<Real> texture = extract_texture<Real>(image, adaptive_options(radius)).texture;
   Plane<double> kept = expected;
   for (std::size_t i = 0; i < kept.size(); ++i) {
     if (reference::is_at_branch_point(csgv.samples()[i])) {
@@ -57,7 +52,7 @@ void check_adaptive(const GreyImage& image, int radius) {
 TEST_CASE("the adaptive texture agrees with its definition at every size and radius") {
   for (const Size size : awkward_sizes()) {
     for (const auto& [name, image] : example_images(size)) {
-      for (const int radius : {1, 2, 3, 7, 20, engine::ExtractionOptions::kMaxRadius}) {
+      for (const int radius : {1, 2, 3, 7, 20, ExtractionOptions::kMaxRadius}) {
         INFO(name << ", " << size.height << " x " << size.width << ", radius " << radius);
         check_adaptive(image, radius);
       }
@@ -76,8 +71,7 @@ TEST_CASE("the adaptive texture agrees with its definition on real stimulus size
 
 TEST_CASE("the adaptive method gives its by-products in the image's shape") {
   const GreyImage image = cloth_image({9, 12});
-  const auto result =
-      engine::extract_texture<double>(image, adaptive_options(), engine::WantedPlanes::all());
+  const auto result = extract_texture<double>(image, adaptive_options(), WantedPlanes::all());
   const Plane<double> csgv = reference::csgv(image);
   CHECK(largest_relative_difference(result.csgv, csgv) < 1e-11);
   CHECK(largest_difference(result.order, reference::order_map(csgv)) < 1e-12);
@@ -97,8 +91,7 @@ TEST_CASE("the adaptive method gives its by-products in the image's shape") {
 
 TEST_CASE("the fixed method uses one order for all pixels") {
   const GreyImage image = noise_image({13, 12});
-  const auto result =
-      engine::extract_texture<double>(image, fixed_options(0.55, 3), engine::WantedPlanes::all());
+  const auto result = extract_texture<double>(image, fixed_options(0.55, 3), WantedPlanes::all());
   CHECK(result.order == Plane<double>(13, 12, 0.55));
   CHECK(largest_difference(result.texture, reference::texture(image, result.order, 3)) <
         kDoubleTolerance);
@@ -108,9 +101,8 @@ TEST_CASE("the fixed method uses one order for all pixels") {
 
 TEST_CASE("tv-gabor splits an image into cartoon and texture") {
   const GreyImage image = cloth_image({20, 24});
-  engine::ExtractionOptions options;
-  options.method = engine::Method::tv_gabor;
-  const auto result = engine::extract_texture<double>(image, options, engine::WantedPlanes::all());
+  ExtractionOptions options{.method = Method::tv_gabor};
+  const auto result = extract_texture<double>(image, options, WantedPlanes::all());
   CHECK(result.converged);
   CHECK(result.steps > 0);
   CHECK(result.gap <= options.tv_gabor.gap);
@@ -123,11 +115,9 @@ TEST_CASE("tv-gabor splits an image into cartoon and texture") {
 }
 
 TEST_CASE("unwanted planes stay empty") {
-  for (const engine::Method method :
-       {engine::Method::adaptive, engine::Method::fixed, engine::Method::tv_gabor}) {
-    engine::ExtractionOptions options;
-    options.method = method;
-    const auto result = engine::extract_texture<float>(noise_image({8, 8}), options);
+  for (const Method method : {Method::adaptive, Method::fixed, Method::tv_gabor}) {
+    ExtractionOptions options{.method = method};
+    const auto result = extract_texture<float>(noise_image({8, 8}), options);
     CHECK(result.texture.size() == 64);
     for (const Plane<float>* plane :
          {&result.sub_band_ll, &result.sub_band_lh, &result.sub_band_hl, &result.sub_band_hh,
@@ -138,11 +128,9 @@ TEST_CASE("unwanted planes stay empty") {
 }
 
 TEST_CASE("extract_texture refuses an empty image, whatever the method") {
-  for (const engine::Method method :
-       {engine::Method::adaptive, engine::Method::fixed, engine::Method::tv_gabor}) {
-    engine::ExtractionOptions options;
-    options.method = method;
-    CHECK(refusal_of([&] { (void)engine::extract_texture<float>(GreyImage(), options); }) ==
+  for (const Method method : {Method::adaptive, Method::fixed, Method::tv_gabor}) {
+    ExtractionOptions options{.method = method};
+    CHECK(refusal_of([&] { (void)extract_texture<float>(GreyImage(), options); }) ==
           "extract_texture: the image is empty");
   }
 }
@@ -178,7 +166,7 @@ TEMPLATE_TEST_CASE("the mapping abs shows magnitudes, rounded half up", "", floa
   texture.at(0, 0) = TestType(-3.5);
   texture.at(0, 1) = TestType(2.25);
   texture.at(0, 2) = TestType(-400);
-  const GreyImage picture = engine::texture_picture(texture, engine::Mapping::abs);
+  const GreyImage picture = engine::texture_picture(texture, Mapping::abs);
   CHECK(picture.at(0, 0) == 4);
   CHECK(picture.at(0, 1) == 2);
   CHECK(picture.at(0, 2) == 255);
@@ -191,11 +179,11 @@ TEMPLATE_TEST_CASE("the mapping stretch fills 0 to 255, and shows a flat texture
   texture.at(0, 0) = TestType(-1);
   texture.at(0, 1) = TestType(1);
   texture.at(0, 2) = TestType(4);
-  const GreyImage picture = engine::texture_picture(texture, engine::Mapping::stretch);
+  const GreyImage picture = engine::texture_picture(texture, Mapping::stretch);
   CHECK(picture.at(0, 0) == 0);
   CHECK(picture.at(0, 1) == 102);
   CHECK(picture.at(0, 2) == 255);
-  CHECK(engine::texture_picture(Plane<TestType>(2, 3, TestType(7)), engine::Mapping::stretch) ==
+  CHECK(engine::texture_picture(Plane<TestType>(2, 3, TestType(7)), Mapping::stretch) ==
         GreyImage(2, 3));
 }
 

@@ -8,7 +8,6 @@
 #include "engine/refusal.hpp"
 #include "support/catch.hpp"
 
-#include <cstddef>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -25,10 +24,8 @@ constexpr int kMaxRadius = 9;
 /// The texture of one order by the code that the product uses in this precision.
 template <typename Real>
 Plane<Real> texture_of(const GreyImage& image, int radius, double order) {
-  engine::ExtractionOptions options;
-  options.method = engine::Method::fixed;
-  options.radius = radius;
-  options.order = order;
+  engine::ExtractionOptions options{
+      .method = engine::Method::fixed, .radius = radius, .order = order};
   return engine::extract_texture<Real>(image, options).texture;
 }
 

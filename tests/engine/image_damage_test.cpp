@@ -5,7 +5,6 @@
 #include "support/catch.hpp"
 
 #include <cstdio>
-#include <filesystem>
 #include <functional>
 
 #include <fcntl.h>

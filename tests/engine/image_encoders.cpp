@@ -2,7 +2,6 @@
 #include "core/files.hpp"
 #include "image_samples.hpp"
 
-#include <cstdio>
 #include <cstdlib>
 #include <memory>
 

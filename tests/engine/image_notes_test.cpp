@@ -59,6 +59,21 @@ TEST_CASE("orientation and resolution are found in every kind of file that has t
   CHECK(*phys.pixels_per_mm == Approx(11.811));
 }
 
+TEST_CASE("a picture that is stored turned, or in 1 bit, is remarked on") {
+  CHECK(remarks_on(notes_of(directory(1, 300, 2))).empty());
+  CHECK_THAT(remarks_on(notes_of(directory(6, 300, 2))).front(),
+             holds_text("is used as it is stored"));
+  for (const char bits : {'\1', '\x8'}) {
+    const std::string header = big(20, 4) + big(30, 4) + bits + "\0\0\0\0"s;
+    const std::string bitmap = "BM"s + std::string(26, '\0') + bits + std::string(30, '\0');
+    const std::string tiff = "MM\0*"s + big(8, 4) + big(1, 2) + big(258, 2) + big(3, 2) +
+                             big(1, 4) + "\0"s + bits + "\0\0"s + big(0, 4);
+    for (const std::string& file : {png("IHDR", header), bitmap, tiff}) {
+      CHECK(remarks_on(notes_of(file)).size() == (bits == 1 ? 1 : 0));
+    }
+  }
+}
+
 TEST_CASE("a resolution that a camera wrote says nothing of the object") {
   // A directory with a resolution, the name of a maker, and notes on the exposure behind it.
   const auto camera = [](std::uint32_t dots, bool is_named, bool has_exposure) {

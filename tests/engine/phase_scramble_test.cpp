@@ -10,7 +10,6 @@
 #include <complex>
 #include <numbers>
 #include <string>
-#include <vector>
 
 namespace touchtrial {
 namespace {
@@ -58,11 +57,7 @@ GreyImage marked_image() {
 }
 
 engine::ExtractionOptions scrambled_by(engine::Method method, std::uint64_t seed) {
-  engine::ExtractionOptions options;
-  options.method = method;
-  options.control = engine::Control::phase_scrambled;
-  options.control_seed = seed;
-  return options;
+  return {.method = method, .control = engine::Control::phase_scrambled, .control_seed = seed};
 }
 
 }  // namespace
@@ -131,8 +126,7 @@ TEST_CASE("an extraction's control is made from the texture of any method") {
   for (const std::string& name : engine::method_names()) {
     INFO(name);
     const engine::Method method = *engine::method_from_name(name);
-    engine::ExtractionOptions plain;
-    plain.method = method;
+    engine::ExtractionOptions plain{.method = method};
     const Plane<double> texture = engine::extract_texture<double>(image, plain).texture;
     const auto control = engine::extract_texture<double>(image, scrambled_by(method, 11));
     CHECK(control.texture == engine::phase_scrambled(texture, 11));

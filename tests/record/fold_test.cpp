@@ -125,8 +125,7 @@ TEST_CASE("an impossible event is refused with its place and leaves the rows as 
   session.recorder.timed_out(seconds(2), 2);
   session.trace(2);
   refused([&] { session.recorder.presented(seconds(2), 2, 0); }, "again after its trace");
-  refused([&] { session.recorder.opened(seconds(2), opening(1), "{}"); },
-          "by its first event only");
+  refused([&] { session.recorder.opened(seconds(2), opening(1), "{}"); }, "by its first event");
   session.recorder.closed(seconds(3), false);
   REQUIRE(session.rows.sessions.at(1).state == SessionState::stopped);
   refused([&] { session.recorder.remarked(seconds(3), EventKind::noted, ""); }, "already closed");
@@ -137,7 +136,7 @@ TEST_CASE("a session that was never opened takes no events") {
   SessionRecorder recorder(1, participant_key(1), events);
   recorder.presented(seconds(1), 1, 0);
   DerivedRows rows;
-  REQUIRE(contains(refusal_of([&] { fold(rows, events.events.front()); }), "has not been opened"));
+  REQUIRE(refuses([&] { fold(rows, events.events.front()); }, "has not been opened"));
 }
 
 TEST_CASE("exploring again is counted for each presentation") {
@@ -181,11 +180,11 @@ TEST_CASE("a voided trial takes no more events, and a block's new numbers are ne
   const auto restart = [&](int first) {
     session.recorder.block_restarted(seconds(2), 0, first, "[]");
   };
-  REQUIRE(contains(refusal_of([&] { restart(2); }), "was presented before its block"));
+  REQUIRE(refuses([&] { restart(2); }, "was presented before its block"));
   REQUIRE(session.row(2).state == TrialState::interrupted);
   restart(3);
   const auto refused = [&](auto&& work) {
-    return contains(refusal_of(work), "trial 2 is void: its block was restarted");
+    return refuses(work, "trial 2 is void: its block was restarted");
   };
   REQUIRE(refused([&] { session.recorder.presented(seconds(3), 2, 0); }));
   REQUIRE(refused([&] { session.recorder.explored_again(seconds(3), 2); }));

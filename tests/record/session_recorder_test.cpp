@@ -305,8 +305,7 @@ TEST_CASE("the largest force of a trace and of a session are sealed") {
   SessionRecorder recorder(1, participant_key(1), events);
   Trace trace = stroking(50, 0.0);
   trace.samples[20].force_n = {3.0, 0.0, -4.0};
-  TraceBody body;
-  body.trial = 1;
+  TraceBody body{.trial = 1};
   recorder.trace_stored(seconds(1), body, {}, trace);
   const Event stored = events.events.back();
   REQUIRE_FALSE(contains(stored.body, "largest_force"));

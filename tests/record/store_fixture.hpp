@@ -116,8 +116,8 @@ inline record::Trace stroking(std::size_t samples, double texture_rms_n, std::ui
 
 /// Records a session of `trials` trials; the last is not answered in time, the second is answered
 /// after a change of mind and with a confidence.
-inline void record(record::SessionRecorder& recorder, int session, int trials,
-                   const record::Trace& trace, const record::SessionOpening& how) {
+inline void record_trials(record::SessionRecorder& recorder, int session, int trials,
+                          const record::Trace& trace, const record::SessionOpening& how) {
   recorder.opened(nanoseconds(0), how, R"({"schedule":")" + std::to_string(session) + "\"}");
   recorder.remarked(seconds(1), record::EventKind::instructed, "read aloud");
   for (int trial = 1; trial <= trials; ++trial) {
@@ -151,7 +151,7 @@ inline record::BufferedEvents session_of(int session, int trials, const record::
                                          const record::SessionOpening& how) {
   record::BufferedEvents events;
   record::SessionRecorder recorder(session, participant_key(session), events);
-  record(recorder, session, trials, trace, how);
+  record_trials(recorder, session, trials, trace, how);
   return events;
 }
 
@@ -181,6 +181,12 @@ std::string refusal_of(Work&& work) {
 
 inline bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
+}
+
+/// Whether `work` is refused with `part` in the message.
+template <typename Work>
+bool refuses(Work&& work, const std::string& part) {
+  return contains(refusal_of(work), part);
 }
 
 /// An event as it was recorded.

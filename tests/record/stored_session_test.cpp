@@ -36,9 +36,7 @@ SessionRecorder recorder_after_last(const StudyStore& store, EventSink& sink) {
 }
 
 TrialEvidence evidence_of(const SessionRecorder& recorder, int trial) {
-  TraceBody body;
-  body.trial = trial;
-  body.rate_hz = 1000.0;
+  TraceBody body{.trial = trial, .rate_hz = 1000.0};
   return recorder.packed(body, {}, stroking(20, 0.05));
 }
 
@@ -53,7 +51,7 @@ TEST_CASE("a session stored event by event equals one stored whole") {
   StoredFixture live;
   const auto sink = live.store->begin_session(1, wrapped_key_of(1), clock_at(kUtc));
   SessionRecorder recorder(1, participant_key(1), *sink);
-  record(recorder, 1, 3, stroking(20, 0.05), opening(1));
+  record_trials(recorder, 1, 3, stroking(20, 0.05), opening(1));
 
   for (const int chain : {0, 1}) {
     const auto expected = whole.store->events(chain);
@@ -109,13 +107,11 @@ TEST_CASE("a refused event leaves no mark, and the session goes on") {
   StoredFixture study;
   const auto sink = study.store->begin_session(1, wrapped_key_of(1));
   SessionRecorder recorder(1, participant_key(1), *sink);
-  REQUIRE(
-      contains(refusal_of([&] { recorder.presented(seconds(1), 1, 0); }), "begins with 'opened'"));
+  REQUIRE(refuses([&] { recorder.presented(seconds(1), 1, 0); }, "begins with 'opened'"));
   REQUIRE(study.store->events(0).size() == 1);
   recorder.opened(nanoseconds(0), opening(1), "{}");
   const AnswerBody answer{.trial = 1, .position = 3, .first_position = {}, .confidence = {}};
-  REQUIRE(contains(refusal_of([&] { recorder.answered(seconds(2), answer); }),
-                   "session 1, event 1: trial 1 has not been presented"));
+  REQUIRE(refuses([&] { recorder.answered(seconds(2), answer); }, "has not been presented"));
   REQUIRE(study.store->events(1).size() == 1);
   recorder.presented(seconds(1), 1, 0);
   recorder.answered(seconds(2), answer);
@@ -128,16 +124,13 @@ TEST_CASE("a session refuses what belongs to others") {
   StoredFixture study(1);
   const auto sink = study.store->begin_session(2, wrapped_key_of(2));
   SessionRecorder stranger(3, participant_key(3), *sink);
-  REQUIRE(contains(refusal_of([&] { stranger.opened(nanoseconds(0), opening(3), "{}"); }),
-                   "belongs to another chain"));
+  REQUIRE(refuses([&] { stranger.opened(nanoseconds(0), opening(3), "{}"); }, "another chain"));
   SessionRecorder recorder(2, participant_key(2), *sink);
   SessionOpening taken = opening(2);
   taken.participant = "P1";
-  REQUIRE(contains(refusal_of([&] { recorder.opened(nanoseconds(0), taken, "{}"); }),
-                   "participant P1 already has session 1"));
+  REQUIRE(refuses([&] { recorder.opened(nanoseconds(0), taken, "{}"); }, "already has session 1"));
   study.store->close_study(kUtc);
-  REQUIRE(contains(refusal_of([&] { recorder.opened(nanoseconds(0), opening(2), "{}"); }),
-                   "the study is closed"));
+  REQUIRE(refuses([&] { recorder.opened(nanoseconds(0), opening(2), "{}"); }, "study is closed"));
 }
 
 TEST_CASE("of two sessions that begin with one number the second is refused") {
@@ -148,8 +141,7 @@ TEST_CASE("of two sessions that begin with one number the second is refused") {
   SessionRecorder b(1, participant_key(1), *second);
   a.opened(nanoseconds(0), opening(1), "{}");
   SessionOpening other = opening(2);
-  REQUIRE(contains(refusal_of([&] { b.opened(nanoseconds(0), other, "{}"); }),
-                   "session 1 is not the next one (2)"));
+  REQUIRE(refuses([&] { b.opened(nanoseconds(0), other, "{}"); }, "is not the next one (2)"));
 }
 
 TEST_CASE("a sink takes a trace with its event and with no other") {
@@ -157,14 +149,11 @@ TEST_CASE("a sink takes a trace with its event and with no other") {
   const auto sink = study.store->begin_session(1, wrapped_key_of(1));
   const BufferedEvents session = session_of(1);
   sink->accept(session.events[0], std::nullopt);
-  REQUIRE(contains(refusal_of([&] { sink->accept(session.events[1], session.traces[0]); }),
-                   "an event of this kind has no trace"));
+  REQUIRE(refuses([&] { sink->accept(session.events[1], session.traces[0]); }, "has no trace"));
   for (std::size_t i = 1; i < 5; ++i) sink->accept(session.events[i], std::nullopt);
   REQUIRE(session.events[5].kind == EventKind::trace_stored);
-  REQUIRE(contains(refusal_of([&] { sink->accept(session.events[5], std::nullopt); }),
-                   "the trace of trial 1 is missing"));
-  REQUIRE(contains(refusal_of([&] { sink->accept(session.events[5], session.traces[1]); }),
-                   "the trace of trial 1 is missing"));
+  REQUIRE(refuses([&] { sink->accept(session.events[5], std::nullopt); }, "trial 1 is missing"));
+  REQUIRE(refuses([&] { sink->accept(session.events[5], session.traces[1]); }, "1 is missing"));
   sink->accept(session.events[5], session.traces[0]);
   REQUIRE(study.store->sealed_trace(1, 1) == session.traces[0]);
 }
@@ -197,29 +186,22 @@ TEST_CASE("a continued session refuses events that were recorded before") {
   break_off(*study.store);
   const auto sink = study.store->continue_session(1);
   SessionRecorder recorder = recorder_after_last(*study.store, *sink);
-  REQUIRE(contains(refusal_of([&] { recorder.answered(seconds(4), answer_to(1)); }),
-                   "trial 1 is already answered"));
-  REQUIRE(contains(refusal_of([&] { recorder.presented(seconds(2), 2, 0); }),
-                   "the clock went backwards"));
+  REQUIRE(refuses([&] { recorder.answered(seconds(4), answer_to(1)); }, "1 is already answered"));
+  REQUIRE(refuses([&] { recorder.presented(seconds(2), 2, 0); }, "the clock went backwards"));
   SessionRecorder from_the_start(1, participant_key(1), *sink);
-  REQUIRE(
-      contains(refusal_of([&] { from_the_start.remarked(seconds(9), EventKind::noted, "again"); }),
-               "the sequence number repeats"));
+  REQUIRE(refuses([&] { from_the_start.remarked(seconds(9), EventKind::noted, "again"); },
+                  "the sequence number repeats"));
 }
 
 TEST_CASE("only a stored, open session of an open study can go on") {
   StoredFixture study(1);
-  REQUIRE(contains(refusal_of([&] { (void)study.store->continue_session(1); }),
-                   "session 1 (participant P1) has ended"));
-  REQUIRE(contains(refusal_of([&] { (void)study.store->continue_session(2); }),
-                   "there is no session 2"));
-  REQUIRE(contains(refusal_of([&] { (void)study.store->continue_session(0); }),
-                   "there is no session 0"));
+  REQUIRE(refuses([&] { (void)study.store->continue_session(1); }, "(participant P1) has ended"));
+  REQUIRE(refuses([&] { (void)study.store->continue_session(2); }, "there is no session 2"));
+  REQUIRE(refuses([&] { (void)study.store->continue_session(0); }, "there is no session 0"));
   StoredFixture closed;
   break_off(*closed.store);
   closed.store->close_study(kUtc);
-  REQUIRE(contains(refusal_of([&] { (void)closed.store->continue_session(1); }),
-                   "the study is closed"));
+  REQUIRE(refuses([&] { (void)closed.store->continue_session(1); }, "the study is closed"));
 }
 
 TEST_CASE(
@@ -232,8 +214,7 @@ TEST_CASE(
   SessionRecorder a = recorder_after_last(*study.store, *first);
   SessionRecorder b = recorder_after_last(other, *second);
   b.answered(seconds(5), answer_to(2));
-  REQUIRE(contains(refusal_of([&] { a.answered(seconds(6), answer_to(2)); }),
-                   "session 1 was continued by another program"));
+  REQUIRE(refuses([&] { a.answered(seconds(6), answer_to(2)); }, "continued by another program"));
   REQUIRE(opened_trials(*study.store, 1).at(1).answered_at == seconds(5));
   REQUIRE_FALSE(study.store->first_fault());
 }

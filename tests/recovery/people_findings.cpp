@@ -3,7 +3,6 @@
 #include "recovery/population.hpp"
 
 #include <cmath>
-#include <optional>
 
 #include <fmt/format.h>
 

@@ -10,7 +10,6 @@
 #include "recovery/finding.hpp"
 #include "recovery/population.hpp"
 
-#include <algorithm>
 #include <span>
 
 #include <fmt/format.h>

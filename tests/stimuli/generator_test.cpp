@@ -4,7 +4,6 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <set>

@@ -2,9 +2,6 @@
 
 #include "support/catch.hpp"
 
-#include <cmath>
-#include <vector>
-
 using namespace touchtrial;
 using namespace touchtrial::stimuli;
 
@@ -37,10 +34,7 @@ TEST_CASE("further exemplars have other noise and depart within the spread, both
 }
 
 TEST_CASE("a view turns, scales and leaves its middle in place") {
-  View view;
-  view.scale = 2.0;
-  view.along = {0.0, 1.0};
-  view.middle = {10.0, 20.0};
+  View view{.scale = 2.0, .along = {0.0, 1.0}, .middle = {10.0, 20.0}};
   CHECK(view.on_surface(10.0, 20.0) == Vec2{10.0, 20.0});
   CHECK(view.on_surface(14.0, 20.0) == Vec2{10.0, 22.0});
   CHECK(view.on_surface(10.0, 24.0) == Vec2{8.0, 20.0});

@@ -55,6 +55,19 @@ TEST_CASE("an interrupted presentation is repeated at the end, or left out, as t
   CHECK(rest_of(left_out) == std::vector<int>{3, 4});
 }
 
+TEST_CASE("of an order that chooses, an interrupted place is repeated at the end of its block") {
+  struct SameAgain final : study::AdaptiveOrder {
+    void choose(study::Presentation& place) const override { place.chosen.emplace(); }
+    void answer(const study::Presentation& /*shown*/, int /*choice*/) override {}
+  };
+  study::Course course(two_blocks(), OnInterruption::repeat, {}, std::make_unique<SameAgain>());
+  course.spoil();
+  course.finish({});
+  CHECK(course.current()->trial == 1);
+  CHECK(course.current()->interruptions == 1);
+  CHECK(rest_of(course) == std::vector<int>{1, 3, 4});
+}
+
 TEST_CASE("an interrupted block is restarted under new numbers before all else") {
   const auto restarted = [] {
     study::Course course(two_blocks(), OnInterruption::restart_block, drawn);

@@ -9,7 +9,6 @@
 #include "support/temp_folder.hpp"
 
 #include <fstream>
-#include <functional>
 #include <string>
 
 #include <sys/stat.h>

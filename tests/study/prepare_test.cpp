@@ -11,9 +11,7 @@
 #include <algorithm>
 #include <atomic>
 #include <future>
-#include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -481,6 +479,7 @@ TEST_CASE("settings that are probably mistakes cause a warning where they have a
   laboratory.document["rendering"] = {{"gains", {{"tangential_n", 5}, {"normal_n", 5}}},
                                       {"equalise", "rms"},
                                       {"reference_grey", 0}};
+  laboratory.document["classes"][0]["label"] = "\xd1\x81\xd0\xbe\xd1\x81\xd0\xbd\xd0\xb0";
   std::filesystem::copy_file(laboratory.image(0), laboratory.image(2),
                              std::filesystem::copy_options::overwrite_existing);
   engine::write_png(laboratory.image(1), GreyImage(kSide, kSide, 90));
@@ -488,9 +487,10 @@ TEST_CASE("settings that are probably mistakes cause a warning where they have a
   CHECK(warns(report, "/rendering/gains: the explicit gains exceed the stiffness budget of 0.4"));
   CHECK(warns(report, "/rendering/equalise: rms has no effect"));
   CHECK(warns(report, "/rendering/reference_grey: 0 is the paper's literal reading"));
-  CHECK(warns(report, "class \"c2\", image c2_0.png: has the same pixels as class \"c0\""));
+  CHECK(warns(report, "class \"c2\", image c2_0.png: has the same pixels as class \"\xd1"));
+  CHECK(warns(report, "/classes: labels have Latin letters (\"c1\" and 1 more) and others"));
   CHECK(warns(report, "class \"c1\", image c1_0.png, method adaptive: is flat"));
-  CHECK(report.warnings.size() == 5);
+  CHECK(report.warnings.size() == 6);
 }
 
 TEST_CASE(

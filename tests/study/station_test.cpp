@@ -18,10 +18,9 @@
 namespace touchtrial {
 namespace {
 
-using study::Draws;
-using study::Station;
+using namespace study;
 
-study::Study study_with_methods(int methods) {
+Study study_with_methods(int methods) {
   nlohmann::json study = comparison_of(2);
   study["methods"] = nlohmann::json::array();
   for (int i = 0; i < methods; ++i) {
@@ -39,19 +38,18 @@ std::vector<Station> stations_with(int participants, int count) {
   return stations;
 }
 
-study::StudyKey divided_key(const study::Study& study, int participants, int count,
-                            std::uint64_t seed = 1) {
+StudyKey divided_key(const Study& study, int participants, int count, std::uint64_t seed = 1) {
   SeededEntropy entropy(seed);
-  study::StudyKey key = study::make_study_key(study, entropy, false);
+  StudyKey key = study::make_study_key(study, entropy, false);
   study::divide(key, stations_with(participants, count));
   return key;
 }
 
 /// Which station has each number, from 1; every number has one.
 std::vector<std::string> owners(const std::vector<Station>& stations) {
-  std::vector<std::string> owner(static_cast<std::size_t>(study::enrolments_of(stations)));
+  std::vector<std::string> owner(static_cast<std::size_t>(enrolments_of(stations)));
   for (const Station& station : stations) {
-    for (const study::EnrolmentRange& range : station.ranges) {
+    for (const EnrolmentRange& range : station.ranges) {
       for (int number = range.first; number <= range.last; ++number) {
         std::string& place = owner.at(static_cast<std::size_t>(number - 1));
         CHECK(place.empty());
@@ -116,13 +114,13 @@ TEST_CASE("names of stations are simple, and each is one station's") {
   refused({"lab/2"});
   refused({std::string(33, 'a')});
   refused({"a", "a"});
-  refused(std::vector<std::string>(study::kMostStations + 1, "a"));
+  refused(std::vector<std::string>(kMostStations + 1, "a"));
 }
 
 TEST_CASE("each station has every order of methods equally often, in blocks that nobody can tell") {
   for (int methods = 2; methods <= 5; ++methods) {
     const int rows = methods % 2 == 0 ? methods : 2 * methods;
-    const study::StudyKey key = divided_key(study_with_methods(methods), 12 * rows, 3);
+    const StudyKey key = divided_key(study_with_methods(methods), 12 * rows, 3);
     std::set<std::vector<int>> blocks;
     std::set<int> numbers_of_blocks;
     for (const Station& station : key.stations) {
@@ -131,7 +129,7 @@ TEST_CASE("each station has every order of methods equally often, in blocks that
         std::vector<int> orders;
         std::set<int> dealt_together;
         for (int i = 0; i < rows; ++i) {
-          dealt_together.insert(study::order_block_of(key.study, key.stations, number));
+          dealt_together.insert(order_block_of(key.study, key.stations, number));
           orders.push_back(key.draw_of(number++, Draws::people).method_order);
         }
         CHECK(dealt_together.size() == 1);
@@ -142,7 +140,7 @@ TEST_CASE("each station has every order of methods equally often, in blocks that
       }
     }
     CHECK(*numbers_of_blocks.begin() >= 0);
-    CHECK(study::order_block_of(key.study, key.stations, 12 * rows + 1) == -1);
+    CHECK(order_block_of(key.study, key.stations, 12 * rows + 1) == -1);
     CHECK(blocks.size() > 1);  // 12 blocks in one and the same order: once in 2048 at most
   }
 }
@@ -150,34 +148,34 @@ TEST_CASE("each station has every order of methods equally often, in blocks that
 TEST_CASE("in a study of mixed blocks methods have no order") {
   nlohmann::json document = comparison_of(2);
   document["trials"] = {{"blocks", "mixed"}};
-  const study::StudyKey key = divided_key(parsed(document), 6, 2);
-  CHECK(study::method_orders(key.study) == 1);
+  const StudyKey key = divided_key(parsed(document), 6, 2);
+  CHECK(method_orders(key.study) == 1);
   for (int number = 1; number <= 6; ++number) {
     CHECK(key.draw_of(number, Draws::people).method_order == 0);
   }
 }
 
 TEST_CASE("a schedule follows from the key's secret, and never from the study's seed") {
-  const study::Study study = parsed(study_of(5));
+  const Study study = parsed(study_of(5));
   const auto schedule = [&](std::uint64_t secret, Draws draws, int number = 1) {
-    const study::StudyKey key = divided_key(study, 20, 1, secret);
+    const StudyKey key = divided_key(study, 20, 1, secret);
     return study::make_schedule(study, key.draw_of(number, draws));
   };
   CHECK(schedule(1, Draws::people) == schedule(1, Draws::people));
   CHECK_FALSE(schedule(1, Draws::people) == schedule(2, Draws::people));
   CHECK_FALSE(schedule(1, Draws::people) == schedule(1, Draws::rehearsal));
   CHECK_FALSE(schedule(1, Draws::people) == schedule(1, Draws::people, 2));
-  const study::StudyKey simulated = study::simulated_study_key(study);
-  const study::Schedule shown = study::make_schedule(study, simulated.draw_of(1, Draws::people));
+  const StudyKey simulated = simulated_study_key(study);
+  const Schedule shown = study::make_schedule(study, simulated.draw_of(1, Draws::people));
   CHECK_FALSE(shown == schedule(1, Draws::people));
 }
 
 TEST_CASE("a station's file has its own secret alone, and draws as the investigator's key does") {
-  const study::Study study = study_with_methods(2);
-  const study::StudyKey key = divided_key(study, 10, 2);
-  const study::StationKey own = study::station_key(key, "s2");
+  const Study study = study_with_methods(2);
+  const StudyKey key = divided_key(study, 10, 2);
+  const StationKey own = study::station_key(key, "s2");
   for (int number = 6; number <= 10; ++number) {
-    const study::ScheduleDraw drawn = own.draw_of(number, Draws::people);
+    const ScheduleDraw drawn = own.draw_of(number, Draws::people);
     CHECK(drawn.secret == key.draw_of(number, Draws::people).secret);
     CHECK(drawn.method_order == key.draw_of(number, Draws::people).method_order);
   }
@@ -195,19 +193,18 @@ TEST_CASE("a station's file has its own secret alone, and draws as the investiga
 
 TEST_CASE("key and station file come back as they were written") {
   const TempFolder folder;
-  const study::Study study =
-      study::parse_study(comparison_of(3, 2).dump(1), folder.path(), "study.json");
-  const study::StudyKey key = divided_key(study, 9, 3);
+  const Study study = study::parse_study(comparison_of(3, 2).dump(1), folder.path(), "study.json");
+  const StudyKey key = divided_key(study, 9, 3);
   study::save_study_key(folder.path() / "small.key", key);
-  CHECK(study::load_study_key(folder.path() / "small.key").stations == key.stations);
+  CHECK(load_study_key(folder.path() / "small.key").stations == key.stations);
 
-  const study::StationKey own = study::station_key(key, "s3");
+  const StationKey own = study::station_key(key, "s3");
   const auto path = folder.path() / "small.s3.station";
   study::save_station_key(path, own);
   struct stat status {};
   REQUIRE(::stat(path.c_str(), &status) == 0);
   CHECK((status.st_mode & 0777U) == 0600U);
-  const study::StationKey loaded = study::load_station_key(path);
+  const StationKey loaded = load_station_key(path);
   CHECK(loaded.station == own.station);
   CHECK(loaded.certificate == own.certificate);
   CHECK(loaded.study_id == key.study_id);
@@ -215,9 +212,9 @@ TEST_CASE("key and station file come back as they were written") {
   CHECK(loaded.configuration == key.configuration);
   CHECK(loaded.catch_code == key.catch_code);
   CHECK(loaded.investigator_box == key.investigator_box);
-  CHECK(study::are_same(loaded.study, study));
+  CHECK(are_same(loaded.study, study));
   REQUIRE(loaded.stimuli.size() == key.stimuli.size());
-  for (const study::KeyedStimulus& stimulus : key.stimuli) {
+  for (const KeyedStimulus& stimulus : key.stimuli) {
     CHECK(loaded.stimulus_of(stimulus.code) == stimulus.stimulus);
   }
   const std::string text = text_of(read_file(path));
@@ -239,22 +236,22 @@ TEST_CASE(
   document.erase("check");
   document["check"] = to_hex(sha256(bytes_of(document.dump())));
   replace_file(path, document.dump(2) + "\n", FileMode::owner_only);
-  CHECK_THAT(message_of<FileError>([&] { return study::load_station_key(path); }),
+  CHECK_THAT(message_of<FileError>([&] { return load_station_key(path); }),
              holds_text("altered or damaged"));
 }
 
 TEST_CASE("a file of secrets that others may read is refused") {
   const TempFolder folder;
-  const study::StudyKey key = divided_key(parsed(minimal_study()), 2, 1);
+  const StudyKey key = divided_key(parsed(minimal_study()), 2, 1);
   const auto path = folder.path() / "small.key";
   study::save_study_key(path, key);
   for (const mode_t mode : {0640U, 0604U, 0620U}) {
     REQUIRE(::chmod(path.c_str(), mode) == 0);
-    CHECK_THAT(message_of<FileError>([&] { return study::load_study_key(path); }),
+    CHECK_THAT(message_of<FileError>([&] { return load_study_key(path); }),
                holds_text("chmod 600"));
   }
   REQUIRE(::chmod(path.c_str(), 0400) == 0);
-  CHECK_NOTHROW(study::load_study_key(path));
+  CHECK_NOTHROW(load_study_key(path));
 }
 
 }  // namespace touchtrial

@@ -1,6 +1,8 @@
 /// \file Small studies for the tests of this folder.
 #pragma once
 
+#include "core/errors.hpp"
+#include "study/refusal.hpp"
 #include "study/schedule.hpp"
 #include "study/study.hpp"
 
@@ -47,27 +49,38 @@ namespace touchtrial {
 /// default.
 [[nodiscard]] inline nlohmann::json planned_study() {
   nlohmann::json study = study_of(3);
-  study["trials"] = {{"practice", 5}};
-  study["practice"]["classes"] = {{{"label", "corduroy"}, {"images", {"corduroy.png"}}},
-                                  {{"label", "velvet"}, {"images", {"velvet.png"}}}};
-  study["session"] = {{"instructions", {{"en", {"Feel the plane.\n\nSlowly."}}}},
-                      {"sight", "blindfold"},
-                      {"confidence", 5},
-                      {"day_sheet", {"Door shut"}},
-                      {"consent_version", "form 3"},
-                      {"ethics_number", "2026-17"},
-                      {"closing_questions",
-                       {{{"id", "cue"},
-                         {"kind", "choice"},
-                         {"text", {{"en", "Which cue?"}}},
-                         {"options", {{{"en", "Edges"}}, {{"en", "Depth"}, {"de", "Tiefe"}}}}}}}};
-  study["registration"] = {{"hypothesis", "They can."}, {"participants", 20}};
+  study.update(nlohmann::json::parse(R"({
+    "trials": {"practice": 5},
+    "practice": {"classes": [{"label": "corduroy", "images": ["corduroy.png"]},
+                             {"label": "velvet", "images": ["velvet.png"]}]},
+    "session": {"instructions": {"en": ["Feel the plane.\n\nSlowly."]}, "sight": "blindfold",
+                "confidence": 5, "day_sheet": ["Door shut"], "consent_version": "form 3",
+                "ethics_number": "2026-17",
+                "closing_questions": [{"id": "cue", "kind": "choice", "text": {"en": "Which cue?"},
+                                       "options": [{"en": "Edges"},
+                                                   {"en": "Depth", "de": "Tiefe"}]}]},
+    "registration": {"hypothesis": "They can.", "participants": 20}})"));
   return study;
 }
 
 [[nodiscard]] inline study::Study parsed(const nlohmann::json& study,
                                          const std::filesystem::path& folder = "somewhere") {
   return study::parse_study(study.dump(), folder, "study.json");
+}
+
+/// The error that a study is refused with; empty if it is accepted.
+[[nodiscard]] inline std::string refusal_of(const nlohmann::json& study) {
+  try {
+    static_cast<void>(parsed(study));
+  } catch (const StudyError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// Whether a study is refused with `part` in the message.
+[[nodiscard]] inline bool refused(const nlohmann::json& study, const std::string& part) {
+  return refuses<StudyError>([&] { return parsed(study); }, part);
 }
 
 /// A participant's draw that follows from the study's seed, for tests of schedules alone.

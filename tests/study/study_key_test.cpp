@@ -13,14 +13,15 @@
 namespace touchtrial {
 namespace {
 
+using namespace study;
 using nlohmann::json;
 
-study::StudyKey key_for(const json& document, std::uint64_t seed = 1, bool simulated = false) {
+StudyKey key_for(const json& document, std::uint64_t seed = 1, bool simulated = false) {
   SeededEntropy entropy(seed);
   return study::make_study_key(parsed(document, "/studies"), entropy, simulated);
 }
 
-std::string code_of_image(const study::StudyKey& key, const std::string& image, int method = 0) {
+std::string code_of_image(const StudyKey& key, const std::string& image, int method = 0) {
   for (const auto& [code, stimulus] : key.stimuli) {
     const auto& images = key.study.classes[static_cast<std::size_t>(stimulus.class_index)].images;
     const bool wanted = images[static_cast<std::size_t>(stimulus.exemplar)] == image;
@@ -36,7 +37,7 @@ bool is_hex(const std::string& text, std::size_t digits) {
 }  // namespace
 
 TEST_CASE("a key names every presented stimulus with a code of its own") {
-  const study::StudyKey key = key_for(comparison_of(3, 4));
+  const StudyKey key = key_for(comparison_of(3, 4));
   REQUIRE(key.stimuli.size() == 3 * 4 * 2);
   std::set<std::string> codes;
   for (const auto& [code, stimulus] : key.stimuli) {
@@ -52,7 +53,7 @@ TEST_CASE("a key names every presented stimulus with a code of its own") {
 TEST_CASE("a key knows no code and no stimulus that its study does not present") {
   json document = comparison_of(3);
   document["protocol"] = "classification";
-  const study::StudyKey key = key_for(document);
+  const StudyKey key = key_for(document);
   CHECK(key.stimuli.size() == 3);
   CHECK_FALSE(key.stimulus_of("0123456789abcdef").has_value());
   CHECK_THROWS_AS(key.code_of({0, 0, 1}), StudyError);
@@ -60,27 +61,27 @@ TEST_CASE("a key knows no code and no stimulus that its study does not present")
 }
 
 TEST_CASE("secrets decide codes and identity: two keys of one study share none") {
-  const study::StudyKey one = key_for(study_of(5), 1);
-  const study::StudyKey other = key_for(study_of(5), 2);
+  const StudyKey one = key_for(study_of(5), 1);
+  const StudyKey other = key_for(study_of(5), 2);
   CHECK(one.study_id != other.study_id);
   std::set<std::string> codes;
-  for (const study::StudyKey* key : {&one, &other}) {
-    for (const study::KeyedStimulus& stimulus : key->stimuli) codes.insert(stimulus.code);
+  for (const StudyKey* key : {&one, &other}) {
+    for (const KeyedStimulus& stimulus : key->stimuli) codes.insert(stimulus.code);
   }
   CHECK(codes.size() == 10);
   SystemEntropy entropy;
-  const study::Study study = parsed(study_of(5));
+  const Study study = parsed(study_of(5));
   CHECK(study::make_study_key(study, entropy, false).master !=
         study::make_study_key(study, entropy, false).master);
 }
 
 TEST_CASE("codes stay with their stimuli when others come and go") {
   json document = study_of(3, 2);
-  const study::StudyKey before = key_for(document);
+  const StudyKey before = key_for(document);
   document["classes"].erase(0);
   document["classes"].push_back({{"label", "new"}, {"images", {"new.png"}}});
   document["rendering"] = {{"pitch_mm", 0.1}};
-  const study::StudyKey after = study::rekeyed(before, parsed(document));
+  const StudyKey after = rekeyed(before, parsed(document));
   CHECK(after.study_id == before.study_id);
   CHECK(after.master == before.master);
   for (const char* image : {"c1_0.png", "c1_1.png", "c2_0.png"}) {
@@ -105,16 +106,15 @@ TEST_CASE("a saved key is for its owner's eyes and comes back whole") {
   const TempFolder folder;
   const auto path = folder.path() / "small.key";
   SeededEntropy entropy(5);
-  const study::Study study =
-      study::parse_study(comparison_of(3, 2).dump(1), folder.path(), "study.json");
-  study::StudyKey key = study::make_study_key(study, entropy, true);
+  const Study study = study::parse_study(comparison_of(3, 2).dump(1), folder.path(), "study.json");
+  StudyKey key = study::make_study_key(study, entropy, true);
   key.pack_folder = folder.path() / "small.pack";
   study::save_study_key(path, key);
   struct stat status {};
   REQUIRE(::stat(path.c_str(), &status) == 0);
   CHECK((status.st_mode & 0777U) == 0600U);
 
-  const study::StudyKey loaded = study::load_study_key(path);
+  const StudyKey loaded = load_study_key(path);
   CHECK(loaded.study_id == key.study_id);
   CHECK(loaded.master == key.master);
   CHECK(loaded.simulated);
@@ -135,12 +135,12 @@ TEST_CASE("a saved key is for its owner's eyes and comes back whole") {
 TEST_CASE("a key moved together with its study and pack finds them at the new place") {
   const TempFolder folder;
   std::filesystem::create_directories(folder.path() / "old");
-  study::StudyKey key = key_for(minimal_study());
+  StudyKey key = key_for(minimal_study());
   key.study.folder = folder.path() / "old";
   key.pack_folder = folder.path() / "old" / "small.pack";
   study::save_study_key(folder.path() / "old" / "small.key", key);
   std::filesystem::rename(folder.path() / "old", folder.path() / "new");
-  const study::StudyKey moved = study::load_study_key(folder.path() / "new" / "small.key");
+  const StudyKey moved = load_study_key(folder.path() / "new" / "small.key");
   CHECK(moved.pack_folder == std::filesystem::canonical(folder.path()) / "new" / "small.pack");
   CHECK(moved.study.folder == std::filesystem::canonical(folder.path()) / "new");
 }
@@ -149,43 +149,40 @@ TEST_CASE("a file that is no key, and a key of another version, are told apart f
   const TempFolder folder;
   const auto path = folder.path() / "small.key";
   replace_file(path, minimal_study().dump(), FileMode::owner_only);
-  CHECK(refuses<FileError>([&] { return study::load_study_key(path); }, "is not a Touchtrial key"));
+  CHECK(refuses<FileError>([&] { return load_study_key(path); }, "is not a Touchtrial key"));
   replace_file(path, std::string(R"({"format": "touchtrial-key", "version": 2})"),
                FileMode::owner_only);
-  CHECK(refuses<FileError>([&] { return study::load_study_key(path); },
-                           "is a key of version 2, not 3"));
-  CHECK(refuses<FileError>([&] { return study::load_study_key(folder.path() / "none.key"); },
+  CHECK(refuses<FileError>([&] { return load_study_key(path); }, "is a key of version 2, not 3"));
+  CHECK(refuses<FileError>([&] { return load_study_key(folder.path() / "none.key"); },
                            "cannot be read"));
 }
 
 TEST_CASE("a schedule comes back from its secret text") {
   json document = comparison_of(3, 2);
   document["trials"] = {{"lead_in", 1}};
-  const study::StudyKey key = key_for(document);
-  const study::Schedule schedule =
-      study::make_schedule(key.study, key.draw_of(4, study::Draws::people));
-  const std::string text = study::schedule_to_json(schedule, key);
-  CHECK(study::schedule_from_json(text, key) == schedule);
+  const StudyKey key = key_for(document);
+  const Schedule schedule = study::make_schedule(key.study, key.draw_of(4, Draws::people));
+  const std::string text = schedule_to_json(schedule, key);
+  CHECK(schedule_from_json(text, key) == schedule);
   CHECK(text.find("label") == std::string::npos);
   CHECK(text.find(".png") == std::string::npos);
   CHECK(text.find('\n') == std::string::npos);
 }
 
 TEST_CASE("a schedule of another key, or of another form, is refused") {
-  const study::StudyKey key = key_for(study_of(3));
-  const std::string text = study::schedule_to_json(
-      study::make_schedule(key.study, key.draw_of(1, study::Draws::people)), key);
-  CHECK_THROWS_AS(study::schedule_from_json(text, key_for(study_of(3), 2)), StoreError);
-  CHECK_THROWS_AS(study::schedule_from_json("", key), StoreError);
-  CHECK_THROWS_AS(study::schedule_from_json("[]", key), StoreError);
-  CHECK_THROWS_AS(study::schedule_from_json("{\"presentations\":1,\"layout\":[]}", key),
-                  StoreError);
+  const StudyKey key = key_for(study_of(3));
+  const std::string text =
+      schedule_to_json(study::make_schedule(key.study, key.draw_of(1, Draws::people)), key);
+  CHECK_THROWS_AS(schedule_from_json(text, key_for(study_of(3), 2)), StoreError);
+  CHECK_THROWS_AS(schedule_from_json("", key), StoreError);
+  CHECK_THROWS_AS(schedule_from_json("[]", key), StoreError);
+  CHECK_THROWS_AS(schedule_from_json("{\"presentations\":1,\"layout\":[]}", key), StoreError);
   json altered = json::parse(text);
   altered["layout"][1] = altered["layout"][0];
-  CHECK_THROWS_AS(study::schedule_from_json(altered.dump(), key), StoreError);
+  CHECK_THROWS_AS(schedule_from_json(altered.dump(), key), StoreError);
   altered = json::parse(text);
   altered["presentations"][0]["kind"] = "other";
-  CHECK_THROWS_AS(study::schedule_from_json(altered.dump(), key), StoreError);
+  CHECK_THROWS_AS(schedule_from_json(altered.dump(), key), StoreError);
 }
 
 }  // namespace touchtrial

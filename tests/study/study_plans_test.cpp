@@ -1,21 +1,13 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "study/refusal.hpp"
 #include "study/study_examples.hpp"
 #include "study/study_key.hpp"
 #include "study/study_sections.hpp"
 #include "support/temp_folder.hpp"
 
 namespace touchtrial {
-namespace {
 
 using nlohmann::json;
-
-bool refused(const json& document, const std::string& part) {
-  return refuses<StudyError>([&] { return parsed(document); }, part);
-}
-
-}  // namespace
 
 TEST_CASE("practice, session and registration are read with every key") {
   const study::Study study = parsed(planned_study());
@@ -79,6 +71,8 @@ TEST_CASE("what nobody can practise, read or be asked is refused at its place") 
        "/practice/classes/1/label: \"c2\" is a class of the study"},
       {"/practice/classes/1/label", "C2",
        "/practice/classes/1/label: \"C2\" is a class of the study"},
+      {"/practice/classes/1/label", "\xd1\x81-2",  // a Cyrillic c
+       "/practice/classes/1/label: \"\xd1\x81-2\" is a class of the study"},
       {"/practice/classes/0/images",
        {"x/../c1_0.png"},
        "/practice/classes/0/images/0: \"x/../c1_0.png\" is an image of the"},

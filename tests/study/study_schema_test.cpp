@@ -40,80 +40,46 @@ json schema_for(const std::string& model) {
   return whole;
 }
 
-/// The error that a study is refused with; empty if it is accepted.
-std::string refusal(const json& study) {
-  try {
-    static_cast<void>(parsed(study));
-  } catch (const StudyError& error) {
-    return error.what();
-  }
-  return "";
-}
+const json kPaper = json::parse(R"({"model": "paper", "friction": 0, "touchdown_ramp_n": 0.2,
+  "gains": {"tangential_n": 0.01, "normal_n": 0.01}})");
+const json kSurface = json::parse(R"({"model": "surface", "friction": 0.2, "touchdown_ramp_n": 0,
+  "gains": {"height_mm": 0.01}})");
 
-const json kPaper = {{"model", "paper"},
-                     {"gains", {{"tangential_n", 0.01}, {"normal_n", 0.01}}},
-                     {"friction", 0},
-                     {"touchdown_ramp_n", 0.2}};
-const json kSurface = {{"model", "surface"},
-                       {"gains", {{"height_mm", 0.01}}},
-                       {"friction", 0.2},
-                       {"touchdown_ramp_n", 0}};
-
-/// The sections that are about people, with every key.
+/// The sections beside the method and the model, with every key.
 json full_plans() {
+  json plans = json::parse(R"({
+    "rendering": {"pitch_mm": 0.2, "stiffness_n_per_mm": 0.4, "damping_n_s_per_mm": 0,
+      "filter_mm": 0.4, "texture_stiffness_n_per_mm": 0.4, "equalise": "none",
+      "reference_grey": 128, "neighbourhood": 3, "max_force_n": 3.3},
+    "trials": {"repeats": 2, "order": "shuffled", "explore_limit_s": 60, "on_timeout": "fade",
+      "practice": 0, "break_every": 0, "break_after_min": 0, "catch": 0, "lead_in": 0,
+      "blocks": "by-method", "max_run": 0, "rove_db": 0, "resume_within_h": 24,
+      "on_interruption": "repeat", "answer_after": {"contact_s": 0.5, "path_mm": 25},
+      "validity": {"exploring_s": 5, "contact_s": 5, "path_mm": 300, "least_median_n": 0.2,
+        "largest_median_n": 2, "saturated_share": 0.01}},
+    "practice": {"classes": [{"label": "learnt", "images": ["learnt.png"]},
+      {"label": "too", "images": ["too.png"]}], "criterion": 2, "rounds": 1},
+    "session": {"language": "en", "texts": {"en": {"screens": {"next": "On"}}}, "text_scale": 1,
+      "high_contrast": false, "sight": "curtain", "masking": {"wanted": true, "level_dbfs": -30},
+      "handedness": true, "confidence": 0, "day_sheet": ["Door shut"], "consent_version": "3",
+      "ethics_number": "2026-17", "closing": true,
+      "closing_questions": [{"id": "cue", "kind": "choice", "required": true}]},
+    "visits": {"count": 2, "least_days": 0, "most_days": 3650, "methods": "all"},
+    "groups": {"labels": ["one", "two"], "open": false},
+    "registration": {"hypothesis": "They can.", "participants": 20, "stopping_rule": "At 20.",
+      "exclusions": "None.", "primary_test": "Sign flips.", "estimand": "difference",
+      "methods": [], "test": "sign-flip", "sides": "two", "alpha": 0.05, "smallest_effect": 0.07,
+      "looks": [], "spending": "obrien-fleming", "visits": "all",
+      "exclusion_rules": {"deviations": [], "own_deviations": [], "invalid_trials": 0.25}},
+    "blinding": "double", "seed": 1})");
   json text;
-  json pages;
   for (const std::string_view code : study::language_codes()) {
     text[std::string(code)] = "Which?";
-    pages[std::string(code)] = {"Feel."};
+    plans["session"]["instructions"][std::string(code)] = {"Feel."};
   }
-  const json question = {{"id", "cue"},
-                         {"kind", "choice"},
-                         {"text", text},
-                         {"options", {text, text}},
-                         {"required", true}};
-  return {{"practice",
-           {{"classes",
-             {{{"label", "learnt"}, {"images", {"learnt.png"}}},
-              {{"label", "too"}, {"images", {"too.png"}}}}},
-            {"criterion", 2},
-            {"rounds", 1}}},
-          {"session",
-           {{"language", "en"},
-            {"instructions", pages},
-            {"texts", {{"en", {{"screens", {{"next", "On"}}}}}}},
-            {"text_scale", 1},
-            {"high_contrast", false},
-            {"sight", "curtain"},
-            {"masking", {{"wanted", true}, {"level_dbfs", -30}}},
-            {"handedness", true},
-            {"confidence", 0},
-            {"day_sheet", {"Door shut"}},
-            {"consent_version", "3"},
-            {"ethics_number", "2026-17"},
-            {"closing_questions", {question}},
-            {"closing", true}}},
-          {"visits", {{"count", 2}, {"least_days", 0}, {"most_days", 3650}, {"methods", "all"}}},
-          {"groups", {{"labels", {"one", "two"}}, {"open", false}}},
-          {"registration",
-           {{"hypothesis", "They can."},
-            {"participants", 20},
-            {"stopping_rule", "At 20."},
-            {"exclusions", "None."},
-            {"primary_test", "Sign flips."},
-            {"estimand", "difference"},
-            {"methods", json::array()},
-            {"test", "sign-flip"},
-            {"sides", "two"},
-            {"alpha", 0.05},
-            {"smallest_effect", 0.07},
-            {"looks", json::array()},
-            {"spending", "obrien-fleming"},
-            {"visits", "all"},
-            {"exclusion_rules",
-             {{"deviations", json::array()},
-              {"own_deviations", json::array()},
-              {"invalid_trials", 0.25}}}}}};
+  json& question = plans["session"]["closing_questions"][0];
+  question.update({{"text", text}, {"options", {text, text}}});
+  return plans;
 }
 
 /// A study with every possible key, in which any single value can be changed.
@@ -121,30 +87,8 @@ json full_study(const json& method, const json& model = kPaper) {
   json study = comparison_of(2);
   const char* other = method["name"] == "adaptive" ? "fixed" : "adaptive";
   study["methods"] = {method, {{"name", other}}};
-  study["rendering"] = {{"pitch_mm", 0.2},
-                        {"stiffness_n_per_mm", 0.4},
-                        {"damping_n_s_per_mm", 0},
-                        {"filter_mm", 0.4},
-                        {"texture_stiffness_n_per_mm", 0.4},
-                        {"equalise", "none"},
-                        {"reference_grey", 128},
-                        {"neighbourhood", 3},
-                        {"max_force_n", 3.3}};
-  study["rendering"].update(model);
-  study["trials"] = {{"repeats", 2},          {"order", "shuffled"},
-                     {"explore_limit_s", 60}, {"on_timeout", "fade"},
-                     {"practice", 0},         {"break_every", 0},
-                     {"break_after_min", 0},  {"catch", 0},
-                     {"lead_in", 0},          {"blocks", "by-method"},
-                     {"max_run", 0},          {"rove_db", 0},
-                     {"resume_within_h", 24}, {"on_interruption", "repeat"}};
-  study["trials"]["validity"] = {{"exploring_s", 5},      {"contact_s", 5},
-                                 {"path_mm", 300},        {"least_median_n", 0.2},
-                                 {"largest_median_n", 2}, {"saturated_share", 0.01}};
-  study["trials"]["answer_after"] = {{"contact_s", 0.5}, {"path_mm", 25}};
   study.update(full_plans());
-  study["blinding"] = "double";
-  study["seed"] = 1;
+  study["rendering"].update(model);
   return study;
 }
 
@@ -181,12 +125,12 @@ struct Property {
   [[nodiscard]] std::string refusal_with(const json& value) const {
     json changed = study;
     changed[place] = value;
-    return refusal(changed);
+    return refusal_of(changed);
   }
   [[nodiscard]] std::string refusal_without() const {
     json changed = study;
     changed[place.parent_pointer()].erase(place.back());
-    return refusal(changed);
+    return refusal_of(changed);
   }
 };
 
@@ -296,7 +240,7 @@ TEST_CASE("the reader knows exactly the schema's keys in every object") {
       changed[place]["zzzzzzzzzzzz"] = 1;
       std::set<std::string> keys;
       for (const auto& [key, property] : object["properties"].items()) keys.insert(key);
-      CHECK(listed_after(refusal(changed), "known here: ") == keys);
+      CHECK(listed_after(refusal_of(changed), "known here: ") == keys);
     });
   }
 }
@@ -351,10 +295,10 @@ TEST_CASE("the reader knows exactly the schema's rendering models") {
   json study = minimal_study();
   for (const std::string& word : expected) {
     study["rendering"] = {{"model", word}};
-    CHECK(refusal(study).empty());
+    CHECK(refusal_of(study).empty());
   }
   study["rendering"] = {{"model", "qqqqqqqq"}};
-  CHECK(listed_after(refusal(study), "possible: ") == expected);
+  CHECK(listed_after(refusal_of(study), "possible: ") == expected);
 }
 
 TEST_CASE("the reader keeps the schema's bounds") {
@@ -478,14 +422,14 @@ TEST_CASE("the reader gives a method the keys that the schema leaves it") {
       json study = minimal_study();
       study["methods"] = {{{"name", name}, {key, property["default"]}}};
       INFO(name << " " << key);
-      CHECK(refusal(study).empty() != rule["then"]["properties"].contains(key));
+      CHECK(refusal_of(study).empty() != rule["then"]["properties"].contains(key));
     }
   }
   std::set<std::string> enumerated = items["properties"]["name"]["enum"];
   CHECK(names == enumerated);
   json study = minimal_study();
   study["methods"][0]["name"] = "qqqqqqqq";
-  CHECK(listed_after(refusal(study), "possible: ") == enumerated);
+  CHECK(listed_after(refusal_of(study), "possible: ") == enumerated);
 }
 
 TEST_CASE("every key of the schema has a row in the documentation") {

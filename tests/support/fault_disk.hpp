@@ -6,7 +6,6 @@
 #include "core/random.hpp"
 
 #include <cstddef>
-#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>

@@ -1,6 +1,5 @@
 #include "support/fault_vfs.hpp"
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <numeric>

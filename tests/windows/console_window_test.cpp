@@ -30,17 +30,15 @@ constexpr milliseconds kPatience{300'000};
 constexpr int kParticipantWidth = 1280;
 
 session::SessionStatus status(const std::string& stage = "answering") {
-  session::SessionStatus now;
-  now.participant = "P07";
-  now.stage = stage;
-  now.trial = 7;
-  now.of = 25;
-  now.elapsed = std::chrono::seconds(754);
-  now.device = "Falcon 1, serial 4711";
-  now.rate_hz = 1000.0;
-  now.lateness_p99_us = 41.0;
-  now.interruptions = 1;
-  return now;
+  return {.participant = "P07",
+          .stage = stage,
+          .trial = 7,
+          .of = 25,
+          .elapsed = std::chrono::seconds(754),
+          .device = "Falcon 1, serial 4711",
+          .rate_hz = 1000.0,
+          .lateness_p99_us = 41.0,
+          .interruptions = 1};
 }
 
 session::SessionStatus stopped() {

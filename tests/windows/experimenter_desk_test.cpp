@@ -49,12 +49,7 @@ struct Terminal {
 };
 
 session::SessionStatus exploring() {
-  session::SessionStatus status;
-  status.participant = "P07";
-  status.stage = "exploring";
-  status.trial = 3;
-  status.of = 25;
-  return status;
+  return {.participant = "P07", .stage = "exploring", .trial = 3, .of = 25};
 }
 
 bool is_same(const session::ExperimenterRequest& a, const session::ExperimenterRequest& b) {

@@ -105,10 +105,9 @@ TEST_CASE("the dialogue is in the study's language, and what is recorded is not"
 /// Presses keys one after the other: '#' is Enter; a digit also types itself, as on a keyboard.
 void press(app::ParticipantWindow& window, const std::string& keys) {
   for (const char key : keys) {
-    app::InputEvent event;
-    event.at = std::chrono::steady_clock::now();
-    event.key = key == '#' ? app::Key::enter : app::Key::digit;
-    event.digit = key == '#' ? 0 : key - '0';
+    app::InputEvent event{.at = std::chrono::steady_clock::now(),
+                          .key = key == '#' ? app::Key::enter : app::Key::digit,
+                          .digit = key == '#' ? 0 : key - '0'};
     window.inject(event);
     if (key == '#') continue;
     event.kind = app::InputEvent::Kind::letter;

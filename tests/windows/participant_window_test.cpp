@@ -266,10 +266,9 @@ TEST_CASE(
 /// Passes on the samples of a texture with this force.
 void feel_texture(app::ParticipantWindow& window, double force_n) {
   for (int tick = 0; tick < 2000; ++tick) {
-    device::ServoSample sample;
-    sample.tick = tick;
-    sample.position_mm = {0.1 * tick, 20.0 * force_n, -0.1};
-    sample.force_n = {0.3 * force_n, 0.0, force_n};
+    device::ServoSample sample{.position_mm = {0.1 * tick, 20.0 * force_n, -0.1},
+                               .force_n = {0.3 * force_n, 0.0, force_n},
+                               .tick = tick};
     window.feel(sample);
   }
 }
@@ -473,10 +472,9 @@ TEST_CASE("a comfort stop has its own tone in place of that of an interval's end
 /// A hand that has lifted off and strokes at 100 mm/s for so long, and what answers it.
 void stroke(app::ParticipantWindow& window, double seconds, double depth_mm, Vec3 force_n) {
   for (int tick = 0; tick < static_cast<int>(1000.0 * seconds); ++tick) {
-    device::ServoSample sample;
-    sample.tick = tick;
-    sample.position_mm = {0.1 * tick, 20.0, tick == 0 ? 2.0 : -depth_mm};
-    sample.force_n = force_n;
+    device::ServoSample sample{.position_mm = {0.1 * tick, 20.0, tick == 0 ? 2.0 : -depth_mm},
+                               .force_n = force_n,
+                               .tick = tick};
     window.feel(sample);
   }
 }

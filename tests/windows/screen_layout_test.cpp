@@ -80,10 +80,7 @@ class Paper {
 };
 
 app::InputEvent key(app::Key which, int digit = 0) {
-  app::InputEvent event;
-  event.key = which;
-  event.digit = digit;
-  return event;
+  return {.key = which, .digit = digit};
 }
 
 /// A screen on paper, with what it is drawn from.
@@ -104,9 +101,7 @@ struct Drawn {
   /// Types letters.
   void write(const std::u32string& letters) {
     for (const char32_t letter : letters) {
-      app::InputEvent event;
-      event.kind = app::InputEvent::Kind::letter;
-      event.letter = letter;
+      app::InputEvent event{.kind = app::InputEvent::Kind::letter, .letter = letter};
       CHECK_FALSE(screen->take(event));
     }
   }
@@ -624,9 +619,8 @@ TEST_CASE("a picture and Next can be clicked; releasing the button elsewhere is 
     const auto found = std::find_if(targets.begin(), targets.end(),
                                     [id](const app::Target& t) { return t.id == id; });
     REQUIRE(found != targets.end());
-    app::InputEvent event;
-    event.position = {found->box.x + 5.0, found->box.y + 5.0};
-    event.kind = app::InputEvent::Kind::pressed;
+    app::InputEvent event{.kind = app::InputEvent::Kind::pressed,
+                          .position = {found->box.x + 5.0, found->box.y + 5.0}};
     static_cast<void>(asked.screen->take(event));
     event.kind = app::InputEvent::Kind::released;
     event.position = event.position + slip;

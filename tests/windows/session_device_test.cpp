@@ -8,15 +8,11 @@ namespace touchtrial {
 namespace {
 
 device::DeviceInfo felt() {
-  device::DeviceInfo device;
-  device.name = "falcon";
-  return device;
+  return {.name = "falcon"};
 }
 
 device::SchedulingObtained ordinary() {
-  device::SchedulingObtained had;
-  had.reason = "SCHED_FIFO was refused (Operation not permitted)";
-  return had;
+  return {.reason = "SCHED_FIFO was refused (Operation not permitted)"};
 }
 
 TEST_CASE("a session with force and without real time is refused with the two lines that mend it") {

@@ -113,11 +113,6 @@ class VirtualScreen::Client {
     return *found;
   }
 
-  void configure(xcb_window_t window, std::uint16_t what, std::array<std::uint32_t, 2> values) {
-    insist(xcb_configure_window_checked(connection_, window, what, values.data()),
-           "a window's place or size");
-  }
-
   [[nodiscard]] xcb_window_t root() const noexcept { return root_; }
 
   void focus(xcb_window_t window) {
@@ -269,20 +264,6 @@ void VirtualScreen::release() const {
 void VirtualScreen::type(const std::string& keys) const {
   std::istringstream names(keys);
   for (std::string name; names >> name;) client_->type(name);
-}
-
-bool VirtualScreen::has_window(const std::string& title) const {
-  return client_->find(title).has_value();
-}
-
-void VirtualScreen::move_window(const std::string& title, int x, int y) const {
-  client_->configure(client_->window(title), XCB_CONFIG_WINDOW_X | XCB_CONFIG_WINDOW_Y,
-                     {static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)});
-}
-
-void VirtualScreen::resize_window(const std::string& title, int width, int height) const {
-  client_->configure(client_->window(title), XCB_CONFIG_WINDOW_WIDTH | XCB_CONFIG_WINDOW_HEIGHT,
-                     {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)});
 }
 
 void VirtualScreen::focus_window(const std::string& title) const {

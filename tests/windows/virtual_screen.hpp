@@ -29,10 +29,7 @@ class VirtualScreen {
 
   /// \name Windows, by their whole title
   ///@{
-  [[nodiscard]] bool has_window(const std::string& title) const;
-  /// \throws std::runtime_error, as the following, if there is no such window
-  void move_window(const std::string& title, int x, int y) const;
-  void resize_window(const std::string& title, int width, int height) const;
+  /// \throws std::runtime_error if there is no such window
   void focus_window(const std::string& title) const;
   /// Takes the focus from every window, as a program of others does.
   void take_focus() const;

@@ -42,7 +42,7 @@ struct InputEvent {
   Key key = Key::none;
   int digit = 0;        ///< 0 to 9
   char32_t letter = 0;  ///< Unicode
-  Vec2 position;        ///< of the pointer, window units from the top-left corner
+  Vec2 position{};      ///< of the pointer, window units from the top-left corner
 };
 
 /// Call it on the main thread.

@@ -73,13 +73,10 @@ void ScreenList::add_questions(const std::string& name,
   add_pages(name, session::QuestionStep{&*questionnaire}, leave);
 }
 
-/// Whether the device is only heard in some trials. Of trials with several planes, those do not
-/// count.
+/// Whether the device is only heard in some trials.
 bool has_hand_off(const study::Study& study) {
-  const auto is_heard = [](const study::Presentation& one) {
-    return one.hand_off || one.kind == study::PresentationKind::lead_in;
-  };
-  return std::ranges::any_of(study.protocol->schedule(study, {}).presentations, is_heard);
+  return std::ranges::any_of(study.protocol->schedule(study, {}).presentations,
+                             &study::Presentation::hand_off);
 }
 
 void add_interval_practice(ScreenList& list, const study::Study& study,

@@ -44,7 +44,7 @@ std::vector<const TrialOutcome*> in_order_of_presentation(const Outcomes& outcom
 const TrialOutcome* before(const TrialOutcome* previous, const TrialOutcome& trial) {
   const bool told = previous != nullptr && previous->row.session == trial.row.session &&
                     previous->row.block == trial.row.block &&
-                    previous->kind != study::PresentationKind::catch_trial;
+                    previous->role != study::Role::catch_trial;
   return told ? previous : nullptr;
 }
 

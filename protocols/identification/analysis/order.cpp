@@ -50,7 +50,7 @@ std::map<const TrialOutcome*, int> scheduled_places(const Outcomes& outcomes, in
 
 FeltTrial felt_trial(const TrialOutcome& trial, const TrialOutcome* before) {
   FeltTrial felt;
-  if (trial.kind != study::PresentationKind::catch_trial) {
+  if (trial.role != study::Role::catch_trial) {
     felt.presented = trial.stimulus.class_index;
     felt.answered = trial.response;
   }

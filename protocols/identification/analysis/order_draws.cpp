@@ -18,7 +18,7 @@ constexpr int kRenamings = 120;
 std::vector<int> order_in(const study::Schedule& schedule, int method) {
   std::vector<int> order;
   for (const study::Presentation& shown : schedule.presentations) {
-    if (shown.kind == study::PresentationKind::scored && shown.stimulus.method == method) {
+    if (shown.role == study::Role::scored && shown.stimulus.method == method) {
       order.push_back(shown.stimulus.class_index);
     }
   }

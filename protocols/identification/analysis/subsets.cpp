@@ -52,7 +52,7 @@ std::map<int, std::vector<int>> orders_of_methods(const Outcomes& outcomes, cons
   // Session, trial and method.
   std::map<int, std::vector<std::tuple<int, int, int>>> first_trials;
   for (const TrialOutcome& trial : outcomes.trials) {
-    if (trial.kind != study::PresentationKind::catch_trial) {
+    if (trial.role != study::Role::catch_trial) {
       first_trials[people.of(trial.row.session)].emplace_back(trial.row.session, trial.row.trial,
                                                               trial.stimulus.method);
     }

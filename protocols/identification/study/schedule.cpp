@@ -102,8 +102,7 @@ std::vector<Presentation> with_catch_trials(const std::vector<Presentation>& sho
   auto next = shown.begin();
   for (const bool is_catch : random_places(shown.size() + caught, caught, random)) {
     if (is_catch) {
-      all.push_back(
-          {.block = all.back().block, .kind = PresentationKind::catch_trial, .stimulus = {}});
+      all.push_back({.block = all.back().block, .role = Role::catch_trial, .stimulus = {}});
     } else {
       all.push_back(*next++);
     }
@@ -117,10 +116,9 @@ std::vector<Presentation> presentations_of(const BlockOrder& order, int block,
   std::vector<Presentation> shown;
   for (std::size_t i = 0; i < order.items.size(); ++i) {
     const auto [class_index, method] = order.items[i];
-    shown.push_back(
-        {.block = block,
-         .kind = i < order.lead_ins ? PresentationKind::lead_in : PresentationKind::scored,
-         .stimulus = {class_index, exemplars.next(class_index, method), method}});
+    shown.push_back({.block = block,
+                     .role = i < order.lead_ins ? Role::lead_in : Role::scored,
+                     .stimulus = {class_index, exemplars.next(class_index, method), method}});
   }
   return shown;
 }
@@ -134,7 +132,7 @@ void number(std::vector<Presentation>& presentations, int first) {
 void rove(const Study& study, RandomStream random, std::vector<Presentation>& presentations) {
   if (study.trials.rove_db == 0.0) return;
   for (Presentation& shown : presentations) {
-    if (shown.kind == PresentationKind::catch_trial) continue;
+    if (shown.role == Role::catch_trial) continue;
     shown.gain_db = study.trials.own_gain_db() + drawn_rove_db(study.trials.rove_db, random);
   }
 }
@@ -192,7 +190,7 @@ std::vector<Presentation> scheduled_again(const Study& study, const ScheduleDraw
   }
   const Schedule first = scheduled(study, draw);
   const auto caught = std::ranges::count_if(first.presentations, [block](const auto& shown) {
-    return shown.block == block && shown.kind == PresentationKind::catch_trial;
+    return shown.block == block && shown.role == Role::catch_trial;
   });
   const std::string restart = ", restart " + std::to_string(restarts_before + 1);
   const auto& [methods, purpose] = plans[static_cast<std::size_t>(block)];

@@ -131,7 +131,7 @@ std::optional<OutsideTracks> control_of(std::span<const Person> people, double g
 
 std::optional<OutsideTracks> catches_of(std::span<const Person> people, double guess) {
   return outside_tracks(people, guess, [](const TrialOutcome& trial) {
-    return trial.kind == study::PresentationKind::catch_trial;
+    return trial.role == study::Role::catch_trial;
   });
 }
 

@@ -41,11 +41,11 @@ ThresholdReport begun_report(const Outcomes& outcomes) {
 }  // namespace
 
 bool in_track(const TrialOutcome& trial) noexcept {
-  return trial.kind == study::PresentationKind::scored && trial.chosen && trial.chosen->track > 0;
+  return trial.role == study::Role::scored && trial.chosen && trial.chosen->track > 0;
 }
 
 bool in_control(const TrialOutcome& trial) noexcept {
-  return trial.kind == study::PresentationKind::lead_in;
+  return trial.role == study::Role::control;
 }
 
 std::vector<Person> people_of(const Outcomes& outcomes) {

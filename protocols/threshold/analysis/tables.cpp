@@ -59,7 +59,7 @@ Row threshold_row(const ThresholdReport& report, const TrackReport& track) {
 
 std::string kind_word(const TrialOutcome& trial) {
   if (in_control(trial)) return "control";
-  return trial.kind == study::PresentationKind::catch_trial ? "catch" : "track";
+  return trial.role == study::Role::catch_trial ? "catch" : "track";
 }
 
 /// A trial's choice; empty if it is none of the study's.

@@ -131,6 +131,7 @@ ComparingParticipant::ComparingParticipant(const SubjectModel& subject, const st
 void ComparingParticipant::begin_visit(int visit, TrialCourse course) {
   condition_ = Condition(subject_, seed_, number_, visit, static_cast<int>(course.size()));
   trials_ = 0;
+  begun_.clear();
 }
 
 void ComparingParticipant::interval(const session::IntervalStep& next) {
@@ -141,6 +142,7 @@ void ComparingParticipant::interval(const session::IntervalStep& next) {
     felt_.push_back(felt_last());
   }
   hears_only_ = next.hand_off;
+  if (next.interval == 1) ++begun_[next.trial];
   trial_ = next.trial;
 }
 
@@ -174,7 +176,7 @@ int ComparingParticipant::given_answer(RandomStream& random) {
         "an observer of a given function is told levels by `simulate` alone; remove "
         "given_function from the subject file, or simulate");
   }
-  study::Presentation shown{.trial = trial_, .stimulus = {}};
+  study::Presentation shown{.trial = trial_, .interruptions = begun_[trial_] - 1, .stimulus = {}};
   order_->choose(shown);
   const study::ChosenLevel chosen = shown.chosen.value();
   const GivenFunction& given = *subject_.given_function;

@@ -10,6 +10,7 @@
 #include "protocols/threshold/study/threshold.hpp"
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -65,7 +66,8 @@ class ComparingParticipant final : public SimulatedParticipant {
   std::vector<engine::FeltFeatures> felt_;  ///< of the trial's earlier intervals
   bool hears_only_ = false;
   std::unique_ptr<study::AdaptiveOrder> order_;
-  int trial_ = 0;  ///< number in the schedule
+  int trial_ = 0;               ///< number in the schedule
+  std::map<int, int> begun_{};  ///< how often, by that number
   int trials_ = 0;
 };
 

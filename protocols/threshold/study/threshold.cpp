@@ -22,8 +22,8 @@ int fields_of_standard(const ThresholdOptions& options) {
   return 1 + static_cast<int>(options.track.levels.size());
 }
 
-/// Draws the trials of one participant. A trial's draws depend on its number alone, so one that
-/// comes again, under another number, has another answer.
+/// Draws the trials of one participant. A trial's draws depend on its number, and on how often it
+/// was interrupted, so that a repeated one has another answer.
 class TrialDraw {
  public:
   TrialDraw(const Study& study, const Digest& secret) : study_(study), secret_(secret) {}
@@ -100,17 +100,17 @@ class ThresholdOrder final : public AdaptiveOrder {
   void choose(Presentation& place) const override {
     const ThresholdOptions& options = options_of(study_);
     const auto tracks_each = static_cast<std::size_t>(options.tracks_each);
-    const auto index = static_cast<std::uint64_t>(place.trial);
+    constexpr std::uint64_t kMaxTrials = 1U << 20U;
+    const auto index = static_cast<std::uint64_t>(place.trial) +
+                       kMaxTrials * static_cast<std::uint64_t>(place.interruptions);
     const std::optional<procedures::Presentation> next = block_.next();
-    place.hand_off = !next;
-    place.block = next ? kTrackBlock : kControlBlock;
     if (next && next->track) {
-      place.kind = PresentationKind::scored;
+      place.role = Role::scored;
       place.chosen = {static_cast<int>(*next->track) + 1, static_cast<int>(next->level), 0};
       return trials_.fill(place, "threshold: trial", index, *next->track / tracks_each,
                           next->level);
     }
-    place.kind = next ? PresentationKind::catch_trial : PresentationKind::lead_in;
+    place.role = next ? Role::catch_trial : Role::control;
     RandomStream random(catches_, "threshold: standard", index);
     trials_.fill_easily(place, "threshold: trial", index, random);
   }
@@ -193,7 +193,8 @@ class Threshold final : public Protocol {
       place.trial = i + 1;
       if (i < of_tracks) continue;
       place.block = kControlBlock;
-      place.kind = PresentationKind::lead_in;
+      place.role = Role::control;
+      place.hand_off = true;
     }
     schedule.layout.resize(choices(study).size());
     std::iota(schedule.layout.begin(), schedule.layout.end(), 0);

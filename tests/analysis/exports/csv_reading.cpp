@@ -147,8 +147,7 @@ std::optional<record::TrialMeasures> measures_of(const CsvRow& row) {
 }
 
 study::StimulusIndex stimulus_of(const analysis::Outcomes& outcomes, const CsvRow& row) {
-  study::StimulusIndex stimulus;
-  stimulus.class_index = index_of(outcomes.classes, row.at("class"));
+  study::StimulusIndex stimulus{.class_index = index_of(outcomes.classes, row.at("class"))};
   stimulus.exemplar = index_of(outcomes.exemplars[stimulus.class_index], row.at("exemplar"));
   stimulus.method = index_of(outcomes.methods, row.at("method"));
   return stimulus;
@@ -160,8 +159,8 @@ void read_trials(analysis::Outcomes& outcomes, const std::filesystem::path& file
     trial.participant = row.at("participant");
     trial.row = trial_row_of(row);
     const std::string& kind = row.at("kind");
-    if (kind == "lead-in") trial.kind = study::PresentationKind::lead_in;
-    if (kind == "catch") trial.kind = study::PresentationKind::catch_trial;
+    if (kind == "lead-in") trial.role = study::Role::lead_in;
+    if (kind == "catch") trial.role = study::Role::catch_trial;
     trial.scored = kind == "scored";
     trial.counted = is_set(row.at("counted"));
     if (kind != "catch") {
@@ -223,6 +222,16 @@ std::vector<std::vector<std::string>> parse_csv(const std::string& text) {
 
 std::string text_of_file(const std::filesystem::path& path) {
   return text_of(ByteView(read_file(path)));
+}
+
+void check_row(const CsvRow& row, const std::string& cells) {
+  const std::string all = cells + ", ";
+  for (std::size_t at = 0, end = 0; (end = all.find(", ", at)) != std::string::npos; at = end + 2) {
+    const std::string cell = all.substr(at, end - at);
+    const std::size_t sign = cell.find('=');
+    INFO(cell);
+    CHECK(row.at(cell.substr(0, sign)) == cell.substr(sign + 1));
+  }
 }
 
 std::vector<CsvRow> rows_of(const std::filesystem::path& path) {

@@ -18,6 +18,10 @@ namespace touchtrial {
 /// Each row by the names of the header; fails the test if one is longer or shorter.
 [[nodiscard]] std::vector<CsvRow> rows_of(const std::filesystem::path& path);
 
+/// Checks cells of a row.
+/// \param cells  "COLUMN=TEXT, COLUMN=TEXT"
+void check_row(const CsvRow& row, const std::string& cells);
+
 /// The outcomes that an export after unblinding was made from, as far as its CSV files contain
 /// them.
 [[nodiscard]] analysis::Outcomes outcomes_from_csv(const std::filesystem::path& folder);

@@ -34,11 +34,7 @@ void fill(FakeStudy& study) {
       {.participant = "Z_2+", .enrolment = 2, .answers = [](const study::Presentation& shown) {
          return shown.trial == 7 ? std::nullopt : std::optional(shown.stimulus.class_index);
        }});
-  study.add({.participant = "P03",
-             .enrolment = 3,
-             .answers = FakeStudy::always_right(),
-             .complete = false,
-             .stop_after = 2});
+  study.add({.participant = "P03", .enrolment = 3, .complete = false, .stop_after = 2});
 }
 
 /// An unblinded study, and everything that an export of it needs.
@@ -159,8 +155,7 @@ TEST_CASE("Latencies of a recording skip the time between explorations, where it
   row.rate_hz = trace.rate_hz;
   row.samples = 5;
   row.presented_at = milliseconds(7000);
-  record::TraceBody body;
-  body.explorations = {2, 3};
+  record::TraceBody body{.explorations = {2, 3}};
   const auto latencies = [&] {
     const analysis::Recording recording = analysis::recording_of(row, body);
     std::istringstream lines(analysis::motion_text(trace, recording));
@@ -197,8 +192,7 @@ TEST_CASE("A BIDS dataset loses its traces and withdrawn participants when it is
 }
 
 TEST_CASE("Participants with several sessions have folders for them") {
-  FakeStudy study(study::identification::classification(),
-                  {.simulated = false, .session = R"({"closing_questions": [
+  FakeStudy study({.simulated = false, .session = R"({"closing_questions": [
                     {"id": "hard", "kind": "number", "text": {"en": "How hard was it?"}}]})"});
   FakeSession first = talkative("P01", 1, R"({"hard":7})");
   first.complete = false;
@@ -209,10 +203,7 @@ TEST_CASE("Participants with several sessions have folders for them") {
   FakeSession second = talkative("P01", 1, R"({"hard":5})");
   second.after = std::chrono::hours(24 * 9);
   study.add(second);
-  study.add({.participant = "P02",
-             .enrolment = 2,
-             .answers = FakeStudy::always_right(),
-             .after = std::chrono::hours(24 * 10)});
+  study.add({.participant = "P02", .enrolment = 2, .after = std::chrono::hours(24 * 10)});
   study.close_and_unblind();
   const fs::path out = study.folder() / "bids";
   analysis::export_bids(OpenStudy(study).source, {.traces = true}, out);
@@ -236,18 +227,16 @@ TEST_CASE("Participants with several sessions have folders for them") {
 }
 
 TEST_CASE("Datasets have what people said, and what they typed only if that is wanted") {
-  FakeStudy study(study::identification::classification(),
-                  {.simulated = false, .session = R"({"closing_questions": [
+  FakeStudy study({.simulated = false, .session = R"({"closing_questions": [
                     {"id": "How-hard", "kind": "number", "text": {"en": "How hard was it?"}},
                     {"id": "which", "kind": "choice", "text": {"en": "Which was best?"},
                      "options": [{"en": "rough"}, {"en": "smooth"}]}]})"});
   study.add(talkative("P01", 1, R"({"How-hard":7,"age":34,"remarks":"it is Anna's","which":1})"));
   study.add(talkative("P02", 2, R"({"which":0})"));
-  study.add({.participant = "P03", .enrolment = 3, .answers = FakeStudy::always_right()});
+  study.add({.participant = "P03", .enrolment = 3});
   study.close_and_unblind();
   const OpenStudy open(study);
-  analysis::DatasetOptions options;
-  options.consents = {{.participant = "P01", .consent_version = "2"}};
+  analysis::DatasetOptions options{.consents = {{.participant = "P01", .consent_version = "2"}}};
   const fs::path bids = study.folder() / "bids";
   const fs::path psych = study.folder() / "psych";
   analysis::export_bids(open.source, options, bids);

@@ -35,38 +35,28 @@ std::vector<std::filesystem::path> exported(FakeStudy& study) {
 }  // namespace
 
 TEST_CASE("Exported events have remarks, faults by name, and flight records as they were") {
-  FakeStudy study(study::identification::classification(), {.simulated = false});
+  FakeStudy study({.simulated = false});
   study.add(of_somebody("P01", 1));
-  study.add({.participant = "P02",
-             .enrolment = 2,
-             .answers = FakeStudy::always_right(),
-             .interrupt_trial = 3});
+  study.add({.participant = "P02", .enrolment = 2, .interrupt_trial = 3});
   study.store().note(2, milliseconds(7), "", "wrote a letter");
   study.close_and_unblind();
   const auto files = exported(study);
   REQUIRE(files.size() == 2);
   const std::vector<CsvRow> rows = rows_of(files[0]);
   REQUIRE(rows.size() == 4);
-  CHECK(rows[0].at("kind") == "participant-noted");
-  CHECK(rows[0].at("participant") == "P02");
-  CHECK(rows[0].at("session") == "2");
-  CHECK(rows[0].at("at_s").empty());
-  CHECK(rows[0].at("at_utc") == "1970-01-01T00:00:00Z");
+  check_row(
+      rows[0],
+      "kind=participant-noted, participant=P02, session=2, at_s=, at_utc=1970-01-01T00:00:00Z");
   CHECK(rows[0].at("body") == R"({"code":"","session":2,"text":"wrote a letter"})");
   CHECK(rows[1].at("kind") == "noted");
   CHECK(rows[1].at("body") == R"({"text":"came late"})");
   CHECK(rows[1].at("flight").empty());
-  CHECK(rows[2].at("kind") == "interrupted");
-  CHECK(rows[2].at("participant") == "P01");
-  CHECK(rows[2].at("event") == "3");
-  CHECK(rows[2].at("at_s") == "1.5");
+  check_row(rows[2], "kind=interrupted, participant=P01, event=3, at_s=1.5");
   CHECK(
       rows[2].at("body") ==
       R"({"device_fault":"link_lost","largest_force_n":0.0,"reason":"device lost","safety_fault":"device","trial":1})");
-  CHECK(rows[2].at("safety_fault") == "device");
-  CHECK(rows[2].at("device_fault") == "link_lost");
-  CHECK(rows[2].at("flight") == "flight_1_3.csv");
-  CHECK(rows[2].at("simulated") == "0");
+  check_row(rows[2],
+            "safety_fault=device, device_fault=link_lost, flight=flight_1_3.csv, simulated=0");
   CHECK(text_of_file(files[1]) == "tick,time_s\n0,0\n1,0.001\n");
   CHECK(rows[3].at("body") == R"({"reason":"comfort stop","trial":3})");
   CHECK(rows[3].at("safety_fault").empty());

@@ -19,7 +19,6 @@ const record::InterruptionDetail kOverspeed{
 FakeSession with_a_cramp(const std::string& participant, int enrolment) {
   return {.participant = participant,
           .enrolment = enrolment,
-          .answers = FakeStudy::always_right(),
           .complete = false,
           .stop_after = 0,
           .before_trials = [](record::SessionRecorder& recorder) {
@@ -45,7 +44,7 @@ bool says(const std::string& text, const std::string& words) {
 void add_three(FakeStudy& study) {
   study.add(with_a_cramp("P01", 1));
   study.add(with_a_cramp("P02", 2));
-  study.add({.participant = "P03", .enrolment = 3, .answers = FakeStudy::always_right()});
+  study.add({.participant = "P03", .enrolment = 3});
   study.store().note(2, milliseconds(20), "too-hot", "30 degrees");
   study.store().note(2, milliseconds(21), "", "wrote a letter");
   study.store().exclude(3, milliseconds(22), "asleep");
@@ -55,30 +54,21 @@ void add_three(FakeStudy& study) {
 }  // namespace
 
 TEST_CASE("The safety record has everybody's stops, faults and deviations, and no outcome") {
-  FakeStudy study(study::identification::classification(), {.simulated = false});
+  FakeStudy study({.simulated = false});
   add_three(study);
   const auto files = analysis::export_safety(study.store(), nullptr, study.folder() / "codes");
   REQUIRE(files.size() == 2);
   const std::vector<CsvRow> sessions = rows_of(files[0]);
   REQUIRE(sessions.size() == 3);
-  CHECK(sessions[1].at("participant") == "P02");
-  CHECK(sessions[1].at("erased") == "1");
-  CHECK(sessions[1].at("interruptions") == "1");
-  CHECK(sessions[1].at("stops") == "1");
-  CHECK(sessions[1].at("deviations") == "2");
+  check_row(sessions[1], "participant=P02, erased=1, interruptions=1, stops=1, deviations=2");
   CHECK(sessions[2].at("stops") == "0");
   const std::vector<CsvRow> events = rows_of(files[1]);
   REQUIRE(events.size() == 3 + 3 + 3);  // in two sessions, and on the file's chain
-  CHECK(events[0].at("kind") == "deviated");
-  CHECK(events[0].at("code") == "no-curtain");
-  CHECK(events[1].at("kind") == "interrupted");
-  CHECK(events[1].at("trial") == "1");
-  CHECK(events[1].at("code") == "device fault");
-  CHECK(events[1].at("safety_fault") == "overspeed");
+  check_row(events[0], "kind=deviated, code=no-curtain");
+  check_row(events[1], "kind=interrupted, trial=1, code=device fault, safety_fault=overspeed");
   CHECK(events[2].at("kind") == "stopped");
   for (const CsvRow& event : events) {
-    CHECK(event.at("text").empty());
-    CHECK(event.at("at_s").empty());
+    check_row(event, "text=, at_s=");
   }
   const std::string text = all_text(files);
   for (const char* const words : {"wash", "cramp", "30 degrees", "asleep", "letter", "tall"}) {
@@ -87,7 +77,7 @@ TEST_CASE("The safety record has everybody's stops, faults and deviations, and n
 }
 
 TEST_CASE("With the key the safety record has what was typed, also of erased people") {
-  FakeStudy study(study::identification::classification(), {.simulated = false});
+  FakeStudy study({.simulated = false});
   add_three(study);
   const auto files = analysis::export_safety(study.store(), &study.key(), study.folder() / "texts");
   const std::string text = all_text(files);
@@ -99,10 +89,8 @@ TEST_CASE("With the key the safety record has what was typed, also of erased peo
     CHECK_FALSE(says(text, words));
   }
   const std::vector<CsvRow> events = rows_of(files[1]);
-  CHECK(events[2].at("text") == "a cramp");
-  CHECK(events[2].at("at_s") == "2.5");
-  CHECK(events[5].at("participant") == "P02");
-  CHECK(events[5].at("text") == "a cramp");
+  check_row(events[2], "text=a cramp, at_s=2.5");
+  check_row(events[5], "participant=P02, text=a cramp");
   CHECK(events[1].at("at_s").empty());
 
   constexpr auto kLater = std::chrono::hours(24 * 366 * 11);
@@ -116,7 +104,7 @@ TEST_CASE("With the key the safety record has what was typed, also of erased peo
 }
 
 TEST_CASE("The safety record says where the largest force of an open session comes from") {
-  FakeStudy study(study::identification::classification(), {.simulated = false});
+  FakeStudy study({.simulated = false});
   const auto felt = [](const study::Presentation& shown) {
     record::Trace trace;
     trace.samples.assign(20, {{0.0, 0.0, -0.5}, {0.0, 0.0, 1.04 + 0.5 * (shown.trial % 2)}});
@@ -125,7 +113,6 @@ TEST_CASE("The safety record says where the largest force of an open session com
   const auto add = [&](const std::string& participant, int enrolment, int presentations) {
     study.add({.participant = participant,
                .enrolment = enrolment,
-               .answers = FakeStudy::always_right(),
                .stop_after = presentations,
                .traces = felt,
                .ends = false});
@@ -150,7 +137,7 @@ TEST_CASE("The safety record says where the largest force of an open session com
 }
 
 TEST_CASE("Exports of what people said of themselves are their reader's alone") {
-  FakeStudy study(study::identification::classification(), {.simulated = false});
+  FakeStudy study({.simulated = false});
   add_three(study);
   const auto is_private = [](const std::filesystem::path& file) {
     const auto others = std::filesystem::perms::group_all | std::filesystem::perms::others_all;
@@ -170,14 +157,12 @@ TEST_CASE("Exports of what people said of themselves are their reader's alone") 
 }
 
 TEST_CASE("A participant's export has that participant alone, and outcomes only where given") {
-  FakeStudy study(study::identification::classification(), {.simulated = false});
+  FakeStudy study({.simulated = false});
   study.add(talkative("P-1", 1, R"({"strategy":"by the grain"})"));
   study.add({.participant = "P2", .enrolment = 2, .answers = FakeStudy::confusing(0, 1)});
   study.store().note(1, milliseconds(20), "", "wrote a letter");
-  record::PersonalRecord person;
-  person.participant = "P-1";
-  person.consent_version = "3";
-  person.contact = "somebody@example.org";
+  record::PersonalRecord person{
+      .participant = "P-1", .consent_version = "3", .contact = "somebody@example.org"};
   const auto folder = study.folder() / "one";
   record::PersonalRecord again = person;
   again.consent_version = "4";

@@ -7,7 +7,6 @@
 #include "protocols/identification/analysis/report.hpp"
 #include "support/catch.hpp"
 
-#include <algorithm>
 #include <map>
 
 #include <nlohmann/json.hpp>
@@ -84,33 +83,19 @@ TEST_CASE("trials.csv has the published columns, exact times and numbers") {
   const std::vector<CsvRow> rows = rows_of(study.folder() / "trials.csv");
   REQUIRE(rows.size() == 24);
   const CsvRow& first = rows.front();
-  CHECK(first.at("participant") == "P01");
-  CHECK(first.at("trial") == "1");
-  CHECK(first.at("method") == "adaptive");
-  CHECK(first.at("presented_at_s") == "10");
-  CHECK(first.at("reaction_time_s") == "4.25");
-  CHECK(first.at("from_contact_s") == "3.75");
-  CHECK(first.at("contact_s") == "4");
-  CHECK(first.at("path_mm") == "300.5");
-  CHECK(first.at("force_rms_n") == "0.125");
-  CHECK(first.at("saturated_share") == "0.001");
-  CHECK(first.at("valid") == "1");
-  CHECK(first.at("confidence").empty());
+  check_row(first,
+            "participant=P01, trial=1, method=adaptive, presented_at_s=10, reaction_time_s=4.25, "
+            "from_contact_s=3.75, contact_s=4, path_mm=300.5, force_rms_n=0.125, "
+            "saturated_share=0.001, valid=1, confidence=");
   const CsvRow& missed = rows[12 + 6];
-  CHECK(missed.at("response").empty());
-  CHECK(missed.at("correct") == "0");
-  CHECK(missed.at("reaction_time_s").empty());
+  check_row(missed, "response=, correct=0, reaction_time_s=");
 }
 
 TEST_CASE("An exported trial is valid by the rule's part in clear, then by its sealed part too") {
   FakeStudy study(study::identification::classification());
-  study.add({.participant = "P01",
-             .enrolment = 1,
-             .answers = FakeStudy::always_right(),
-             .within_limits = false});
-  study.add(
-      {.participant = "P02", .enrolment = 2, .answers = FakeStudy::always_right(), .valid = false});
-  study.add({.participant = "P03", .enrolment = 3, .answers = FakeStudy::always_right()});
+  study.add({.participant = "P01", .enrolment = 1, .within_limits = false});
+  study.add({.participant = "P02", .enrolment = 2, .valid = false});
+  study.add({.participant = "P03", .enrolment = 3});
   const auto check = [&](const std::map<std::string, std::string>& expected) {
     const std::vector<CsvRow> rows = rows_of(study.folder() / "trials.csv");
     REQUIRE(rows.size() == 36);
@@ -162,18 +147,12 @@ TEST_CASE("Before unblinding an export has no word of what was presented or answ
 TEST_CASE("participants.csv tells whose sessions count and that they are simulated") {
   FakeStudy study(study::identification::classification());
   fill(study);
-  study.add({.participant = "P03",
-             .enrolment = 3,
-             .answers = FakeStudy::always_right(),
-             .complete = false,
-             .stop_after = 2});
+  study.add({.participant = "P03", .enrolment = 3, .complete = false, .stop_after = 2});
   analysis::export_csv(study.store(), std::nullopt, study.folder());
   const std::vector<CsvRow> rows = rows_of(study.folder() / "participants.csv");
   REQUIRE(rows.size() == 3);
   CHECK(rows[0].at("counted") == "1");
-  CHECK(rows[2].at("participant") == "P03");
-  CHECK(rows[2].at("state") == "stopped");
-  CHECK(rows[2].at("counted") == "0");
+  check_row(rows[2], "participant=P03, state=stopped, counted=0");
   for (const CsvRow& row : rows) CHECK(row.at("simulated") == "1");
   const auto contents = nlohmann::json::parse(text_of_file(study.folder() / "export.json"));
   CHECK(contents["stamp"] == "SIMULATED");
@@ -206,8 +185,7 @@ TEST_CASE("The JSON export holds the report and the same trials") {
 }
 
 TEST_CASE("What participants said and what happened to them comes out with outcomes alone") {
-  FakeStudy study(study::identification::classification(),
-                  {.simulated = false, .session = kQuestions});
+  FakeStudy study({.simulated = false, .session = kQuestions});
   study.add(talkative("P01", 1, R"({"hard":7.0,"remarks":"=none","which":1})"));
   study.add(talkative("P02", 2, R"({"remarks":"it is Anna's"})"));
   study.store().note(1, std::chrono::milliseconds(20), "too-hot", "30 degrees");
@@ -238,19 +216,15 @@ TEST_CASE("What participants said and what happened to them comes out with outco
   for (std::size_t i = 0; i < kinds.size(); ++i) {
     CHECK(incidents[i].at("participant") == "P01");
     CHECK(incidents[i].at("incident") == kinds[i]);
-    CHECK(incidents[i].at("at_s").empty());
-    CHECK(incidents[i].at("text").empty());
+    check_row(incidents[i], "at_s=, text=");
   }
-  CHECK(incidents[3].at("trial") == "1");
-  CHECK(incidents[3].at("code") == "comfort stop");
+  check_row(incidents[3], "trial=1, code=comfort stop");
   CHECK(incidents[6].at("code") == "too-hot");
   const std::vector<CsvRow> signed_forms = rows_of(out / "consents.csv");
   REQUIRE(signed_forms.size() == 2);  // of people with a session whose data are there
-  CHECK(signed_forms[1].at("consent") == "2");
-  CHECK(signed_forms[1].at("consent_version") == "2");
+  check_row(signed_forms[1], "consent=2, consent_version=2");
   const CsvRow person = rows_of(out / "participants.csv").front();
-  CHECK(person.at("interruptions") == "3");
-  CHECK(person.at("pauses") == "1");
+  check_row(person, "interruptions=3, pauses=1");
   CHECK_FALSE(person.contains("handedness_score"));
 
   study.close_and_unblind();
@@ -258,22 +232,15 @@ TEST_CASE("What participants said and what happened to them comes out with outco
   analysis::export_csv(study.store(), outcomes, out, consents);
   incidents = rows_of(out / "incidents.csv");
   REQUIRE(incidents.size() == 7);
-  CHECK(incidents[0].at("text") == "a phone rang");
-  CHECK(incidents[0].at("at_s") == "0.02");
+  check_row(incidents[0], "text=a phone rang, at_s=0.02");
   CHECK(incidents[6].at("text") == "30 degrees");
   const std::vector<CsvRow> answers = rows_of(out / "answers.csv");
   REQUIRE(answers.size() == 5 + 3);
   CHECK(answers[0].at("questionnaire") == "handedness");
-  CHECK(answers[1].at("question") == "spoon");
-  CHECK(answers[1].at("answer") == "1");
-  CHECK(answers[5].at("question") == "hard");
-  CHECK(answers[5].at("question_kind") == "number");
-  CHECK(answers[5].at("wording") == "How hard was it?");
-  CHECK(answers[5].at("answer") == "7");
+  check_row(answers[1], "question=spoon, answer=1");
+  check_row(answers[5], "question=hard, question_kind=number, wording=How hard was it?, answer=7");
   CHECK(answers[6].at("words") == "'=none");  // no formula
-  CHECK(answers[7].at("question_kind") == "choice");
-  CHECK(answers[7].at("answer") == "1");
-  CHECK(answers[7].at("words") == "smooth");
+  check_row(answers[7], "question_kind=choice, answer=1, words=smooth");
   CHECK(rows_of(out / "participants.csv").front().at("handedness_score") == "87.5");
   const auto json = nlohmann::json::parse(
       text_of_file(analysis::export_json(study.store(), outcomes, out, consents)));

@@ -79,7 +79,7 @@ void fill(FakeStudy& study) {
 }  // namespace
 
 TEST_CASE("A classification study reports the same from its CSV files, to the last digit") {
-  FakeStudy study(study::identification::classification(), {.label = "bark, \"old\" (two, three)"});
+  FakeStudy study({.label = "bark, \"old\" (two, three)"});
   fill(study);
   study.store().exclude(1, milliseconds(900), "fell asleep, \"twice\"");
   study.close_and_unblind();
@@ -95,8 +95,7 @@ TEST_CASE("A comparison of methods reports the same from its CSV files, to the l
 }
 
 TEST_CASE("A study with lead-ins and catch trials reports the same from its CSV files") {
-  FakeStudy study(study::identification::classification(),
-                  {.trials = R"({"lead_in": 1, "catch": 2})"});
+  FakeStudy study({.trials = R"({"lead_in": 1, "catch": 2})"});
   fill(study);
   study.close_and_unblind();
   check_round_trip(study);
@@ -104,7 +103,7 @@ TEST_CASE("A study with lead-ins and catch trials reports the same from its CSV 
 }
 
 TEST_CASE("How a study was collected is the same from its CSV files, in words and numbers") {
-  FakeStudy study(study::identification::classification(), {.simulated = false});
+  FakeStudy study({.simulated = false});
   fill(study);
   FakeSession felt{.participant = "P07", .enrolment = 7, .answers = imperfect(7)};
   felt.station = record::StationRecord{"Falcon",         "1.2, beta",     8.9,      false,
@@ -139,7 +138,7 @@ TEST_CASE("How a study was collected is the same from its CSV files, in words an
 }
 
 TEST_CASE("What participants said reports the same from its CSV files") {
-  FakeStudy study(study::identification::classification(), {.session = R"({"closing_questions": [
+  FakeStudy study({.session = R"({"closing_questions": [
     {"id": "hard", "kind": "number", "text": {"en": "How hard was it?"}},
     {"id": "which", "kind": "choice", "text": {"en": "Which was best?"},
      "options": [{"en": "rough"}, {"en": "smooth"}]}]})"});
@@ -167,7 +166,7 @@ TEST_CASE("An interim look reports the same from its CSV files") {
 }
 
 TEST_CASE("Participants who are no simulation are not stamped, and report the same") {
-  FakeStudy study(study::identification::classification(), {.simulated = false});
+  FakeStudy study({.simulated = false});
   fill(study);
   study.close_and_unblind();
   check_round_trip(study);

@@ -2,7 +2,6 @@
 
 #include "support/catch.hpp"
 
-#include <cstddef>
 #include <string>
 #include <vector>
 

@@ -3,7 +3,6 @@
 #include "core/random.hpp"
 #include "support/catch.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -95,8 +94,7 @@ TEST_CASE("likeness tells pictures of one class from pictures of two") {
 }
 
 TEST_CASE("equalising is ignored, and an empty set is refused") {
-  RenderingOptions equalised;
-  equalised.equalise = Equalise::rms;
+  RenderingOptions equalised{.equalise = Equalise::rms};
   const std::vector<LabelledPicture> pictures = {{"s", "weak", "a", blocks(1, 64, 10)},
                                                  {"s", "strong", "b", blocks(2, 64, 90)}};
   CHECK(measured(pictures, equalised).pictures[0].force_rms_n ==

@@ -16,7 +16,7 @@ namespace {
 using std::chrono::milliseconds;
 
 FakeSession session_of(const std::string& participant, int enrolment) {
-  return {.participant = participant, .enrolment = enrolment, .answers = FakeStudy::always_right()};
+  return {.participant = participant, .enrolment = enrolment};
 }
 
 record::StationRecord falcon() {
@@ -33,8 +33,7 @@ int sum_of(const analysis::ParticipantFlow& flow) {
 }  // namespace
 
 TEST_CASE("load_collection tells what the study prescribes") {
-  FakeStudy study(study::identification::classification(),
-                  {.trials = R"({"explore_limit_s": 30, "on_timeout": "no-response"})"});
+  FakeStudy study({.trials = R"({"explore_limit_s": 30, "on_timeout": "no-response"})"});
   const analysis::Prescription prescription = analysis::load_collection(study.store()).prescription;
   CHECK(prescription.explore_limit_s == 30.0);
   CHECK(prescription.on_timeout == "no-response");
@@ -47,8 +46,7 @@ TEST_CASE("load_collection tells what the study prescribes") {
 }
 
 TEST_CASE("A prescription has the validity rule that the study sets") {
-  FakeStudy study(study::identification::classification(),
-                  {.trials = R"({"validity": {"contact_s": 2.5, "saturated_share": 0.5}})"});
+  FakeStudy study({.trials = R"({"validity": {"contact_s": 2.5, "saturated_share": 0.5}})"});
   CHECK(analysis::load_collection(study.store()).prescription.validity ==
         study::ValidityRule{.least_contact_s = 2.5, .saturated_share = 0.5});
 }
@@ -65,7 +63,7 @@ TEST_CASE("A prescription follows the section on sessions where there is one") {
 }
 
 TEST_CASE("A session's record holds practice, deviations, resumptions and station") {
-  FakeStudy study(study::identification::classification(), {.simulated = false});
+  FakeStudy study({.simulated = false});
   FakeSession session = session_of("P01", 1);
   session.station = falcon();
   session.servo = record::ServoHealth{.rate_hz = 998.0, .lateness_p99_us = 40.0};
@@ -207,7 +205,7 @@ TEST_CASE("Every participant is counted once, by the session that stands") {
 }
 
 TEST_CASE("A collection holds nothing about an erased participant except the withdrawal") {
-  FakeStudy study(study::identification::classification(), {.simulated = false});
+  FakeStudy study({.simulated = false});
   FakeSession session = session_of("P01", 1);
   session.station = falcon();
   session.servo = record::ServoHealth{};

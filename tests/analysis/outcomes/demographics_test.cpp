@@ -2,7 +2,6 @@
 
 #include "support/catch.hpp"
 
-#include <string>
 #include <vector>
 
 namespace touchtrial {

@@ -16,9 +16,7 @@ constexpr auto kNoon = std::chrono::seconds(1'769'860'800);  // 2026-01-31 12:00
 
 void add_sessions(FakeStudy& study, int first, int last) {
   for (int i = first; i <= last; ++i) {
-    study.add({.participant = "P" + std::to_string(i),
-               .enrolment = i,
-               .answers = FakeStudy::always_right()});
+    study.add({.participant = "P" + std::to_string(i), .enrolment = i});
   }
 }
 

@@ -57,7 +57,7 @@ TEST_CASE("A trial without a response counts and is wrong") {
 
 TEST_CASE("An interrupted and repeated trial counts once, by its repetition") {
   FakeStudy study(study::identification::classification());
-  study.add({.participant = "P01", .answers = FakeStudy::always_right(), .interrupt_trial = 5});
+  study.add({.participant = "P01", .interrupt_trial = 5});
   study.close_and_unblind();
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   CHECK(outcomes.trials.size() == 12);
@@ -103,9 +103,7 @@ TEST_CASE("Excluded, erased and foreign sessions do not count") {
 TEST_CASE("A look at one participant shows that participant's sessions alone") {
   FakeStudy study(study::identification::classification());
   for (const char* const participant : {"P01", "P02"}) {
-    study.add({.participant = participant,
-               .enrolment = participant[2] - '0',
-               .answers = FakeStudy::always_right()});
+    study.add({.participant = participant, .enrolment = participant[2] - '0'});
   }
   record::StudyStore& store = study.store();
   CHECK_THROWS_WITH(analysis::load_outcomes(store, study.key(), "P01"),
@@ -124,7 +122,7 @@ TEST_CASE("A look at one participant shows that participant's sessions alone") {
 
 TEST_CASE("load_outcomes keeps outcomes shut until the study is unblinded") {
   FakeStudy study(study::identification::classification());
-  study.add({.participant = "P01", .answers = FakeStudy::always_right()});
+  study.add({.participant = "P01"});
   CHECK_THROWS_AS(analysis::load_outcomes(study.store(), study.key()), StoreError);
   study.close_and_unblind();
   CHECK(analysis::load_outcomes(study.store(), study.key()).trials.size() == 12);
@@ -132,7 +130,7 @@ TEST_CASE("load_outcomes keeps outcomes shut until the study is unblinded") {
 
 TEST_CASE("load_outcomes names the key that does not belong") {
   FakeStudy study(study::identification::classification());
-  study.add({.participant = "P01", .answers = FakeStudy::always_right()});
+  study.add({.participant = "P01"});
   study.close_and_unblind();
 
   SeededEntropy other(12);
@@ -152,9 +150,9 @@ TEST_CASE("load_outcomes names the key that does not belong") {
 
 TEST_CASE("An interim look shows only sessions that had ended before it") {
   FakeStudy study(study::identification::classification());
-  study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});
+  study.add({.participant = "P01", .enrolment = 1});
   study.store().unblind(std::chrono::seconds(1), "safety", true);
-  study.add({.participant = "P02", .enrolment = 2, .answers = FakeStudy::always_right()});
+  study.add({.participant = "P02", .enrolment = 2});
   const analysis::Outcomes interim = analysis::load_outcomes(study.store(), study.key());
   CHECK(interim.sessions.size() == 1);
   CHECK(interim.sessions_unseen == 1);

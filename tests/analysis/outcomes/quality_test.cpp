@@ -9,7 +9,6 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include <nlohmann/json.hpp>
 
@@ -21,16 +20,8 @@ void fill(FakeStudy& study) {
   study.add({.participant = "P01", .enrolment = 1, .answers = [](const study::Presentation& shown) {
                return shown.trial == 3 ? std::nullopt : std::optional(shown.stimulus.class_index);
              }});
-  study.add({.participant = "P02",
-             .enrolment = 2,
-             .answers = FakeStudy::always_right(),
-             .valid = false,
-             .interrupt_trial = 2});
-  study.add({.participant = "P03",
-             .enrolment = 3,
-             .answers = FakeStudy::always_right(),
-             .complete = false,
-             .stop_after = 4});
+  study.add({.participant = "P02", .enrolment = 2, .valid = false, .interrupt_trial = 2});
+  study.add({.participant = "P03", .enrolment = 3, .complete = false, .stop_after = 4});
 }
 
 /// The report as the terminal shows it.
@@ -65,7 +56,6 @@ TEST_CASE("A quality report counts interruptions, repeated or not, pauses and no
   study.add(talkative("P01", 1, "{}"));
   study.add({.participant = "P02",
              .enrolment = 2,
-             .answers = FakeStudy::always_right(),
              .complete = false,
              .interrupt_trial = 1,
              .stop_after = 1});
@@ -89,7 +79,7 @@ TEST_CASE("A quality report names who presses one key, and how answers are sprea
   FakeStudy study(study::identification::classification());
   const auto first = [](const study::Presentation&) { return 0; };
   study.add({.participant = "P01", .enrolment = 1, .answers = first, .one_key = true});
-  study.add({.participant = "P02", .enrolment = 2, .answers = FakeStudy::always_right()});
+  study.add({.participant = "P02", .enrolment = 2});
   const auto sessions = [](const analysis::Collection& collection) {
     return analysis::collection_object(collection)["sessions"];
   };
@@ -106,11 +96,11 @@ TEST_CASE("A quality report names who presses one key, and how answers are sprea
 
 TEST_CASE("A quality report shows by session in how many trials the hand was outside a window") {
   FakeStudy study(study::identification::classification());
-  FakeSession session{.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()};
+  FakeSession session{.participant = "P01", .enrolment = 1};
   session.hand = {.path = false, .speed = false};
   study.add(session);
-  study.add({.participant = "P02", .enrolment = 2, .answers = FakeStudy::always_right()});
-  study.add({.participant = "P03", .enrolment = 3, .answers = FakeStudy::always_right()});
+  study.add({.participant = "P02", .enrolment = 2});
+  study.add({.participant = "P03", .enrolment = 3});
   study.store().withdraw(3, std::chrono::milliseconds(40), "");
   const analysis::QualityReport report = analysis::make_quality(study.store());
   const auto& sessions = report.collection.sessions;
@@ -127,7 +117,7 @@ TEST_CASE("make_quality counts every session once, and replaced ones apart") {
   fill(study);
   using std::chrono::milliseconds;
   study.store().replace(3, "P04", milliseconds(10), "went home");
-  study.add({.participant = "P04", .enrolment = 3, .answers = FakeStudy::always_right()});
+  study.add({.participant = "P04", .enrolment = 3});
   study.store().exclude(1, milliseconds(20), "fell asleep");
   study.store().replace(1, "P05", milliseconds(30), "place is wanted");
   const analysis::SessionCounts counts = analysis::make_quality(study.store()).sessions;
@@ -142,7 +132,7 @@ TEST_CASE("make_quality counts every session once, and replaced ones apart") {
 
 TEST_CASE("A quality report names no class, no image and no method") {
   FakeStudy study(study::identification::comparison(), {.label = "petrified wood"});
-  study.add({.participant = "P01", .answers = FakeStudy::always_right()});
+  study.add({.participant = "P01"});
   const analysis::QualityReport report = analysis::make_quality(study.store());
   for (const std::string& text : {analysis::quality_json(report), page_of(report)}) {
     for (const char* secret : {"petrified", "cloth", "straw", ".png", "adaptive", "tv-gabor"}) {
@@ -173,10 +163,10 @@ TEST_CASE("A quality report says how the study stands") {
 }
 
 TEST_CASE("A quality report shows how the servo kept its time, where that was recorded") {
-  FakeStudy study(study::identification::classification(), {.simulated = false});
-  study.add({.participant = "P01", .answers = FakeStudy::always_right()});
+  FakeStudy study({.simulated = false});
+  study.add({.participant = "P01"});
   CHECK_FALSE(analysis::make_quality(study.store()).servo);
-  FakeSession session{.participant = "P02", .enrolment = 2, .answers = FakeStudy::always_right()};
+  FakeSession session{.participant = "P02", .enrolment = 2};
   session.station = record::StationRecord();
   session.station->scheduling = "fifo 80, memory locked";
   session.servo = record::ServoHealth{.rate_hz = 999.5,
@@ -199,8 +189,8 @@ TEST_CASE("A quality report shows how the servo kept its time, where that was re
 }
 
 TEST_CASE("What was seen on a screen says so in every report") {
-  FakeStudy study(study::identification::classification(), {.simulated = false, .pilot = true});
-  FakeSession session{.participant = "P01", .answers = FakeStudy::always_right()};
+  FakeStudy study({.simulated = false, .pilot = true});
+  FakeSession session{.participant = "P01"};
   session.station = record::StationRecord();
   session.station->visual = true;
   study.add(session);
@@ -216,7 +206,7 @@ TEST_CASE("What was seen on a screen says so in every report") {
 }
 
 TEST_CASE("A quality report of real participants carries no stamp") {
-  FakeStudy study(study::identification::classification(), {.simulated = false});
+  FakeStudy study({.simulated = false});
   const analysis::QualityReport report = analysis::make_quality(study.store());
   const auto json = nlohmann::json::parse(analysis::quality_json(report));
   CHECK(json["simulated"] == false);

@@ -36,7 +36,7 @@ std::pair<bool, bool> unverified_in_json(FakeStudy& study) {
 
 /// One complete with a certificate, one without, one open, one stopped whose place P05 takes.
 void fill(FakeStudy& study) {
-  FakeSession felt{.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()};
+  FakeSession felt{.participant = "P01", .enrolment = 1};
   felt.station = record::StationRecord();
   felt.station->calibration = "c0ffee";
   study.add(felt);
@@ -46,16 +46,8 @@ void fill(FakeStudy& study) {
     recorder.deviated(milliseconds(1), {"no-certificate", ""});
   };
   study.add(felt);
-  study.add({.participant = "P03",
-             .enrolment = 3,
-             .answers = FakeStudy::always_right(),
-             .complete = false,
-             .stop_after = 2});
-  study.add({.participant = "P04",
-             .enrolment = 4,
-             .answers = FakeStudy::always_right(),
-             .stop_after = 3,
-             .ends = false});
+  study.add({.participant = "P03", .enrolment = 3, .complete = false, .stop_after = 2});
+  study.add({.participant = "P04", .enrolment = 4, .stop_after = 3, .ends = false});
   study.store().replace(3, "P05", milliseconds(20), "went home");
 }
 
@@ -75,15 +67,14 @@ bool has_left(const StudyStatus& status, const std::string& sentence) {
 TEST_CASE("A study's status says who is done, who is open, who is to come and what is left") {
   FakeStudy study(study::identification::comparison(), {.simulated = false});
   fill(study);
-  analysis::StatusSources sources;
-  sources.planned = 6;
-  sources.consent_version = "2";
-  sources.knows_consents = true;
-  sources.consents = {{.participant = "P01", .consent_version = "1"},
-                      {.participant = "P01", .consent_version = "2"},
-                      {.participant = "P02", .consent_version = "1"},
-                      {.participant = "P04", .consent_version = "2"},
-                      {.participant = "P06", .consent_version = "2"}};
+  analysis::StatusSources sources{.consents = {{.participant = "P01", .consent_version = "1"},
+                                               {.participant = "P01", .consent_version = "2"},
+                                               {.participant = "P02", .consent_version = "1"},
+                                               {.participant = "P04", .consent_version = "2"},
+                                               {.participant = "P06", .consent_version = "2"}},
+                                  .knows_consents = true,
+                                  .planned = 6,
+                                  .consent_version = "2"};
   const StudyStatus status = analysis::status_of(study.store(), sources);
   CHECK(status.complete == 2);
   REQUIRE(status.people.size() == 6);
@@ -115,8 +106,8 @@ TEST_CASE("A study's status says who is done, who is open, who is to come and wh
 }
 
 TEST_CASE("A session without a valid certificate is stamped in status, reports and their tables") {
-  FakeStudy study(study::identification::classification(), {.simulated = false});
-  FakeSession felt{.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()};
+  FakeStudy study({.simulated = false});
+  FakeSession felt{.participant = "P01", .enrolment = 1};
   felt.station = record::StationRecord();
   felt.station->calibration = "c0ffee";
   study.add(felt);
@@ -139,8 +130,8 @@ TEST_CASE("A session without a valid certificate is stamped in status, reports a
 }
 
 TEST_CASE("A session that was resumed without a valid certificate is stamped too") {
-  FakeStudy study(study::identification::classification(), {.simulated = false});
-  FakeSession felt{.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()};
+  FakeStudy study({.simulated = false});
+  FakeSession felt{.participant = "P01", .enrolment = 1};
   felt.station = record::StationRecord();
   felt.station->calibration = "c0ffee";
   felt.before_trials = [](record::SessionRecorder& recorder) {
@@ -175,12 +166,11 @@ TEST_CASE("A study's status has no word of stimuli and answers, and is the same 
 }
 
 TEST_CASE("A study's status tells what closes it, and names nobody who was erased") {
-  FakeStudy study(study::identification::classification(), {.simulated = false});
-  study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});
-  study.add({.participant = "P02", .enrolment = 2, .answers = FakeStudy::always_right()});
+  FakeStudy study({.simulated = false});
+  study.add({.participant = "P01", .enrolment = 1});
+  study.add({.participant = "P02", .enrolment = 2});
   study.store().withdraw(2, milliseconds(30), "asked to");
-  analysis::StatusSources sources;
-  sources.planned = 1;
+  analysis::StatusSources sources{.planned = 1};
   CHECK(has_left(analysis::status_of(study.store(), sources), "`touchtrial close`"));
   study.store().close_study(milliseconds(40));
   const StudyStatus closed = analysis::status_of(study.store(), sources);

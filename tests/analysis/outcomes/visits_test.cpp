@@ -17,7 +17,6 @@
 #include <algorithm>
 #include <set>
 #include <string>
-#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -74,7 +73,7 @@ std::string header_of(const std::filesystem::path& file) {
 }  // namespace
 
 TEST_CASE("a participant's visits are pooled, and who lacks one does not count") {
-  FakeStudy study(study::identification::classification(), with(kWeek));
+  FakeStudy study(with(kWeek));
   add_three(study);
   study.close_and_unblind();
   const StudyReport report = report_on(study);
@@ -90,9 +89,8 @@ TEST_CASE("a participant's visits are pooled, and who lacks one does not count")
 
 TEST_CASE("the registered choice decides which visits enter the primary test") {
   const auto primary = [](const std::string& visits) {
-    FakeStudy study(study::identification::classification(),
-                    with(kWeek, R"({"participants": 3, "estimand": "mean-accuracy", "visits": ")" +
-                                    visits + "\"}"));
+    FakeStudy study(with(
+        kWeek, R"({"participants": 3, "estimand": "mean-accuracy", "visits": ")" + visits + "\"}"));
     add_three(study);
     study.close_and_unblind();
     return report_on(study).primary.value().registered();
@@ -107,7 +105,6 @@ TEST_CASE("the registered choice decides which visits enter the primary test") {
 
 TEST_CASE("visits and groups are breakdowns, with intervals over participants") {
   FakeStudy study(
-      study::identification::classification(),
       with(R"({"visits": {"count": 2}, "groups": {"labels": ["trained", "control"]}})"));
   add_three(study);
   study.close_and_unblind();
@@ -152,7 +149,6 @@ TEST_CASE("methods that are divided between visits are compared within participa
 
 TEST_CASE("exports have columns of visits and groups, and others' exports do not") {
   FakeStudy study(
-      study::identification::classification(),
       with(R"({"visits": {"count": 2}, "groups": {"labels": ["trained", "control"]}})"));
   add_three(study);
   const auto folder = study.folder() / "blind";
@@ -180,7 +176,6 @@ TEST_CASE("exports have columns of visits and groups, and others' exports do not
 
 TEST_CASE("datasets for archives tell visits, and groups once outcomes are shown") {
   FakeStudy study(
-      study::identification::classification(),
       with(R"({"visits": {"count": 2}, "groups": {"labels": ["trained", "control"]}})"));
   add_three(study);
   const auto bids = study.folder() / "bids";
@@ -209,8 +204,7 @@ TEST_CASE("datasets for archives tell visits, and groups once outcomes are shown
 
 TEST_CASE("before outcomes are shown nothing in the database has a group that is not open") {
   for (const bool open : {false, true}) {
-    FakeStudy study(study::identification::classification(),
-                    with(std::string(R"({"groups": {"labels": ["trained", "control"], "open": )") +
+    FakeStudy study(with(std::string(R"({"groups": {"labels": ["trained", "control"], "open": )") +
                          (open ? "true" : "false") + "}}"));
     for (int person = 1; person <= 6; ++person) add_visit(study, person, 1, 6);
     std::set<std::string> told;
@@ -231,8 +225,7 @@ TEST_CASE("before outcomes are shown nothing in the database has a group that is
 
 TEST_CASE("verify replays every visit, and holds the days between visits against the study") {
   for (const int days : {7, 6}) {
-    FakeStudy study(study::identification::classification(),
-                    {.simulated = false, .sections = kWeek});
+    FakeStudy study({.simulated = false, .sections = kWeek});
     add_visit(study, 1, 1, 6);
     add_visit(study, 1, 2, 6, hours(24 * days));
     const analysis::Verification found =
@@ -249,8 +242,7 @@ TEST_CASE("verify replays every visit, and holds the days between visits against
 }
 
 TEST_CASE("quality counts people by their last visit, and interim looks by complete people") {
-  FakeStudy study(study::identification::classification(),
-                  with(kWeek, R"({"participants": 4, "estimand": "mean-accuracy", "looks": [2]})"));
+  FakeStudy study(with(kWeek, R"({"participants": 4, "estimand": "mean-accuracy", "looks": [2]})"));
   add_three(study);
   CHECK(analysis::make_quality(study.store()).participants == 2);
   study.store().unblind(hours(8 * 24), "look", true);

@@ -132,8 +132,7 @@ TEST_CASE("answers that are all lapses are at chance") {
 }
 
 TEST_CASE("the mean lapse of a population lies beyond its median lapse") {
-  simulation::SubjectModel subject;
-  subject.lapse = 0.05;
+  simulation::SubjectModel subject{.lapse = 0.05};
   CHECK(planning::mean_lapse(subject) == 0.05);
   subject.lapse_spread = 1.0;
   CHECK(planning::mean_lapse(subject) > 0.06);

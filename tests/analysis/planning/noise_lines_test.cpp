@@ -3,7 +3,6 @@
 #include "core/random.hpp"
 #include "support/catch.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>

@@ -14,10 +14,7 @@ namespace touchtrial {
 
 /// A subject who explores for 1.2 s, learns in four passes and makes no errors.
 [[nodiscard]] inline simulation::SubjectModel planned_subject() {
-  simulation::SubjectModel subject;
-  subject.explore_s = 1.2;
-  subject.training_passes = 4;
-  return subject;
+  return {.explore_s = 1.2, .training_passes = 4};
 }
 
 /// A tiny study, what the subject learns of it, and a bank of explorations.

@@ -9,9 +9,7 @@ namespace {
 
 planning::PowerReport report_of(const RehearsedTinyStudy& study, std::vector<int> sizes, int runs) {
   const planning::BankedFeelings bank = study.bank(30, 4);
-  planning::PowerPlan plan;
-  plan.participants = std::move(sizes);
-  plan.runs = runs;
+  planning::PowerPlan plan{.participants = std::move(sizes), .runs = runs};
   return planning::make_power_report(
       planning::make_runs(study.planned(bank, plan.participants.back()), study.test, {}, plan, 2));
 }
@@ -29,10 +27,7 @@ void check_type_one(const planning::PowerReport& report) {
 }
 
 TinyStudyOptions briefly(const char* trials) {
-  TinyStudyOptions options;
-  options.side_px = 60;
-  options.trials = trials;
-  return options;
+  return {.side_px = 60, .trials = trials};
 }
 
 /// A subject who feels hardly anything, so that power grows with the number of participants.

@@ -14,10 +14,7 @@ namespace touchtrial {
 namespace {
 
 planning::PowerPlan plan_of(const std::vector<int>& sizes, int runs = 1000) {
-  planning::PowerPlan plan;
-  plan.participants = sizes;
-  plan.runs = runs;
-  return plan;
+  return {.participants = sizes, .runs = runs};
 }
 
 std::string refusal(planning::PowerPlan plan) {
@@ -79,9 +76,7 @@ planning::PowerRuns runs_by_hand(int runs, const RunOf& run_of) {
 }
 
 TEST_CASE("a power run is the same with any number of threads, and keeps its first runs") {
-  TinyStudyOptions options;
-  options.side_px = 60;
-  options.trials = R"({"repeats":2})";
+  TinyStudyOptions options{.side_px = 60, .trials = R"({"repeats":2})"};
   const RehearsedTinyStudy tiny(options);
   const planning::BankedFeelings bank = tiny.bank();
   const auto made = [&](int runs, int jobs) {

@@ -20,11 +20,13 @@
 namespace touchtrial {
 namespace {
 
+using namespace analysis;
+using namespace planning;
 using namespace std::chrono_literals;
 
 /// Slow reference: outcomes of the same participants through sessions, events and a database.
-analysis::Outcomes simulated_and_loaded(TinyStudy& tiny, const simulation::SubjectModel& subject,
-                                        int participants, std::uint64_t seed) {
+Outcomes simulated_and_loaded(TinyStudy& tiny, const simulation::SubjectModel& subject,
+                              int participants, std::uint64_t seed) {
   record::StudyStore store = record::StudyStore::create(
       tiny.next_database(), session::commitment_of(tiny.key(), tiny.pack(), true, false), 0ns,
       tiny.key().signer());
@@ -34,20 +36,20 @@ analysis::Outcomes simulated_and_loaded(TinyStudy& tiny, const simulation::Subje
   return analysis::load_outcomes(store, tiny.key());
 }
 
-std::vector<analysis::TrialOutcome> scored(const analysis::Outcomes& outcomes) {
-  std::vector<analysis::TrialOutcome> trials;
-  for (const analysis::TrialOutcome& trial : outcomes.trials) {
+std::vector<TrialOutcome> scored(const Outcomes& outcomes) {
+  std::vector<TrialOutcome> trials;
+  for (const TrialOutcome& trial : outcomes.trials) {
     if (trial.scored) trials.push_back(trial);
   }
   // Simulate has everybody's first visit before the second ones.
-  std::ranges::stable_sort(trials, {}, [](const analysis::TrialOutcome& trial) {
+  std::ranges::stable_sort(trials, {}, [](const TrialOutcome& trial) {
     return std::tuple(trial.participant, trial.visit, trial.row.trial);
   });
   return trials;
 }
 
 /// Compares presentations and answers, in order.
-void check_same_answers(const analysis::Outcomes& one, const analysis::Outcomes& other) {
+void check_same_answers(const Outcomes& one, const Outcomes& other) {
   const auto a = scored(one);
   const auto b = scored(other);
   REQUIRE(a.size() == b.size());
@@ -61,9 +63,8 @@ void check_same_answers(const analysis::Outcomes& one, const analysis::Outcomes&
   CHECK(same == static_cast<int>(a.size()));
 }
 
-void check_same_figures(const planning::PowerRun& run,
-                        const analysis::identification::StudyReport& report) {
-  const analysis::identification::MethodReport& method = report.methods.front();
+void check_same_figures(const PowerRun& run, const identification::StudyReport& report) {
+  const identification::MethodReport& method = report.methods.front();
   CHECK(run.p == report.primary->p);
   CHECK(run.estimate == method.mean.mean);
   CHECK(run.low == method.mean.interval.low);
@@ -72,13 +73,12 @@ void check_same_figures(const planning::PowerRun& run,
 
 TEST_CASE("a power run on the servo path gives the answers and numbers of simulate and report") {
   RehearsedTinyStudy study;
-  const planning::RehearsedStudy planned = study.planned(study.servo);
-  const std::uint64_t seed = planning::study_seed(1, 3, planning::Hypothesis::population, 0);
-  const analysis::Outcomes fast = planned.outcomes(3, planning::Hypothesis::population, seed);
-  const analysis::Outcomes whole = simulated_and_loaded(study.tiny, study.subject, 3, seed);
+  const RehearsedStudy planned = study.planned(study.servo);
+  const std::uint64_t seed = planning::study_seed(1, 3, Hypothesis::population, 0);
+  const Outcomes fast = planned.outcomes(3, Hypothesis::population, seed);
+  const Outcomes whole = simulated_and_loaded(study.tiny, study.subject, 3, seed);
   check_same_answers(fast, whole);
-  check_same_figures(planning::judged(study.test, fast, false),
-                     analysis::identification::make_report(whole));
+  check_same_figures(judged(study.test, fast, false), identification::make_report(whole));
 }
 
 TEST_CASE(
@@ -89,12 +89,12 @@ TEST_CASE(
   options.side_px = 60;
   options.trials = R"({"repeats":2,"catch":3,"lead_in":2,"break_every":4,"max_run":2})";
   RehearsedTinyStudy study(options);
-  const planning::RehearsedStudy planned = study.planned(study.servo);
-  const analysis::Outcomes fast = planned.outcomes(2, planning::Hypothesis::population, 5);
-  const analysis::Outcomes whole = simulated_and_loaded(study.tiny, study.subject, 2, 5);
+  const RehearsedStudy planned = study.planned(study.servo);
+  const Outcomes fast = planned.outcomes(2, Hypothesis::population, 5);
+  const Outcomes whole = simulated_and_loaded(study.tiny, study.subject, 2, 5);
   check_same_answers(fast, whole);
-  const planning::PowerRun run = planning::judged(study.test, fast, false);
-  const analysis::identification::StudyReport report = analysis::identification::make_report(whole);
+  const PowerRun run = judged(study.test, fast, false);
+  const identification::StudyReport report = identification::make_report(whole);
   CHECK(run.estimate == report.methods.front().mean.mean);
   CHECK(run.p == report.primary->p);
 }
@@ -102,27 +102,22 @@ TEST_CASE(
 TEST_CASE("the servo path agrees with simulate for a comparison of two methods") {
   for (const char* trials : {R"({"repeats":1,"blocks":"mixed"})", R"({"repeats":1})"}) {
     INFO(trials);
-    TinyStudyOptions options;
-    options.comparison = true;
-    options.side_px = 60;
-    options.trials = trials;
+    TinyStudyOptions options{.comparison = true, .side_px = 60, .trials = trials};
     RehearsedTinyStudy study(options);
-    const planning::RehearsedStudy planned = study.planned(study.servo);
-    const analysis::Outcomes fast = planned.outcomes(3, planning::Hypothesis::population, 8);
-    const analysis::Outcomes whole = simulated_and_loaded(study.tiny, study.subject, 3, 8);
+    const RehearsedStudy planned = study.planned(study.servo);
+    const Outcomes fast = planned.outcomes(3, Hypothesis::population, 8);
+    const Outcomes whole = simulated_and_loaded(study.tiny, study.subject, 3, 8);
     check_same_answers(fast, whole);
-    const planning::PowerRun run = planning::judged(study.test, fast, true);
-    const analysis::identification::StudyReport report =
-        analysis::identification::make_report(whole);
+    const PowerRun run = judged(study.test, fast, true);
+    const identification::StudyReport report = identification::make_report(whole);
     CHECK(run.p == report.primary->p);
     CHECK(run.estimate == report.primary->registered().estimate);
     CHECK(run.low == report.primary->registered().interval->low);
     CHECK(run.high == report.primary->registered().interval->high);
     if (report.primary->crossover) {
-      CHECK(
-          analysis::crossover_permutation(
-              analysis::identification::primary_values(study.test, fast), 0.0, analysis::Sides::two)
-              ->p == report.primary->permutation->p);
+      CHECK(analysis::crossover_permutation(identification::primary_values(study.test, fast), 0.0,
+                                            Sides::two)
+                ->p == report.primary->permutation->p);
     } else {
       CHECK(run.p == report.comparison->p);
       CHECK(run.low == report.comparison->interval.low);
@@ -155,24 +150,22 @@ TEST_CASE(
   options.trials = R"({"repeats":2,"catch":4,"lead_in":2,"break_every":7})";
   options.visits = GENERATE(R"({"count":2})", R"({"count":2,"methods":"divided"})");
   RehearsedTinyStudy study(options, changing_subject(training));
-  const planning::RehearsedStudy planned = study.planned(study.servo);
-  const analysis::Outcomes fast = planned.outcomes(2, planning::Hypothesis::population, 5);
-  const analysis::Outcomes whole = simulated_and_loaded(study.tiny, study.subject, 2, 5);
+  const RehearsedStudy planned = study.planned(study.servo);
+  const Outcomes fast = planned.outcomes(2, Hypothesis::population, 5);
+  const Outcomes whole = simulated_and_loaded(study.tiny, study.subject, 2, 5);
   check_same_answers(fast, whole);
 }
 
 TEST_CASE("every change from trial to trial changes answers, and how long people think does not") {
-  TinyStudyOptions options;
-  options.side_px = 60;
-  options.trials = R"({"repeats":4,"lead_in":2,"break_every":7})";
-  options.visits = R"({"count":2})";
+  TinyStudyOptions options{.side_px = 60,
+                           .trials = R"({"repeats":4,"lead_in":2,"break_every":7})",
+                           .visits = R"({"count":2})"};
   RehearsedTinyStudy study(options, changing_subject(simulation::Training::own));
-  const planning::BankedFeelings bank = study.bank();
+  const BankedFeelings bank = study.bank();
   const auto answers = [&](const simulation::SubjectModel& subject) {
-    const planning::RehearsedStudy planned(study.tiny.key().study, subject, study.test, bank, 10);
+    const RehearsedStudy planned(study.tiny.key().study, subject, study.test, bank, 10);
     std::vector<std::optional<int>> given;
-    for (const analysis::TrialOutcome& trial :
-         scored(planned.outcomes(10, planning::Hypothesis::population, 5))) {
+    for (const TrialOutcome& trial : scored(planned.outcomes(10, Hypothesis::population, 5))) {
       given.push_back(trial.response);
     }
     return given;
@@ -199,7 +192,7 @@ TEST_CASE("every change from trial to trial changes answers, and how long people
 }
 
 /// Repeats what the servo path felt, without a servo.
-class RememberedFeelings final : public planning::Feelings {
+class RememberedFeelings final : public Feelings {
  public:
   RememberedFeelings(const RehearsedTinyStudy& study, int participants, std::uint64_t seed)
       : knowledge_(study.servo.knowledge(seed)) {
@@ -231,10 +224,8 @@ TEST_CASE(
   const RehearsedTinyStudy study(
       {}, GENERATE(hasty_subject(), changing_subject(simulation::Training::own)));
   const RememberedFeelings remembered(study, 2, 9);
-  const analysis::Outcomes fast =
-      study.planned(remembered).outcomes(2, planning::Hypothesis::population, 9);
-  const analysis::Outcomes slow =
-      study.planned(study.servo).outcomes(2, planning::Hypothesis::population, 9);
+  const Outcomes fast = study.planned(remembered).outcomes(2, Hypothesis::population, 9);
+  const Outcomes slow = study.planned(study.servo).outcomes(2, Hypothesis::population, 9);
   check_same_answers(fast, slow);
 }
 
@@ -245,13 +236,12 @@ struct Answers {
   std::map<std::pair<int, int>, double> confusion;
 };
 
-Answers answers_of(const planning::RehearsedStudy& planned, int studies, std::uint64_t seed) {
+Answers answers_of(const RehearsedStudy& planned, int studies, std::uint64_t seed) {
   Answers answers;
   for (int i = 0; i < studies; ++i) {
-    const analysis::Outcomes outcomes =
-        planned.outcomes(4, planning::Hypothesis::population,
-                         planning::study_seed(seed, 4, planning::Hypothesis::population, i));
-    for (const analysis::TrialOutcome& trial : outcomes.trials) {
+    const Outcomes outcomes = planned.outcomes(
+        4, Hypothesis::population, planning::study_seed(seed, 4, Hypothesis::population, i));
+    for (const TrialOutcome& trial : outcomes.trials) {
       ++answers.trials;
       if (trial.correct()) ++answers.correct;
       ++answers.confusion[{trial.stimulus.class_index, *trial.response}];
@@ -261,10 +251,9 @@ Answers answers_of(const planning::RehearsedStudy& planned, int studies, std::ui
 }
 
 TEST_CASE("a bank of independent explorations gives the accuracies and confusions of the servo") {
-  TinyStudyOptions options;
-  options.side_px = 60;
+  TinyStudyOptions options{.side_px = 60};
   const RehearsedTinyStudy study(options);
-  const planning::BankedFeelings bank = study.bank(60, 12);
+  const BankedFeelings bank = study.bank(60, 12);
   constexpr int kStudies = 12;
   const Answers fast = answers_of(study.planned(bank), kStudies, 1);
   const Answers slow = answers_of(study.planned(study.servo), kStudies, 2);
@@ -295,13 +284,12 @@ TEST_CASE("under the null nobody feels what is presented") {
     sure.lapse = 0.0;
     return sure;
   }());
-  const planning::BankedFeelings bank = study.bank();
-  const planning::RehearsedStudy planned = study.planned(bank);
+  const BankedFeelings bank = study.bank();
+  const RehearsedStudy planned = study.planned(bank);
   int correct = 0;
   int trials = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    for (const analysis::TrialOutcome& trial :
-         planned.outcomes(5, planning::Hypothesis::null, seed).trials) {
+    for (const TrialOutcome& trial : planned.outcomes(5, Hypothesis::null, seed).trials) {
       correct += trial.correct() ? 1 : 0;
       ++trials;
     }
@@ -313,12 +301,12 @@ TEST_CASE("under the null nobody feels what is presented") {
 
 /// The share of right answers in many simulated studies, by method.
 struct SharesRight {
-  analysis::Proportion method[2];
+  Proportion method[2];
 
-  SharesRight(const planning::RehearsedStudy& planned, planning::Hypothesis hypothesis) {
+  SharesRight(const RehearsedStudy& planned, Hypothesis hypothesis) {
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-      for (const analysis::TrialOutcome& trial : planned.outcomes(12, hypothesis, seed).trials) {
-        analysis::Proportion& one = method[trial.stimulus.method];
+      for (const TrialOutcome& trial : planned.outcomes(12, hypothesis, seed).trials) {
+        Proportion& one = method[trial.stimulus.method];
         ++one.n;
         one.correct += trial.correct() ? 1 : 0;
       }
@@ -326,37 +314,32 @@ struct SharesRight {
   }
 };
 
-double share_right(const analysis::Proportion& proportion) {
+double share_right(const Proportion& proportion) {
   return proportion.share().value();
 }
 
 RehearsedTinyStudy two_methods() {
-  TinyStudyOptions options;
-  options.comparison = true;
-  options.side_px = 60;
-  options.trials = R"({"repeats":2})";
+  TinyStudyOptions options{.comparison = true, .side_px = 60, .trials = R"({"repeats":2})"};
   return RehearsedTinyStudy(options);
 }
 
 TEST_CASE("with a margin, methods are alike, or the first is worse by the margin") {
   RehearsedTinyStudy study = two_methods();
   study.test.margin = 0.1;
-  study.test.sides = analysis::Sides::one;
-  const planning::BankedFeelings bank = study.bank();
-  const planning::RehearsedStudy planned = study.planned(bank);
-  const SharesRight alike(planned, planning::Hypothesis::population);
-  const SharesRight worse(planned, planning::Hypothesis::null);
+  study.test.sides = Sides::one;
+  const BankedFeelings bank = study.bank();
+  const RehearsedStudy planned = study.planned(bank);
+  const SharesRight alike(planned, Hypothesis::population);
+  const SharesRight worse(planned, Hypothesis::null);
   CHECK(share_right(alike.method[0]) - share_right(alike.method[1]) == Approx(0.0).margin(0.04));
   CHECK(share_right(worse.method[0]) - share_right(worse.method[1]) == Approx(-0.1).margin(0.04));
-  CHECK(planning::judged(study.test, planned.outcomes(12, planning::Hypothesis::null, 1), true)
-            .attainable == 0.05);
+  CHECK(judged(study.test, planned.outcomes(12, Hypothesis::null, 1), true).attainable == 0.05);
   study.test.margin = 1.0;
   CHECK_THROWS_WITH(study.planned(bank), holds_text("register a smaller margin"));
 }
 
 TEST_CASE("with trainings of their own people are on average no better than with a shared one") {
-  TinyStudyOptions options;
-  options.side_px = 60;
+  TinyStudyOptions options{.side_px = 60};
   simulation::SubjectModel subject = hasty_subject();
   subject.training_passes = 2;
   const RehearsedTinyStudy shared(options, subject);
@@ -366,7 +349,7 @@ TEST_CASE("with trainings of their own people are on average no better than with
   const RehearsedTinyStudy forgetful(options, subject);
   constexpr int kStudies = 40;
   const auto share = [&](const RehearsedTinyStudy& study) {
-    const planning::BankedFeelings bank = study.bank(60, 12);
+    const BankedFeelings bank = study.bank(60, 12);
     const Answers answers = answers_of(study.planned(bank), kStudies, 1);
     return answers.correct / answers.trials;
   };
@@ -378,9 +361,8 @@ TEST_CASE("with trainings of their own people are on average no better than with
 }
 
 TEST_CASE("a study whose participants could never answer is refused") {
-  TinyStudyOptions options;
-  options.side_px = 60;
-  options.trials = R"({"explore_limit_s":1,"on_timeout":"no-response"})";
+  TinyStudyOptions options{.side_px = 60,
+                           .trials = R"({"explore_limit_s":1,"on_timeout":"no-response"})"};
   const RehearsedTinyStudy study(options);
   CHECK_THROWS_WITH(study.planned(study.servo),
                     holds_text("/explore_s") && holds_text("explore_limit_s"));
@@ -394,17 +376,15 @@ TEST_CASE("the two methods of a primary test must be named if there are three") 
     study.methods.back().label = label;
   }
   CHECK_THROWS_WITH(planning::primary_test_of(study, {}), holds_text("--methods"));
-  CHECK_THROWS_WITH(planning::primary_test_of(study, planning::MethodLabels{"edge", "edge"}),
+  CHECK_THROWS_WITH(planning::primary_test_of(study, MethodLabels{"edge", "edge"}),
                     holds_text("twice"));
-  CHECK_THROWS_WITH(planning::primary_test_of(study, planning::MethodLabels{"edge", "adaptiv"}),
+  CHECK_THROWS_WITH(planning::primary_test_of(study, MethodLabels{"edge", "adaptiv"}),
                     holds_text("adaptiv") && holds_text("luminance"));
-  const planning::PrimaryTest test =
-      planning::primary_test_of(study, planning::MethodLabels{"luminance", "adaptive"});
+  const PrimaryTest test = planning::primary_test_of(study, MethodLabels{"luminance", "adaptive"});
   CHECK(test.first == 2);
   CHECK(test.second == 0);
   study.protocol = &study::identification::classification();
-  CHECK_THROWS_AS(planning::primary_test_of(study, planning::MethodLabels{"edge", "adaptive"}),
-                  UsageError);
+  CHECK_THROWS_AS(planning::primary_test_of(study, MethodLabels{"edge", "adaptive"}), UsageError);
 }
 
 }  // namespace

@@ -14,17 +14,15 @@ namespace touchtrial {
 
 /// A subject who explores briefly: the tests need many explorations, but not good ones.
 [[nodiscard]] inline simulation::SubjectModel hasty_subject() {
-  simulation::SubjectModel subject;
-  subject.feature_noise = 0.5;
-  subject.feature_noise_spread = 0.3;
-  subject.lapse = 0.05;
-  subject.lapse_spread = 0.5;
-  subject.position_bias = 0.3;
-  subject.position_bias_spread = 0.3;
-  subject.class_bias_spread = 0.3;
-  subject.explore_s = 1.5;
-  subject.training_passes = 4;
-  return subject;
+  return {.feature_noise = 0.5,
+          .feature_noise_spread = 0.3,
+          .lapse = 0.05,
+          .lapse_spread = 0.5,
+          .position_bias = 0.3,
+          .position_bias_spread = 0.3,
+          .class_bias_spread = 0.3,
+          .explore_s = 1.5,
+          .training_passes = 4};
 }
 
 /// With the secrets of the study's simulations, which follow from its seed.

@@ -12,15 +12,14 @@
 namespace touchtrial {
 namespace {
 
-using planning::Hypothesis;
-using planning::StatedPeople;
+using namespace planning;
 
-planning::PrimaryTest accuracy_test() {
+PrimaryTest accuracy_test() {
   return {};
 }
 
-planning::PrimaryTest difference_test() {
-  planning::PrimaryTest test;
+PrimaryTest difference_test() {
+  PrimaryTest test;
   test.estimand = study::Estimand::difference;
   test.sides = analysis::Sides::two;
   return test;
@@ -56,7 +55,7 @@ TEST_CASE("stated people have the stated mean and spread, and guess under the nu
   constexpr int kPeople = 4000;
   const double chance = 1.0 / static_cast<double>(study.tiny.key().study.classes.size());
   const double sd = GENERATE(0.0, 0.05, 0.2);
-  const planning::StatedRehearsal people(study.tiny.key().study, {0.6, sd}, study.test, kPeople);
+  const StatedRehearsal people(study.tiny.key().study, {0.6, sd}, study.test, kPeople);
 
   const Shares found = shares_of(people.outcomes(kPeople, Hypothesis::population, 7));
   CHECK(std::abs(found.mean - 0.6) < 5.0 * std::sqrt(found.variance / kPeople));
@@ -72,7 +71,7 @@ TEST_CASE("stated people have the stated mean and spread, and guess under the nu
 
 TEST_CASE("a study of stated people depends on its seed alone, and more people keep the first") {
   const RehearsedTinyStudy study;
-  const planning::StatedRehearsal people(study.tiny.key().study, {0.5, 0.1}, study.test, 6);
+  const StatedRehearsal people(study.tiny.key().study, {0.5, 0.1}, study.test, 6);
   const auto positions = [&](int n, std::uint64_t seed) {
     std::vector<int> all;
     for (const auto& trial : people.outcomes(n, Hypothesis::population, seed).trials) {
@@ -90,17 +89,14 @@ TEST_CASE("a study of stated people depends on its seed alone, and more people k
 
 TEST_CASE("power of the t test of stated people is that of its own formula") {
   const RehearsedTinyStudy study;
-  planning::PowerPlan plan;
-  plan.participants = {12};
-  plan.runs = 2000;
-  planning::PowerSetting setting;
-  setting.fields = planning::kNoFields;
+  PowerPlan plan{.participants = {12}, .runs = 2000};
+  PowerSetting setting;
+  setting.fields = kNoFields;
   const double chance = 1.0 / static_cast<double>(study.tiny.key().study.classes.size());
-  const planning::StatedRehearsal people(study.tiny.key().study, {chance + 0.08, 0.1}, study.test,
-                                         12);
-  const planning::PowerReport report =
+  const StatedRehearsal people(study.tiny.key().study, {chance + 0.08, 0.1}, study.test, 12);
+  const PowerReport report =
       planning::make_power_report(planning::make_runs(people, study.test, setting, plan, 2));
-  const planning::PowerRow& row = report.rows.front();
+  const PowerRow& row = report.rows.front();
 
   // A person's share has the spread of people and that of their own trials.
   const auto trials =
@@ -122,9 +118,8 @@ TEST_CASE("power of the t test of stated people is that of its own formula") {
 }
 
 TEST_CASE("impossible people are refused with the range that is possible") {
-  const auto refuse = [](const StatedPeople& people, const planning::PrimaryTest& test,
-                         const char* words) {
-    CHECK_THROWS_WITH(planning::require_possible(people, test), holds_text(words));
+  const auto refuse = [](const StatedPeople& people, const PrimaryTest& test, const char* words) {
+    CHECK_THROWS_WITH(require_possible(people, test), holds_text(words));
   };
   const double nan = std::nan("");
   refuse({1.2, 0.1}, accuracy_test(), "from 0 to 1");
@@ -137,11 +132,11 @@ TEST_CASE("impossible people are refused with the range that is possible") {
   refuse({0.1, 0.1, 1.0}, difference_test(), "between 0 and 1");
   refuse({0.5, 0.1, 0.9}, difference_test(), "from -0.2 to 0.2");
   refuse({0.19, 0.1, 0.9}, difference_test(), "--sd-between");
-  planning::PrimaryTest margin = difference_test();
+  PrimaryTest margin = difference_test();
   margin.margin = 0.3;
   refuse({0.0, 0.1, 0.9}, margin, "worse by the margin");
-  CHECK_NOTHROW(planning::require_possible({0.1, 0.1, 0.6}, difference_test()));
-  CHECK_NOTHROW(planning::require_possible({1.0, 0.0}, accuracy_test()));
+  CHECK_NOTHROW(require_possible({0.1, 0.1, 0.6}, difference_test()));
+  CHECK_NOTHROW(require_possible({1.0, 0.0}, accuracy_test()));
 }
 
 }  // namespace

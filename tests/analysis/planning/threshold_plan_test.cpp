@@ -128,9 +128,7 @@ TEST_CASE("a pool has the tracks of simulated sessions, with the trials that are
       R"("task": "detection", "interval_s": 0.4, "trials": 8, "control": 5,
          "levels": {"from": -40, "to": 0, "step": 4})"));
   const session::StimulusSource source(tiny.pack(), tiny.key());
-  simulation::SubjectModel subject;
-  subject.feature_noise = 0.05;
-  subject.training_passes = 2;
+  simulation::SubjectModel subject{.feature_noise = 0.05, .training_passes = 2};
   const ThresholdPoolOptions options{.people = 3, .seed = 4, .jobs = 2};
   const ThresholdPool pool = simulated_thresholds(tiny.key(), source, subject, 12, options);
   CHECK(pool.trials == 12);

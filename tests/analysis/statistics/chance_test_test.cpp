@@ -12,6 +12,7 @@
 namespace touchtrial {
 namespace {
 
+using namespace analysis;
 using Answers = std::vector<std::optional<int>>;
 
 int right_in(const std::vector<int>& presented, const Answers& answered) {
@@ -45,8 +46,8 @@ double tail(const std::vector<double>& probability, int from) {
   return std::accumulate(probability.begin() + from, probability.end(), 0.0);
 }
 
-analysis::AnsweredBlock random_block(int classes, int trials, RandomStream& random) {
-  analysis::AnsweredBlock block;
+AnsweredBlock random_block(int classes, int trials, RandomStream& random) {
+  AnsweredBlock block;
   for (int i = 0; i < trials; ++i) {
     block.presented.push_back(static_cast<int>(random.below(classes)));
     const auto answer = static_cast<int>(random.below(classes + 1));
@@ -75,8 +76,8 @@ Answers card_counter(const std::vector<int>& presented) {
   return answers;
 }
 
-analysis::AnsweredBlock with_right(int right) {
-  analysis::AnsweredBlock block;
+AnsweredBlock with_right(int right) {
+  AnsweredBlock block;
   for (int i = 0; i < 25; ++i) {
     block.presented.push_back(i / 5);
     block.answered.push_back(i < right ? i / 5 : (i / 5 + 1) % 5);
@@ -86,15 +87,14 @@ analysis::AnsweredBlock with_right(int right) {
 
 TEST_CASE(
     "what chance_test can reach is the largest p within its level that the answers can have") {
-  for (const analysis::DealtOrder order :
-       {analysis::DealtOrder::permuted, analysis::DealtOrder::independent}) {
+  for (const DealtOrder order : {DealtOrder::permuted, DealtOrder::independent}) {
     // Every order of the presentations under the same answers: every number of right answers.
-    analysis::AnsweredBlock block{{0, 0, 0, 1, 1, 1, 2, 2}, {0, 0, 1, 1, 2, 2, 0, 1}};
+    AnsweredBlock block{{0, 0, 0, 1, 1, 1, 2, 2}, {0, 0, 1, 1, 2, 2, 0, 1}};
     const double said = analysis::chance_test(3, std::vector{block}, order)->attainable;
     double largest = 0.0;
     do {
-      const analysis::ChanceTest test = *analysis::chance_test(3, std::vector{block}, order);
-      if (test.p <= analysis::kSignificanceLevel) largest = std::max(largest, test.p);
+      const ChanceTest test = *analysis::chance_test(3, std::vector{block}, order);
+      if (test.p <= kSignificanceLevel) largest = std::max(largest, test.p);
       CHECK(test.attainable == said);
     } while (std::next_permutation(block.presented.begin(), block.presented.end()));
     CHECK(largest > 0.0);
@@ -105,24 +105,22 @@ TEST_CASE(
 }  // namespace
 
 TEST_CASE("Independent presentations need 9 right of 25 at chance 1/5") {
-  const std::vector<analysis::AnsweredBlock> nine{with_right(9)};
-  const analysis::ChanceTest test =
-      *analysis::chance_test(5, nine, analysis::DealtOrder::independent);
+  const std::vector<AnsweredBlock> nine{with_right(9)};
+  const ChanceTest test = *analysis::chance_test(5, nine, DealtOrder::independent);
   CHECK(test.correct == 9);
   CHECK(test.trials == 25);
   CHECK(test.expected == Approx(5.0));
   CHECK(test.exact);
   // SciPy 1.10, binom.sf(8, 25, 0.2) and binom.sf(7, 25, 0.2).
   CHECK(test.p == Approx(0.04677424217777292).epsilon(1e-12));
-  const std::vector<analysis::AnsweredBlock> eight{with_right(8)};
-  CHECK(analysis::chance_test(5, eight, analysis::DealtOrder::independent)->p ==
+  const std::vector<AnsweredBlock> eight{with_right(8)};
+  CHECK(analysis::chance_test(5, eight, DealtOrder::independent)->p ==
         Approx(0.10912279599503055).epsilon(1e-12));
 }
 
 // Expected values: the same polynomials in Python's exact fractions.
 TEST_CASE("match_probabilities of five classes five times each are the exact ones") {
-  const std::vector<double> evenly =
-      analysis::match_probabilities(analysis::ClassCounts(5, {5, 5}), 25);
+  const std::vector<double> evenly = analysis::match_probabilities(ClassCounts(5, {5, 5}), 25);
   CHECK(tail(evenly, 8) == Approx(0.11373753916446125).epsilon(1e-13));
   CHECK(tail(evenly, 9) == Approx(0.05042669371059771).epsilon(1e-13));
   CHECK(tail(evenly, 20) == Approx(8.732920800736625e-10).epsilon(1e-13));
@@ -135,14 +133,14 @@ TEST_CASE("match_probabilities of five classes five times each are the exact one
 
 TEST_CASE("match_probabilities of distinct cards are those of fixed points") {
   // n objects once each: the probability of no match nears 1/e, of all n it is 1/n!.
-  const std::vector<double> p = analysis::match_probabilities(analysis::ClassCounts(8, {1, 1}), 8);
+  const std::vector<double> p = analysis::match_probabilities(ClassCounts(8, {1, 1}), 8);
   CHECK(p[0] == Approx(14833.0 / 40320.0).epsilon(1e-14));
   CHECK(p[7] == 0.0);
   CHECK(p[8] == Approx(1.0 / 40320.0).epsilon(1e-14));
 }
 
 TEST_CASE("match_probabilities of hundreds of trials sum to 1 with the right mean") {
-  const analysis::ClassCounts counts{{60, 80}, {60, 20}, {100, 90}, {80, 100}};
+  const ClassCounts counts{{60, 80}, {60, 20}, {100, 90}, {80, 100}};
   const std::vector<double> p = analysis::match_probabilities(counts, 300);
   double sum = 0.0;
   double mean = 0.0;
@@ -159,11 +157,10 @@ TEST_CASE("chance_test equals the listing of all orders, also with missing respo
   RandomStream random(4, "chance test test");
   for (int round = 0; round < 40; ++round) {
     const int classes = 2 + round % 4;
-    const analysis::AnsweredBlock first = random_block(classes, 2 + round % 6, random);
-    const analysis::AnsweredBlock second = random_block(classes, 1 + round % 5, random);
-    const std::vector<analysis::AnsweredBlock> blocks{first, second};
-    const analysis::ChanceTest test =
-        *analysis::chance_test(classes, blocks, analysis::DealtOrder::permuted);
+    const AnsweredBlock first = random_block(classes, 2 + round % 6, random);
+    const AnsweredBlock second = random_block(classes, 1 + round % 5, random);
+    const std::vector<AnsweredBlock> blocks{first, second};
+    const ChanceTest test = *analysis::chance_test(classes, blocks, DealtOrder::permuted);
     const std::vector<double> all = convolved(by_listing(first.presented, first.answered),
                                               by_listing(second.presented, second.answered));
     double mean = 0.0;
@@ -181,24 +178,23 @@ TEST_CASE("A card-counter who is told the answers averages 8.7 of 25 without fee
   const int sessions = 4000;
   for (int session = 0; session < sessions; ++session) {
     const std::vector<int> presented = balanced_25(random);
-    const analysis::AnsweredBlock block{presented, card_counter(presented)};
+    const AnsweredBlock block{presented, card_counter(presented)};
     right += right_in(presented, block.answered);
-    const std::vector<analysis::AnsweredBlock> one{block};
-    if (analysis::chance_test(5, one, analysis::DealtOrder::permuted)->p <= 0.05) ++found;
+    const std::vector<AnsweredBlock> one{block};
+    if (analysis::chance_test(5, one, DealtOrder::permuted)->p <= 0.05) ++found;
   }
   CHECK(right / sessions == Approx(8.7).margin(0.1));
   CHECK(found > 0.2 * sessions);  // no test of counts can tell that from feeling
 }
 
 TEST_CASE("chance_test by redrawing comes near the exact p, and says that it is not exact") {
-  const std::vector<analysis::AnsweredBlock> blocks{with_right(8), with_right(7)};
-  const double exact = analysis::chance_test(5, blocks, analysis::DealtOrder::permuted)->p;
+  const std::vector<AnsweredBlock> blocks{with_right(8), with_right(7)};
+  const double exact = analysis::chance_test(5, blocks, DealtOrder::permuted)->p;
   const auto redraw = [&](std::size_t block, int deal) {
     RandomStream random(7, "chance test test", 2 * static_cast<std::uint64_t>(deal) + block);
     return balanced_25(random);
   };
-  const analysis::ChanceTest test =
-      *analysis::chance_test(5, blocks, analysis::DealtOrder::redrawn, redraw, 4000);
+  const ChanceTest test = *analysis::chance_test(5, blocks, DealtOrder::redrawn, redraw, 4000);
   CHECK_FALSE(test.exact);
   CHECK(test.deals == 4000);
   CHECK(std::abs(test.p - exact) < 4.0 * std::sqrt(exact * (1.0 - exact) / 4000.0) + 1.0 / 4000.0);
@@ -206,35 +202,33 @@ TEST_CASE("chance_test by redrawing comes near the exact p, and says that it is 
 }
 
 TEST_CASE("A Monte Carlo p is never 0") {
-  const std::vector<analysis::AnsweredBlock> all{with_right(25)};
+  const std::vector<AnsweredBlock> all{with_right(25)};
   const auto wrong = [](std::size_t, int) { return std::vector<int>(25, 0); };
-  CHECK(analysis::chance_test(5, all, analysis::DealtOrder::redrawn, wrong, 99)->p == 0.01);
+  CHECK(analysis::chance_test(5, all, DealtOrder::redrawn, wrong, 99)->p == 0.01);
 }
 
 TEST_CASE("chance_test of a block too long to count shuffles it") {
   RandomStream random(8, "chance test test");
-  const std::vector<analysis::AnsweredBlock> blocks{random_block(3, 401, random)};
-  const analysis::ChanceTest test =
-      *analysis::chance_test(3, blocks, analysis::DealtOrder::permuted, {}, 199);
+  const std::vector<AnsweredBlock> blocks{random_block(3, 401, random)};
+  const ChanceTest test = *analysis::chance_test(3, blocks, DealtOrder::permuted, {}, 199);
   CHECK_FALSE(test.exact);
   CHECK(test.deals == 199);
   CHECK(test.p >= 1.0 / 200.0);
-  CHECK(test.p == analysis::chance_test(3, blocks, analysis::DealtOrder::permuted, {}, 199)->p);
+  CHECK(test.p == analysis::chance_test(3, blocks, DealtOrder::permuted, {}, 199)->p);
 }
 
 TEST_CASE("chance_test of a thousand participants nears the normal limit") {
   RandomStream random(9, "chance test test");
-  std::vector<analysis::AnsweredBlock> blocks;
+  std::vector<AnsweredBlock> blocks;
   double variance = 0.0;
   for (int i = 0; i < 1000; ++i) {
-    analysis::AnsweredBlock block;
+    AnsweredBlock block;
     block.presented = balanced_25(random);
     for (int k = 0; k < 25; ++k) block.answered.push_back(k / 5);
     variance += 25.0 * 25.0 / 24.0 * 0.2 * 0.8;  // n^2 / (n - 1) (1/K) (1 - 1/K)
     blocks.push_back(block);
   }
-  const analysis::ChanceTest test =
-      *analysis::chance_test(5, blocks, analysis::DealtOrder::permuted);
+  const ChanceTest test = *analysis::chance_test(5, blocks, DealtOrder::permuted);
   CHECK(test.exact);
   CHECK(test.expected == Approx(5000.0));
   const double z = (test.correct - 0.5 - test.expected) / std::sqrt(variance);
@@ -242,51 +236,43 @@ TEST_CASE("chance_test of a thousand participants nears the normal limit") {
 }
 
 TEST_CASE("chance_test at the ends: all right, all wrong, nothing answered, nothing presented") {
-  const std::vector<analysis::AnsweredBlock> right{with_right(25)};
-  CHECK(analysis::chance_test(5, right, analysis::DealtOrder::permuted)->p ==
-        Approx(1.6042075331639573e-15));
-  CHECK(analysis::chance_test(5, right, analysis::DealtOrder::independent)->p ==
-        Approx(std::pow(0.2, 25)));
-  const std::vector<analysis::AnsweredBlock> wrong{with_right(0)};
-  CHECK(analysis::chance_test(5, wrong, analysis::DealtOrder::permuted)->p ==
-        Approx(1.0).epsilon(1e-14));
-  CHECK(analysis::chance_test(5, wrong, analysis::DealtOrder::independent)->p == 1.0);
-  const std::vector<analysis::AnsweredBlock> silent{{{0, 1, 1}, Answers(3)}};
-  const analysis::ChanceTest none =
-      *analysis::chance_test(2, silent, analysis::DealtOrder::permuted);
+  const std::vector<AnsweredBlock> right{with_right(25)};
+  CHECK(analysis::chance_test(5, right, DealtOrder::permuted)->p == Approx(1.6042075331639573e-15));
+  CHECK(analysis::chance_test(5, right, DealtOrder::independent)->p == Approx(std::pow(0.2, 25)));
+  const std::vector<AnsweredBlock> wrong{with_right(0)};
+  CHECK(analysis::chance_test(5, wrong, DealtOrder::permuted)->p == Approx(1.0).epsilon(1e-14));
+  CHECK(analysis::chance_test(5, wrong, DealtOrder::independent)->p == 1.0);
+  const std::vector<AnsweredBlock> silent{{{0, 1, 1}, Answers(3)}};
+  const ChanceTest none = *analysis::chance_test(2, silent, DealtOrder::permuted);
   CHECK(none.p == 1.0);
   CHECK(none.expected == 0.0);
   CHECK(none.trials == 3);
-  CHECK(analysis::chance_test(2, silent, analysis::DealtOrder::independent)->p == 1.0);
-  CHECK_FALSE(analysis::chance_test(5, {}, analysis::DealtOrder::permuted).has_value());
-  CHECK_FALSE(analysis::chance_test(5, std::vector<analysis::AnsweredBlock>(2),
-                                    analysis::DealtOrder::permuted)
-                  .has_value());
+  CHECK(analysis::chance_test(2, silent, DealtOrder::independent)->p == 1.0);
+  CHECK_FALSE(analysis::chance_test(5, {}, DealtOrder::permuted).has_value());
+  CHECK_FALSE(
+      analysis::chance_test(5, std::vector<AnsweredBlock>(2), DealtOrder::permuted).has_value());
 }
 
 TEST_CASE("With a single class nobody can do better than chance") {
-  const std::vector<analysis::AnsweredBlock> one{{{1, 1, 1}, {1, 1, 0}}};
-  CHECK(analysis::chance_test(2, one, analysis::DealtOrder::permuted)->p == 1.0);
+  const std::vector<AnsweredBlock> one{{{1, 1, 1}, {1, 1, 0}}};
+  CHECK(analysis::chance_test(2, one, DealtOrder::permuted)->p == 1.0);
 }
 
 TEST_CASE("chance_test refuses impossible arguments") {
-  const std::vector<analysis::AnsweredBlock> uneven{{{0, 1}, {0}}};
-  CHECK_THROWS_AS(analysis::chance_test(2, uneven, analysis::DealtOrder::permuted),
+  const std::vector<AnsweredBlock> uneven{{{0, 1}, {0}}};
+  CHECK_THROWS_AS(analysis::chance_test(2, uneven, DealtOrder::permuted), std::invalid_argument);
+  const std::vector<AnsweredBlock> unknown{{{0, 2}, {0, 1}}};
+  CHECK_THROWS_AS(analysis::chance_test(2, unknown, DealtOrder::permuted), std::invalid_argument);
+  const std::vector<AnsweredBlock> answered{{{0, 1}, {0, 2}}};
+  CHECK_THROWS_AS(analysis::chance_test(2, answered, DealtOrder::independent),
                   std::invalid_argument);
-  const std::vector<analysis::AnsweredBlock> unknown{{{0, 2}, {0, 1}}};
-  CHECK_THROWS_AS(analysis::chance_test(2, unknown, analysis::DealtOrder::permuted),
-                  std::invalid_argument);
-  const std::vector<analysis::AnsweredBlock> answered{{{0, 1}, {0, 2}}};
-  CHECK_THROWS_AS(analysis::chance_test(2, answered, analysis::DealtOrder::independent),
-                  std::invalid_argument);
-  const std::vector<analysis::AnsweredBlock> good{{{0, 1}, {0, 1}}};
-  CHECK_THROWS_AS(analysis::chance_test(2, good, analysis::DealtOrder::redrawn),
-                  std::invalid_argument);
+  const std::vector<AnsweredBlock> good{{{0, 1}, {0, 1}}};
+  CHECK_THROWS_AS(analysis::chance_test(2, good, DealtOrder::redrawn), std::invalid_argument);
   const auto shorter = [](std::size_t, int) { return std::vector<int>{0}; };
-  CHECK_THROWS_AS(analysis::chance_test(2, good, analysis::DealtOrder::redrawn, shorter),
+  CHECK_THROWS_AS(analysis::chance_test(2, good, DealtOrder::redrawn, shorter),
                   std::invalid_argument);
   const auto longer = [](std::size_t, int) { return std::vector<int>{0, 1}; };
-  CHECK_THROWS_AS(analysis::chance_test(2, good, analysis::DealtOrder::redrawn, longer, 0),
+  CHECK_THROWS_AS(analysis::chance_test(2, good, DealtOrder::redrawn, longer, 0),
                   std::invalid_argument);
   CHECK_THROWS_AS(analysis::match_probabilities({{2, 1}}, 3), std::invalid_argument);
   CHECK_THROWS_AS(analysis::match_probabilities({{2, 3}}, 2), std::invalid_argument);
@@ -294,15 +280,15 @@ TEST_CASE("chance_test refuses impossible arguments") {
 }
 
 TEST_CASE("A p against chance is never 0, however many were right") {
-  std::vector<analysis::AnsweredBlock> blocks(400);
-  for (analysis::AnsweredBlock& block : blocks) {
+  std::vector<AnsweredBlock> blocks(400);
+  for (AnsweredBlock& block : blocks) {
     for (int i = 0; i < 20; ++i) {
       block.presented.push_back(i % 5);
       block.answered.emplace_back(i % 5);
     }
   }
-  CHECK(analysis::chance_test(5, blocks, analysis::DealtOrder::permuted)->p == 1e-280);
-  CHECK(analysis::chance_test(5, blocks, analysis::DealtOrder::independent)->p == 1e-280);
+  CHECK(analysis::chance_test(5, blocks, DealtOrder::permuted)->p == 1e-280);
+  CHECK(analysis::chance_test(5, blocks, DealtOrder::independent)->p == 1e-280);
 }
 
 }  // namespace touchtrial

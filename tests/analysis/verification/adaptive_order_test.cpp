@@ -11,15 +11,15 @@
 #include "support/as_recorded.hpp"
 #include "support/catch.hpp"
 
-#include <cmath>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace touchtrial {
 namespace {
 
+using namespace record;
+using namespace study;
 using std::chrono::seconds;
 
 procedures::BlockSettings two_tracks() {
@@ -33,26 +33,25 @@ procedures::BlockSettings two_tracks() {
   return settings;
 }
 
-Digest digest_of(const study::ScheduleDraw& draw) {
+Digest digest_of(const ScheduleDraw& draw) {
   return FieldHasher().add("adaptive order of a test").add(ByteView(draw.secret)).finish();
 }
 
 /// Two choices; the right one is drawn for each trial.
-class BlockOrder final : public study::AdaptiveOrder {
+class BlockOrder final : public AdaptiveOrder {
  public:
   explicit BlockOrder(const Digest& secret)
       : block_(two_tracks(), secret), targets_(secret.front(), "targets") {
     target_ = static_cast<int>(targets_.below(2));
   }
-  void choose(study::Presentation& presentation) const override {
+  void choose(Presentation& presentation) const override {
     const auto next = block_.next();
     REQUIRE(next);
-    presentation.kind =
-        next->track ? study::PresentationKind::scored : study::PresentationKind::catch_trial;
+    presentation.role = next->track ? Role::scored : Role::catch_trial;
     presentation.chosen = {next->track ? static_cast<int>(*next->track) + 1 : 0,
                            static_cast<int>(next->level), target_};
   }
-  void answer(const study::Presentation&, int choice) override {
+  void answer(const Presentation&, int choice) override {
     block_.answer(choice == target_);
     target_ = static_cast<int>(targets_.below(2));
   }
@@ -63,27 +62,24 @@ class BlockOrder final : public study::AdaptiveOrder {
   int target_ = 0;
 };
 
-class TwoTracks final : public study::Protocol {
+class TwoTracks final : public Protocol {
  public:
   std::string_view name() const noexcept override { return "two-tracks"; }
-  void check(const JsonValue&, const study::Study&) const override {}
-  int scored_trials(const study::Study&) const override { return 24; }
-  study::Schedule schedule(const study::Study&, const study::ScheduleDraw&) const override {
+  void check(const JsonValue&, const Study&) const override {}
+  int scored_trials(const Study&) const override { return 24; }
+  Schedule schedule(const Study&, const ScheduleDraw&) const override {
     // Positions are not choices: the second choice stands first.
-    study::Schedule schedule{{}, {1, 0}};
+    Schedule schedule{{}, {1, 0}};
     for (int i = 0; i < 26; ++i) schedule.presentations.push_back({.trial = i + 1, .stimulus = {}});
     return schedule;
   }
-  std::unique_ptr<study::AdaptiveOrder> adaptive_order(
-      const study::Study&, const study::ScheduleDraw& draw) const override {
+  std::unique_ptr<AdaptiveOrder> adaptive_order(const Study&,
+                                                const ScheduleDraw& draw) const override {
     return std::make_unique<BlockOrder>(digest_of(draw));
   }
-  std::string rule(const study::Study&) const override { return "two-tracks 1"; }
-  std::vector<study::Choice> choices(const study::Study&) const override {
-    return {{"first"}, {"second"}};
-  }
-  std::optional<int> right_choice(const study::Study&,
-                                  const study::Presentation& shown) const override {
+  std::string rule(const Study&) const override { return "two-tracks 1"; }
+  std::vector<Choice> choices(const Study&) const override { return {{"first"}, {"second"}}; }
+  std::optional<int> right_choice(const Study&, const Presentation& shown) const override {
     return shown.chosen->target;
   }
 };
@@ -91,43 +87,41 @@ class TwoTracks final : public study::Protocol {
 /// A study of the protocol, and sessions of its first participant.
 class AdaptiveLaboratory {
  public:
-  explicit AdaptiveLaboratory(study::OnInterruption policy = study::OnInterruption::repeat)
-      : study_(tiny_.key().study), draw_(tiny_.key().draw_of(1, study::Draws::rehearsal)) {
+  explicit AdaptiveLaboratory(OnInterruption policy = OnInterruption::repeat)
+      : study_(tiny_.key().study), draw_(tiny_.key().draw_of(1, Draws::rehearsal)) {
     study_.protocol = &protocol_;
     study_.trials.on_interruption = policy;
   }
 
-  [[nodiscard]] session::Session begun(record::BufferedEvents& events) const {
+  [[nodiscard]] session::Session begun(BufferedEvents& events) const {
     session::Session session = fresh(events);
-    record::SessionOpening opening;
-    opening.participant = "P001";
-    opening.enrolment = 1;
+    SessionOpening opening{.participant = "P001", .enrolment = 1};
     session.open(seconds(1), opening, "{}");
     session.calibrate(seconds(2));
     session.instruct(seconds(3));
     return session;
   }
-  [[nodiscard]] session::Session fresh(record::BufferedEvents& events) const {
+  [[nodiscard]] session::Session fresh(BufferedEvents& events) const {
     return session::Session(study::make_schedule(study_, draw_), study_.trials,
                             record::SessionRecorder(1, SecretKey{}, events), {},
                             study::adaptive_order(study_, draw_));
   }
   /// \throws VerificationError at the first event that cannot follow
-  void check(const std::vector<record::Event>& events) const {
+  void check(const std::vector<Event>& events) const {
     analysis::SessionCourse course(study_, draw_);
-    for (const record::Event& event : events) course.follow(event);
+    for (const Event& event : events) course.follow(event);
   }
   [[nodiscard]] Digest secret() const { return digest_of(draw_); }
 
  private:
   TinyStudy tiny_;
   TwoTracks protocol_;
-  study::Study study_;
-  study::ScheduleDraw draw_;
+  Study study_;
+  ScheduleDraw draw_;
 };
 
 /// Right whenever the level is at least 6; at lower ones always the first choice.
-int position_for(const study::ChosenLevel& chosen) {
+int position_for(const ChosenLevel& chosen) {
   const int choice = chosen.level >= 6 ? chosen.target : 0;
   return choice == 1 ? 0 : 1;
 }
@@ -138,7 +132,7 @@ seconds end_of(const session::Session& session) {
 
 void answer_current(session::Session& session) {
   seconds now = end_of(session);
-  const study::ChosenLevel chosen = session.current()->chosen.value();
+  const ChosenLevel chosen = session.current()->chosen.value();
   session.present(now += seconds(1));
   session.contact(now += seconds(1));
   session.end_exploring(now += seconds(1));
@@ -146,19 +140,19 @@ void answer_current(session::Session& session) {
   session.confirm(now + seconds(1));
 }
 
-bool answered_right(const study::ChosenLevel& chosen) {
+bool answered_right(const ChosenLevel& chosen) {
   return position_for(chosen) == (chosen.target == 1 ? 0 : 1);
 }
 
 TEST_CASE("a session presents what its procedure chooses after the answers so far") {
   const AdaptiveLaboratory lab;
-  record::BufferedEvents events;
+  BufferedEvents events;
   session::Session session = lab.begun(events);
   std::vector<procedures::RecordedTrial> record;
   while (session.current() != nullptr) {
-    const study::ChosenLevel chosen = session.current()->chosen.value();
+    const ChosenLevel chosen = session.current()->chosen.value();
     const bool is_catch = chosen.track == 0;
-    CHECK(is_catch == (session.current()->kind == study::PresentationKind::catch_trial));
+    CHECK(is_catch == (session.current()->role == Role::catch_trial));
     record.push_back({{is_catch ? std::nullopt : std::optional<std::size_t>(chosen.track - 1),
                        static_cast<std::size_t>(chosen.level)},
                       answered_right(chosen)});
@@ -172,20 +166,20 @@ TEST_CASE("a session presents what its procedure chooses after the answers so fa
 
 TEST_CASE("a session that ends anywhere is taken up at the same levels") {
   const AdaptiveLaboratory lab;
-  record::BufferedEvents events;
+  BufferedEvents events;
   session::Session session = lab.begun(events);
-  std::vector<std::size_t> ends;                 // of events, before each trial
-  std::vector<study::Presentation> before_each;  // what came next there
+  std::vector<std::size_t> ends;          // of events, before each trial
+  std::vector<Presentation> before_each;  // what came next there
   while (session.current() != nullptr) {
     ends.push_back(events.events.size());
     before_each.push_back(*session.current());
     answer_current(session);
   }
-  const std::vector<record::Event> recorded = as_recorded(events.events, SecretKey{});
+  const std::vector<Event> recorded = as_recorded(events.events, SecretKey{});
   for (std::size_t i = 0; i < ends.size(); ++i) {
     // At rest before a trial, and within it: presented, and presented and touched.
     for (std::size_t more = 0; more < 3; ++more) {
-      record::BufferedEvents other;
+      BufferedEvents other;
       session::Session again = lab.fresh(other);
       again.restore(std::span(recorded).first(ends[i] + more));
       CHECK(*again.current() == before_each[i]);
@@ -200,10 +194,10 @@ TEST_CASE("a session that ends anywhere is taken up at the same levels") {
 
 TEST_CASE("an interrupted trial comes again at its level, and the record still holds") {
   const AdaptiveLaboratory lab;
-  record::BufferedEvents events;
+  BufferedEvents events;
   session::Session session = lab.begun(events);
   for (int i = 0; i < 5; ++i) answer_current(session);
-  const study::Presentation interrupted = *session.current();
+  const Presentation interrupted = *session.current();
   session.present(end_of(session) + seconds(1));
   session.interrupt(end_of(session) + seconds(1), "comfort stop");
   CHECK(session.current()->chosen == interrupted.chosen);
@@ -214,37 +208,35 @@ TEST_CASE("an interrupted trial comes again at its level, and the record still h
 
 TEST_CASE("the check names the first trial that the procedure would not have presented") {
   const AdaptiveLaboratory lab;
-  record::BufferedEvents events;
+  BufferedEvents events;
   session::Session session = lab.begun(events);
   while (session.current() != nullptr) answer_current(session);
-  const std::vector<record::Event> honest = as_recorded(events.events, SecretKey{});
+  const std::vector<Event> honest = as_recorded(events.events, SecretKey{});
   std::vector<std::size_t> answers;
   for (std::size_t i = 0; i < honest.size(); ++i) {
-    if (honest[i].kind == record::EventKind::answered) answers.push_back(i);
+    if (honest[i].kind == EventKind::answered) answers.push_back(i);
   }
   int told = 0;
   for (std::size_t nth = 0; nth < answers.size(); ++nth) {
     const std::string trial = "trial " + std::to_string(nth + 1) + ":";
     const auto altered = [&](auto alter) {
-      std::vector<record::Event> forged = honest;
-      record::AnswerBody body = record::answer_from_json(forged[answers[nth]].body);
+      std::vector<Event> forged = honest;
+      AnswerBody body = answer_from_json(forged[answers[nth]].body);
       alter(body);
-      forged[answers[nth]].body = record::to_json(body);
+      forged[answers[nth]].body = to_json(body);
       return forged;
     };
-    CHECK_THROWS_WITH(
-        lab.check(altered([](record::AnswerBody& body) { body.level = 11 - *body.level; })),
-        holds_text(trial) && holds_text("where the procedure chooses track"));
-    CHECK_THROWS_WITH(
-        lab.check(altered([](record::AnswerBody& body) { body.target = 1 - *body.target; })),
-        holds_text(trial));
-    CHECK_THROWS_WITH(lab.check(altered([](record::AnswerBody& body) { body.track.reset(); })),
+    CHECK_THROWS_WITH(lab.check(altered([](AnswerBody& body) { body.level = 11 - *body.level; })),
+                      holds_text(trial) && holds_text("where the procedure chooses track"));
+    CHECK_THROWS_WITH(lab.check(altered([](AnswerBody& body) { body.target = 1 - *body.target; })),
+                      holds_text(trial));
+    CHECK_THROWS_WITH(lab.check(altered([](AnswerBody& body) { body.track.reset(); })),
                       holds_text("presented no level"));
-    CHECK_THROWS_WITH(lab.check(altered([](record::AnswerBody& body) { body.position = 2; })),
+    CHECK_THROWS_WITH(lab.check(altered([](AnswerBody& body) { body.position = 2; })),
                       holds_text("position 2, which there is not"));
     // Another answer is possible by itself, and shows in what came later, if anything did.
     try {
-      lab.check(altered([](record::AnswerBody& body) { body.position = 1 - *body.position; }));
+      lab.check(altered([](AnswerBody& body) { body.position = 1 - *body.position; }));
     } catch (const VerificationError& error) {
       ++told;
       CHECK_THAT(std::string(error.what()), holds_text("where the procedure chooses"));
@@ -255,15 +247,15 @@ TEST_CASE("the check names the first trial that the procedure would not have pre
 
 TEST_CASE("what an adaptive order chose is sealed with the answer, in no more bytes than others") {
   const AdaptiveLaboratory lab;
-  record::BufferedEvents events;
+  BufferedEvents events;
   session::Session session = lab.begun(events);
   while (session.current() != nullptr) answer_current(session);
   std::size_t sealed = 0;
-  for (const record::Event& event : events.events) {
+  for (const Event& event : events.events) {
     CHECK(event.body.find("level") == std::string::npos);
     CHECK(event.body.find("target") == std::string::npos);
     CHECK(event.body.find("track") == std::string::npos);
-    if (event.kind != record::EventKind::answered) continue;
+    if (event.kind != EventKind::answered) continue;
     if (sealed == 0) sealed = event.sealed.size();
     CHECK(event.sealed.size() == sealed);
   }
@@ -271,8 +263,8 @@ TEST_CASE("what an adaptive order chose is sealed with the answer, in no more by
 }
 
 TEST_CASE("blocks that an order chooses cannot be restarted") {
-  const AdaptiveLaboratory lab(study::OnInterruption::restart_block);
-  record::BufferedEvents events;
+  const AdaptiveLaboratory lab(OnInterruption::restart_block);
+  BufferedEvents events;
   CHECK_THROWS_AS(lab.fresh(events), std::invalid_argument);
 }
 

@@ -53,9 +53,7 @@ class Ordeal {
         draw_(key.draw_of(1, study::Draws::rehearsal)),
         random_(seed, "ordeal"),
         session_(fresh()) {
-    record::SessionOpening opening;
-    opening.participant = "P001";
-    opening.enrolment = 1;
+    record::SessionOpening opening{.participant = "P001", .enrolment = 1};
     session_->open(now(), opening, "{}");
     session_->calibrate(now());
     session_->instruct(now());

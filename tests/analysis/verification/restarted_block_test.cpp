@@ -9,12 +9,13 @@
 namespace touchtrial {
 namespace {
 
+using namespace analysis;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-const analysis::Check& schedule_check(const analysis::Verification& verification) {
+const Check& schedule_check(const Verification& verification) {
   return *std::find_if(verification.checks.begin(), verification.checks.end(),
-                       [](const analysis::Check& check) { return check.name == "schedule"; });
+                       [](const Check& check) { return check.name == "schedule"; });
 }
 
 const FakeOptions kRestarting{.trials = R"({"on_interruption": "restart-block"})"};
@@ -29,13 +30,12 @@ class RestartedSession {
 
   /// \param restarts_before  0 for the order that the design gives
   void record(FakeStudy& study, int restarts_before, bool old_number_again = false) {
-    record::SessionOpening opening;
-    opening.participant = "P01";
-    opening.enrolment = 1;
-    opening.study_id = key_.study_id;
-    opening.seal = study::study_seal(key_);
-    opening.device = "simulated";
-    opening.simulated = true;
+    record::SessionOpening opening{.participant = "P01",
+                                   .enrolment = 1,
+                                   .study_id = key_.study_id,
+                                   .seal = study::study_seal(key_),
+                                   .device = "simulated",
+                                   .simulated = true};
     recorder_.opened(milliseconds(0), opening, study::schedule_to_json(begun_, key_));
     answer(1);
     recorder_.presented(at_ += seconds(1), 2, 0);
@@ -69,40 +69,36 @@ class RestartedSession {
 }  // namespace
 
 TEST_CASE("verify_study compares a restarted block with the order that the design gives it") {
-  FakeStudy study(study::identification::classification(), kRestarting);
+  FakeStudy study(kRestarting);
   RestartedSession(study).record(study, 0);
-  const analysis::Verification verification =
-      analysis::verify_study(study.store(), &study.key(), nullptr);
+  const Verification verification = analysis::verify_study(study.store(), &study.key(), nullptr);
   INFO(schedule_check(verification).detail);
-  CHECK(schedule_check(verification).state == analysis::CheckState::passed);
+  CHECK(schedule_check(verification).state == CheckState::passed);
   CHECK(verification.holds());
 }
 
 TEST_CASE("verify_study finds another order of a restarted block") {
-  FakeStudy study(study::identification::classification(), kRestarting);
+  FakeStudy study(kRestarting);
   RestartedSession(study).record(study, 1);
-  const analysis::Verification verification =
-      analysis::verify_study(study.store(), &study.key(), nullptr);
-  CHECK(schedule_check(verification).state == analysis::CheckState::failed);
+  const Verification verification = analysis::verify_study(study.store(), &study.key(), nullptr);
+  CHECK(schedule_check(verification).state == CheckState::failed);
 }
 
 TEST_CASE("verify_study finds an old number that came after its block was restarted") {
-  FakeStudy study(study::identification::classification(), kRestarting);
+  FakeStudy study(kRestarting);
   RestartedSession(study).record(study, 0, true);
-  const analysis::Verification verification =
-      analysis::verify_study(study.store(), &study.key(), nullptr);
+  const Verification verification = analysis::verify_study(study.store(), &study.key(), nullptr);
   CHECK(contains(schedule_check(verification).detail,
                  "session 1, trial 3: was presented under its old number"));
 }
 
 TEST_CASE("outcomes hold a restarted block's trials and count no voided one") {
-  FakeStudy study(study::identification::classification(), kRestarting);
+  FakeStudy study(kRestarting);
   RestartedSession(study).record(study, 0);
   study.close_and_unblind();
-  const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
-  const auto counted =
-      std::count_if(outcomes.trials.begin(), outcomes.trials.end(),
-                    [](const analysis::TrialOutcome& trial) { return trial.counted; });
+  const Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
+  const auto counted = std::count_if(outcomes.trials.begin(), outcomes.trials.end(),
+                                     [](const TrialOutcome& trial) { return trial.counted; });
   CHECK(counted == study.store().commitment().scored_trials);
   CHECK(outcomes.trials.front().row.state == record::TrialState::voided);
   CHECK_FALSE(outcomes.trials.front().counted);
@@ -110,13 +106,13 @@ TEST_CASE("outcomes hold a restarted block's trials and count no voided one") {
 
 TEST_CASE("a participant who was replaced enters no outcomes, but stays in the list") {
   FakeStudy study(study::identification::classification());
-  study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});
+  study.add({.participant = "P01", .enrolment = 1});
   study.store().exclude(1, milliseconds(2), "did not follow the instructions");
   study.store().replace(1, "P02", milliseconds(3), "place is wanted");
-  study.add({.participant = "P02", .enrolment = 1, .answers = FakeStudy::always_right()});
+  study.add({.participant = "P02", .enrolment = 1});
   CHECK(analysis::verify_study(study.store(), &study.key(), nullptr).holds());
   study.close_and_unblind();
-  const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
+  const Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   REQUIRE(outcomes.sessions.size() == 2);
   CHECK_FALSE(outcomes.sessions[0].counted);
   CHECK(outcomes.sessions[1].counted);

@@ -27,13 +27,12 @@ class ToldSession {
 
   /// Opens with a schedule that may have been tampered with.
   ToldSession& open(const study::Schedule& schedule) {
-    record::SessionOpening opening;
-    opening.participant = "P01";
-    opening.enrolment = 1;
-    opening.study_id = study_.key().study_id;
-    opening.seal = study::study_seal(study_.key());
-    opening.device = "simulated";
-    opening.simulated = true;
+    record::SessionOpening opening{.participant = "P01",
+                                   .enrolment = 1,
+                                   .study_id = study_.key().study_id,
+                                   .seal = study::study_seal(study_.key()),
+                                   .device = "simulated",
+                                   .simulated = true};
     recorder_.opened(at_, opening, study::schedule_to_json(schedule, study_.key()));
     return *this;
   }
@@ -94,10 +93,9 @@ class ToldSession {
   [[nodiscard]] int count() const { return static_cast<int>(schedule_.presentations.size()); }
   [[nodiscard]] int catch_trial() const {
     const auto& all = schedule_.presentations;
-    return std::find_if(all.begin(), all.end(),
-                        [](const study::Presentation& one) {
-                          return one.kind == study::PresentationKind::catch_trial;
-                        })
+    return std::find_if(
+               all.begin(), all.end(),
+               [](const study::Presentation& one) { return one.role == study::Role::catch_trial; })
         ->trial;
   }
 
@@ -124,7 +122,7 @@ struct Told {
 
 void check_told(const std::vector<Told>& all) {
   for (std::size_t i = 0; i < all.size(); ++i) {
-    FakeStudy study(study::identification::classification(), all[i].options);
+    FakeStudy study(all[i].options);
     ToldSession session(study);
     all[i].tell(session);
     const analysis::Check check = session.verified();
@@ -138,7 +136,7 @@ void check_told(const std::vector<Told>& all) {
 }  // namespace
 
 TEST_CASE("verify_study accepts catch trials in their places, and nothing else there") {
-  FakeStudy study(study::identification::classification(), kCatching);
+  FakeStudy study(kCatching);
   ToldSession whole(study);
   const analysis::Check check = whole.open().show_from(1).verified();
   CHECK(check.state == analysis::CheckState::passed);
@@ -147,7 +145,7 @@ TEST_CASE("verify_study accepts catch trials in their places, and nothing else t
   study::Schedule tampered = whole.schedule();
   for (study::Presentation& one : tampered.presentations) {
     if (one.trial != trial) continue;
-    one.kind = study::PresentationKind::scored;
+    one.role = study::Role::scored;
     one.stimulus = tampered.presentations.front().stimulus;
   }
   check_told({{kCatching, [&](ToldSession& s) { s.open().show_from(1, trial); },

@@ -4,8 +4,6 @@
 #include "app/windows/experimenter/console_panel.hpp"
 #include "app/windows/experimenter/experimenter_desk.hpp"
 
-#include <memory>
-
 struct ImGuiContext;
 
 namespace touchtrial {

@@ -15,7 +15,6 @@
 #include <csignal>
 #include <fstream>
 #include <map>
-#include <memory>
 #include <optional>
 #include <utility>
 
@@ -146,8 +145,7 @@ class Script final : public session::Participant,
     device::HapticDevice& device = participant.begin_exploring(plane);
     Sink sink(builder);
     Clock clock(participant);
-    device::ServoHooks hooks;
-    hooks.control = &clock.control;
+    device::ServoHooks hooks{.control = &clock.control};
     session::Exploration done;
     done.servo = device::run_servo(device, force, sink, options, clock, hooks);
     done.landed_at = builder.landed_at();

@@ -15,16 +15,11 @@
 namespace touchtrial {
 namespace {
 
-using device::Acceptance;
-using device::AxisResult;
-using device::Certificate;
-using device::DeviceAxis;
-using device::DeviceModel;
-using device::Measured;
+using namespace device;
 
 const std::vector<std::string> kEmulated = {"falcon", "touch", "omega_3", "inverse3"};
 
-Certificate rehearsed(const DeviceModel& model, const device::AcceptanceOptions& options = {}) {
+Certificate rehearsed(const DeviceModel& model, const AcceptanceOptions& options = {}) {
   return device::rehearse_acceptance(model, options).certificate;
 }
 
@@ -59,27 +54,26 @@ double& component(Vec3& v, DeviceAxis axis) {
 }
 
 /// A rehearsal that keeps the greatest forces, by the run's name.
-class WatchedRehearsal final : public device::AcceptanceBench {
+class WatchedRehearsal final : public AcceptanceBench {
  public:
   explicit WatchedRehearsal(const DeviceModel& model) : rehearsal_(model) {}
-  [[nodiscard]] device::DeviceInfo info() const override { return rehearsal_.info(); }
-  [[nodiscard]] device::SafetyLimits limits() const override { return rehearsal_.limits(); }
+  [[nodiscard]] DeviceInfo info() const override { return rehearsal_.info(); }
+  [[nodiscard]] SafetyLimits limits() const override { return rehearsal_.limits(); }
   void limit_force(double most_n) override { rehearsal_.limit_force(most_n); }
-  [[nodiscard]] device::ServoReport run(const std::string& name,
-                                        device::Measurement& measurement) override {
-    device::ServoReport report = rehearsal_.run(name, measurement);
+  [[nodiscard]] ServoReport run(const std::string& name, Measurement& measurement) override {
+    ServoReport report = rehearsal_.run(name, measurement);
     double most_n = 0.0;
-    for (const device::ServoSample& sample : measurement.samples()) {
+    for (const ServoSample& sample : measurement.samples()) {
       most_n = std::max(most_n, norm(sample.force_n));
     }
     greatest_n_.emplace_back(name, most_n);
     return report;
   }
-  [[nodiscard]] device::Rehearsal& person() { return rehearsal_; }
+  [[nodiscard]] Rehearsal& person() { return rehearsal_; }
   [[nodiscard]] const auto& greatest_n() const { return greatest_n_; }
 
  private:
-  device::Rehearsal rehearsal_;
+  Rehearsal rehearsal_;
   std::vector<std::pair<std::string, double>> greatest_n_;
 };
 
@@ -88,14 +82,14 @@ class WatchedRehearsal final : public device::AcceptanceBench {
 TEST_CASE("an acceptance passes each emulated device and finds the parameters of its model") {
   for (const std::string& name : kEmulated) {
     CAPTURE(name);
-    const DeviceModel model = device::device_model(name);
+    const DeviceModel model = device_model(name);
     const Certificate certificate = rehearsed(model);
     INFO(joined_lines(certificate.failures()));
     CHECK(certificate.passed());
     CHECK(certificate.emulated == name);
     check_found(certificate.step_mm, model.position_step_mm, 0.1 * model.position_step_mm);
-    for (const DeviceAxis axis : device::kDeviceAxes) {
-      CAPTURE(device::name_of(axis));
+    for (const DeviceAxis axis : kDeviceAxes) {
+      CAPTURE(name_of(axis));
       const AxisResult& result = axis_of(certificate, axis);
       check_found(result.scale(), 1.0, 0.08);
       check_found(result.friction_n, model.coulomb_n, 0.10);
@@ -107,17 +101,17 @@ TEST_CASE("an acceptance passes each emulated device and finds the parameters of
 
 TEST_CASE("an acceptance finds a wrong sign on any axis, refuses it, and pulls at nothing more") {
   for (const std::string& name : kEmulated) {
-    for (const DeviceAxis axis : device::kDeviceAxes) {
-      CAPTURE(name, device::name_of(axis));
-      DeviceModel model = device::device_model(name);
+    for (const DeviceAxis axis : kDeviceAxes) {
+      CAPTURE(name, name_of(axis));
+      DeviceModel model = device_model(name);
       component(model.planted.force_sign_scale, axis) = -1.0;
       WatchedRehearsal bench(model);
-      const Certificate certificate = device::accept_device(bench, bench.person(), {}).certificate;
+      const Certificate certificate = accept_device(bench, bench.person(), {}).certificate;
       CHECK_FALSE(certificate.passed());
       CHECK(has_line(certificate.failures(),
-                     "axis " + std::string(device::name_of(axis)) + ": the handle moved against"));
+                     "axis " + std::string(name_of(axis)) + ": the handle moved against"));
       REQUIRE(!bench.greatest_n().empty());
-      CHECK(bench.greatest_n().back().first == "push " + std::string(device::name_of(axis)));
+      CHECK(bench.greatest_n().back().first == "push " + std::string(name_of(axis)));
       // Friction alone holds the handle: a push ends within 0.2 N beyond it, and the hand's own
       // spring of 0.05 N/mm over 2 mm.
       CHECK(bench.greatest_n().back().second <= model.coulomb_n + 0.1 + 0.2 + 1e-9);
@@ -129,16 +123,16 @@ TEST_CASE("an acceptance finds a wrong sign on any axis, refuses it, and pulls a
 TEST_CASE("an acceptance finds a force that is 20 percent off on one axis, and refuses it") {
   for (const std::string& name : kEmulated) {
     for (const double scale : {0.8, 1.2}) {
-      for (const DeviceAxis axis : device::kDeviceAxes) {
-        CAPTURE(name, scale, device::name_of(axis));
-        DeviceModel model = device::device_model(name);
+      for (const DeviceAxis axis : kDeviceAxes) {
+        CAPTURE(name, scale, name_of(axis));
+        DeviceModel model = device_model(name);
         component(model.planted.force_sign_scale, axis) = scale;
         const Certificate certificate = rehearsed(model);
         check_found(axis_of(certificate, axis).scale(), scale, 0.09);
         CHECK_FALSE(certificate.passed());
         CHECK(certificate.failures().size() == 1);
-        CHECK(has_line(certificate.failures(),
-                       "axis " + std::string(device::name_of(axis)) + ": delivers"));
+        CHECK(
+            has_line(certificate.failures(), "axis " + std::string(name_of(axis)) + ": delivers"));
         // Friction and mass are in newtons at the handle, whatever the scale.
         check_found(axis_of(certificate, axis).friction_n, model.coulomb_n, 0.15);
       }
@@ -149,7 +143,7 @@ TEST_CASE("an acceptance finds a force that is 20 percent off on one axis, and r
 TEST_CASE("an acceptance finds 3 ms of delay, 0.3 N of friction and steps of 0.06 mm") {
   for (const std::string& name : kEmulated) {
     CAPTURE(name);
-    DeviceModel model = device::device_model(name);
+    DeviceModel model = device_model(name);
     model.delay_ticks = 3;
     model.coulomb_n = 0.3;
     model.position_step_mm = 0.06;
@@ -157,8 +151,8 @@ TEST_CASE("an acceptance finds 3 ms of delay, 0.3 N of friction and steps of 0.0
     INFO(joined_lines(certificate.failures()));
     CHECK(certificate.passed());
     check_found(certificate.step_mm, 0.06, 0.006);
-    for (const DeviceAxis axis : device::kDeviceAxes) {
-      CAPTURE(device::name_of(axis));
+    for (const DeviceAxis axis : kDeviceAxes) {
+      CAPTURE(name_of(axis));
       check_found(axis_of(certificate, axis).delay_ms, 3.0, 1.5);
       check_found(axis_of(certificate, axis).friction_n, 0.3, 0.10);
     }
@@ -168,7 +162,7 @@ TEST_CASE("an acceptance finds 3 ms of delay, 0.3 N of friction and steps of 0.0
 TEST_CASE("an acceptance finds planted parameters through noise, whatever its seed") {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     CAPTURE(seed);
-    DeviceModel model = device::device_model("falcon");
+    DeviceModel model = device_model("falcon");
     model.delay_ticks = 3;
     model.planted.position_noise_mm = 0.02;
     model.planted.gravity_n = 0.6;
@@ -178,8 +172,8 @@ TEST_CASE("an acceptance finds planted parameters through noise, whatever its se
     CHECK(certificate.passed());
     REQUIRE(axis_of(certificate, DeviceAxis::y).load_n);
     CHECK(*axis_of(certificate, DeviceAxis::y).load_n == Approx(0.6).margin(0.05));
-    for (const DeviceAxis axis : device::kDeviceAxes) {
-      CAPTURE(device::name_of(axis));
+    for (const DeviceAxis axis : kDeviceAxes) {
+      CAPTURE(name_of(axis));
       check_found(axis_of(certificate, axis).scale(), 1.0, 0.08);
       check_found(axis_of(certificate, axis).friction_n, 0.3, 0.10);
       check_found(axis_of(certificate, axis).delay_ms, 3.0, 1.5);
@@ -189,13 +183,12 @@ TEST_CASE("an acceptance finds planted parameters through noise, whatever its se
 }
 
 TEST_CASE("an acceptance says what it could not measure, and why") {
-  DeviceModel model = device::device_model("falcon");
+  DeviceModel model = device_model("falcon");
   model.position_step_mm = 0.0;
   const Certificate certificate = rehearsed(model, {.skip = {"wall", "shake"}});
   CHECK(certificate.passed());
   const auto why = [&](const std::string& what) {
-    const auto found =
-        std::ranges::find(certificate.not_measured, what, &device::NotMeasured::what);
+    const auto found = std::ranges::find(certificate.not_measured, what, &NotMeasured::what);
     return found == certificate.not_measured.end() ? std::string() : found->why;
   };
   CHECK_FALSE(certificate.step_mm);
@@ -208,7 +201,7 @@ TEST_CASE("an acceptance says what it could not measure, and why") {
 
 TEST_CASE(
     "an acceptance without signs, rest or weights does not pass, and nothing pulls unsigned") {
-  const DeviceModel model = device::device_model("falcon");
+  const DeviceModel model = device_model("falcon");
   const Certificate unsigned_one = rehearsed(model, {.skip = {"push"}});
   CHECK_FALSE(unsigned_one.passed());
   CHECK(unsigned_one.axes.empty());
@@ -219,7 +212,7 @@ TEST_CASE(
 
 TEST_CASE("an acceptance refuses devices that fall silent, are lost, tremble, stick or lag") {
   const auto refused = [](const char* part, const auto& plant) {
-    DeviceModel model = device::device_model("omega_3");
+    DeviceModel model = device_model("omega_3");
     plant(model);
     const Certificate certificate = rehearsed(model);
     CAPTURE(part, joined_lines(certificate.failures()));
@@ -235,7 +228,7 @@ TEST_CASE("an acceptance refuses devices that fall silent, are lost, tremble, st
 }
 
 TEST_CASE("no emulated device with more delay than the limit passes, by ticks or by slow motors") {
-  for (const DeviceModel& shipped : device::shipped_device_models()) {
+  for (const DeviceModel& shipped : shipped_device_models()) {
     if (shipped.mass_kg == 0.0) continue;  // ideal
     for (const int ticks : {6, 10, 12, 15, 20, 30}) {
       DeviceModel model = shipped;
@@ -255,12 +248,12 @@ TEST_CASE("no emulated device with more delay than the limit passes, by ticks or
 }
 
 TEST_CASE("a shake that gave no delay fails a device with its reason, unless it was left out") {
-  DeviceModel model = device::device_model("omega_3");
+  DeviceModel model = device_model("omega_3");
   model.delay_ticks = 12;
   model.velocity_readings = 20;  // so slow that the hold itself swings
   const Certificate failed = rehearsed(model);
   CHECK(has_line(failed.failures(), "the delay was not measured: the handle left its place"));
-  const Certificate left_out = rehearsed(device::device_model("omega_3"), {.skip = {"shake"}});
+  const Certificate left_out = rehearsed(device_model("omega_3"), {.skip = {"shake"}});
   CHECK(left_out.passed());
   CHECK(axis_of(left_out, DeviceAxis::x).delay_left_out);
 }
@@ -271,7 +264,7 @@ TEST_CASE("a wall that throws the handle up slowly, again and again, is no stabl
       {"omega_3", 12}, {"omega_3", 15}, {"omega_3", 20}, {"inverse3", 20}, {"falcon", 25}};
   for (const auto& [name, ticks] : slow) {
     CAPTURE(name, ticks);
-    DeviceModel model = device::device_model(name);
+    DeviceModel model = device_model(name);
     model.delay_ticks = ticks;
     model.max_stiffness_n_per_mm = 5.0;
     const Certificate certificate = rehearsed(model);
@@ -285,10 +278,10 @@ TEST_CASE("friction up to the limit is measured beside a weight") {
   for (const std::string name : {"falcon", "omega_3", "inverse3"}) {
     for (const double friction_n : {0.65, 0.7}) {
       CAPTURE(name, friction_n);
-      DeviceModel model = device::device_model(name);
+      DeviceModel model = device_model(name);
       model.coulomb_n = friction_n;
       const Certificate certificate = rehearsed(model);
-      for (const DeviceAxis axis : device::kDeviceAxes) {
+      for (const DeviceAxis axis : kDeviceAxes) {
         check_found(axis_of(certificate, axis).scale(), 1.0, 0.09);
         check_found(axis_of(certificate, axis).friction_n, friction_n, 0.15);
       }
@@ -299,10 +292,10 @@ TEST_CASE("friction up to the limit is measured beside a weight") {
 TEST_CASE("an acceptance pushes with at most 1.5 N and the continuous force, then 60 % of peak") {
   for (const std::string& name : kEmulated) {
     CAPTURE(name);
-    const DeviceModel model = device::device_model(name);
+    const DeviceModel model = device_model(name);
     WatchedRehearsal bench(model);
-    static_cast<void>(device::accept_device(bench, bench.person(), {}));
-    const double peak_n = std::min(model.max_force_n, device::SafetyLimits{}.max_force_n);
+    static_cast<void>(accept_device(bench, bench.person(), {}));
+    const double peak_n = std::min(model.max_force_n, SafetyLimits{}.max_force_n);
     const double continuous_n = model.continuous_force_n > 0.0 ? model.continuous_force_n : peak_n;
     for (const auto& [run, greatest_n] : bench.greatest_n()) {
       CAPTURE(run);
@@ -318,7 +311,7 @@ TEST_CASE("an acceptance pushes with at most 1.5 N and the continuous force, the
 TEST_CASE(
     "walls become stiffer until one swings, near the stiffness that damping and delay allow") {
   // A hand of 8 N s/m alone damps the handle, so K (T/2 + delay) = 8 N s/m at the edge.
-  DeviceModel model = device::device_model("ideal");
+  DeviceModel model = device_model("ideal");
   model.mass_kg = 0.1;
   model.max_force_n = 8.0;
   model.zero_order_hold = true;
@@ -341,29 +334,27 @@ TEST_CASE(
 }
 
 TEST_CASE("an acceptance repeats itself exactly, and its model rehearses as the device did") {
-  const DeviceModel model = device::device_model("falcon");
+  const DeviceModel model = device_model("falcon");
   const Certificate first = rehearsed(model);
-  CHECK(device::certificate_json(first) == device::certificate_json(rehearsed(model)));
+  CHECK(certificate_json(first) == certificate_json(rehearsed(model)));
   device::Certificate named = first;
   named.driver = "falcon";
-  CHECK(device::model_of(named, {}).provenance.at("mass_kg").confidence ==
-        device::Confidence::derived);
+  CHECK(device::model_of(named, {}).provenance.at("mass_kg").confidence == Confidence::derived);
   named.emulated.clear();
-  const DeviceModel measured = device::model_of(named, device::ModelledDevice(model).info());
+  const DeviceModel measured = device::model_of(named, ModelledDevice(model).info());
   CHECK(measured.mass_kg == Approx(model.mass_kg).epsilon(0.15));
   CHECK(measured.coulomb_n == Approx(model.coulomb_n).margin(0.05));
   CHECK(measured.delay_ticks == model.delay_ticks);
   CHECK(measured.zero_order_hold);
-  CHECK(measured.provenance.at("zero_order_hold").confidence == device::Confidence::guess);
-  CHECK(measured.provenance.at("mass_kg").confidence == device::Confidence::measured);
-  const DeviceModel read = device::parse_device_model(device::device_model_json(measured), "model");
+  CHECK(measured.provenance.at("zero_order_hold").confidence == Confidence::guess);
+  CHECK(measured.provenance.at("mass_kg").confidence == Confidence::measured);
+  const DeviceModel read = parse_device_model(device::device_model_json(measured), "model");
   CHECK(read.mass_kg == measured.mass_kg);
 }
 
 TEST_CASE("after twenty minutes under a load an acceptance compares the forces that it took") {
-  device::AcceptanceOptions options;
-  options.thermal = true;
-  const Certificate certificate = rehearsed(device::device_model("omega_3"), options);
+  AcceptanceOptions options{.thermal = true};
+  const Certificate certificate = rehearsed(device_model("omega_3"), options);
   REQUIRE(certificate.warm);
   CHECK(certificate.warm->after_n == Approx(certificate.warm->before_n).epsilon(0.02));
   CHECK_FALSE(certificate.warm->before_c);

@@ -6,8 +6,6 @@
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
-#include <cmath>
-#include <functional>
 #include <string>
 
 namespace touchtrial {
@@ -16,20 +14,17 @@ namespace {
 using device::Certificate;
 
 Certificate passed_certificate() {
-  Certificate certificate;
-  certificate.driver = "falcon";
-  certificate.model = "Novint Falcon";
-  certificate.serial = "F1";
-  certificate.firmware = "1";
-  certificate.program = "0.1.0";
-  certificate.made = std::chrono::sys_days(std::chrono::year(2026) / 2 / 28) +
-                     std::chrono::hours(9) + std::chrono::seconds(5);
-  certificate.rest = device::RestFigures{0.01, 0.02};
-  certificate.step_mm = device::Measured{0.038, 0.002};
+  Certificate certificate{.driver = "falcon",
+                          .model = "Novint Falcon",
+                          .serial = "F1",
+                          .firmware = "1",
+                          .program = "0.1.0",
+                          .made = std::chrono::sys_days(std::chrono::year(2026) / 2 / 28) +
+                                  std::chrono::hours(9) + std::chrono::seconds(5),
+                          .rest = device::RestFigures{0.01, 0.02},
+                          .step_mm = device::Measured{0.038, 0.002}};
   for (const device::DeviceAxis axis : device::kDeviceAxes) {
-    device::AxisResult result;
-    result.axis = axis;
-    result.plus = device::PushResult{0.4, true, 2.0, 0.1};
+    device::AxisResult result{.axis = axis, .plus = device::PushResult{0.4, true, 2.0, 0.1}};
     result.minus = result.plus;
     result.weight = device::WeighResult{0.980665, 1.01, 0.02};
     result.load_n = 0.1;

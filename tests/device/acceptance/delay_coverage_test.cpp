@@ -51,8 +51,7 @@ struct DelayCoverage {
 
 DelayCoverage delay_coverage(const std::string& name, int devices) {
   DelayCoverage coverage{.devices = devices};
-  device::AcceptanceOptions options;
-  options.skip = {"weights", "wall", "steps"};
+  device::AcceptanceOptions options{.skip = {"weights", "wall", "steps"}};
   for (int index = 0; index < devices; ++index) {
     const DeviceModel model = drawn_device(name, static_cast<std::uint64_t>(index));
     const auto certificate = device::rehearse_acceptance(model, options).certificate;

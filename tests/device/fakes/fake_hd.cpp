@@ -10,8 +10,6 @@
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
-#include <limits>
-#include <memory>
 #include <mutex>
 #include <thread>
 #include <vector>

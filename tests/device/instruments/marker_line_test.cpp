@@ -77,12 +77,10 @@ TEST_CASE("a marker that an unplugged line did not take has no latency, and noth
 
 TEST_CASE("a line that cannot be used is refused with its name and the remedy") {
   const TempFolder folder;
-  device::MarkerLineSettings none;
-  none.port = folder.path() / "ttyNONE";
+  device::MarkerLineSettings none{.port = folder.path() / "ttyNONE"};
   CHECK_THROWS_WITH(device::MarkerLine(none),
                     holds_text("ttyNONE") && holds_text("plug the instrument in"));
-  device::MarkerLineSettings file;
-  file.port = "/dev/null";
+  device::MarkerLineSettings file{.port = "/dev/null"};
   CHECK_THROWS_WITH(device::MarkerLine(file), holds_text("is no serial line"));
   Instrument instrument;
   instrument.settings.baud = 12'345;

@@ -2,12 +2,10 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "device/model/device_model.hpp"
-#include "device/schema_against_reader.hpp"
 #include "support/catch.hpp"
+#include "support/schema_against_reader.hpp"
 #include "support/temp_folder.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -20,7 +18,7 @@
 namespace touchtrial {
 namespace {
 
-using device::DeviceModel;
+using namespace device;
 using nlohmann::json;
 namespace fs = std::filesystem;
 
@@ -32,7 +30,7 @@ const fs::path& config() {
 /// \return the error for a model with this value; empty if it is accepted
 std::string refusal_of(const json& model) {
   try {
-    static_cast<void>(device::parse_device_model(model.dump(), "model.json"));
+    static_cast<void>(parse_device_model(model.dump(), "model.json"));
   } catch (const StudyError& error) {
     return error.what();
   }
@@ -67,11 +65,11 @@ bool is_refused_otherwise(const SchemaAgainstReader::Pointer& place, double numb
 }
 
 DeviceModel full_model() {
-  DeviceModel model = device::device_model("touch");
+  DeviceModel model = device_model("touch");
   model.viscous_n_s_per_m = 0.5;
   model.static_n = 0.4;
   model.stribeck_mm_s = 7.0;
-  model.friction = device::FrictionShape::per_axis;
+  model.friction = FrictionShape::per_axis;
   model.lowpass_hz = 120.0;
   model.planted = {{-1.0, 1.2, 1.0}, 0.01, 0.3, 5.0, 6.0, 77};
   return model;
@@ -91,18 +89,18 @@ TEST_CASE("the reader keeps keys, bounds, types, words and defaults of the schem
   json full = both.defaults();
   full["name"] = "test";
   full.erase("workspace");
-  const DeviceModel bare = device::parse_device_model(R"({"name": "test"})", "bare");
-  CHECK(device::device_model_json(device::parse_device_model(full.dump(), "full")) ==
+  const DeviceModel bare = parse_device_model(R"({"name": "test"})", "bare");
+  CHECK(device::device_model_json(parse_device_model(full.dump(), "full")) ==
         device::device_model_json(bare));
   CHECK(device::device_model_json(bare) == "{\n  \"name\": \"test\"\n}\n");
 }
 
 TEST_CASE("a model is written as it is read") {
-  std::vector<DeviceModel> models = device::shipped_device_models();
+  std::vector<DeviceModel> models = shipped_device_models();
   models.push_back(full_model());
   for (const DeviceModel& model : models) {
     const std::string text = device::device_model_json(model);
-    const DeviceModel again = device::parse_device_model(text, "written");
+    const DeviceModel again = parse_device_model(text, "written");
     CHECK(device::device_model_json(again) == text);
     CHECK(again.mass_kg == model.mass_kg);
     CHECK(again.structure.stiffness_n_per_mm == model.structure.stiffness_n_per_mm);
@@ -133,10 +131,9 @@ TEST_CASE("parameters that contradict each other are refused, in files and in co
     CHECK_THAT(refusal_of(model), holds_text(message));
   }
   CHECK_THAT(refusal_of({{"name", ""}}), holds_text("/name: is empty"));
-  CHECK_THROWS_AS(device::parse_device_model(R"({"name": "x", "mass_kg": 1e999})", "model.json"),
+  CHECK_THROWS_AS(parse_device_model(R"({"name": "x", "mass_kg": 1e999})", "model.json"),
                   StudyError);
-  CHECK_THROWS_AS(device::parse_device_model(R"({"name": "x", "mass_kg": NaN})", "model.json"),
-                  StudyError);
+  CHECK_THROWS_AS(parse_device_model(R"({"name": "x", "mass_kg": NaN})", "model.json"), StudyError);
 }
 
 TEST_CASE("a model that was made in code is checked before it runs") {
@@ -164,23 +161,23 @@ TEST_CASE("a model that was made in code is checked before it runs") {
       [](DeviceModel& m) -> double& { return m.planted.gravity_n; },
       [](DeviceModel& m) -> double& { return m.planted.silent_after_s; },
       [](DeviceModel& m) -> double& { return m.planted.lost_after_s; }};
-  CHECK_NOTHROW(device::check_device_model(full_model()));
+  CHECK_NOTHROW(check_device_model(full_model()));
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     INFO(i);
     for (const double absurd : {kNaN, kInfinity, -kInfinity, 1e9, -1e9}) {
       DeviceModel model = full_model();
       numbers[i](model) = absurd;
-      CHECK_THROWS_AS(device::check_device_model(model), std::invalid_argument);
-      CHECK_THROWS_AS(device::DeviceDynamics(model), std::invalid_argument);
+      CHECK_THROWS_AS(check_device_model(model), std::invalid_argument);
+      CHECK_THROWS_AS(DeviceDynamics(model), std::invalid_argument);
     }
   }
   for (const int absurd : {-1, 101}) {
     DeviceModel model = full_model();
     model.delay_ticks = absurd;
-    CHECK_THROWS_AS(device::ModelledDevice(model), std::invalid_argument);
+    CHECK_THROWS_AS(ModelledDevice(model), std::invalid_argument);
     model.delay_ticks = 1;
     model.velocity_readings = absurd;
-    CHECK_THROWS_AS(device::check_device_model(model), std::invalid_argument);
+    CHECK_THROWS_AS(check_device_model(model), std::invalid_argument);
   }
 }
 
@@ -188,41 +185,40 @@ TEST_CASE("the shipped models are the files in config, and each says where its n
   std::set<std::string> names;
   for (const auto& entry : fs::directory_iterator(config() / "devices")) {
     const json file = json::parse(text_of(read_file(entry.path())));
-    const DeviceModel model = device::read_device_model(entry.path());
+    const DeviceModel model = read_device_model(entry.path());
     INFO(entry.path().string());
     CHECK(model.name == entry.path().stem().string());
     CHECK_FALSE(model.title.empty());
-    CHECK(device::device_model_json(device::device_model(model.name)) ==
-          device::device_model_json(model));
+    CHECK(device::device_model_json(device_model(model.name)) == device::device_model_json(model));
     for (const auto& [key, unused] : file.items()) {
       if (key == "name" || key == "title" || key == "provenance") continue;
       CHECK(key != "planted");
       REQUIRE(model.provenance.contains(key));
       CHECK_FALSE(model.provenance.at(key).source.empty());
       // Nobody had a device.
-      CHECK(model.provenance.at(key).confidence != device::Confidence::measured);
+      CHECK(model.provenance.at(key).confidence != Confidence::measured);
     }
     for (const auto& [key, unused] : model.provenance) CHECK(file.contains(key));
     names.insert(model.name);
   }
-  CHECK(names.size() == device::shipped_device_models().size());
+  CHECK(names.size() == shipped_device_models().size());
   for (const char* name : {"ideal", "touch", "touch_x", "premium_1_5", "falcon"}) {
     CHECK(names.contains(name));
   }
 }
 
 TEST_CASE("a model is found by name or by file, and a misspelt one by the nearest name") {
-  CHECK(device::device_model("falcon").title == "Novint Falcon");
-  CHECK_THROWS_WITH(device::device_model("flacon"), holds_text("did you mean falcon?"));
-  CHECK_THROWS_AS(device::device_model("flacon"), UsageError);
-  CHECK_THROWS_WITH(device::device_model("zzzzzzzzz"), holds_text("touchtrial device models"));
+  CHECK(device_model("falcon").title == "Novint Falcon");
+  CHECK_THROWS_WITH(device_model("flacon"), holds_text("did you mean falcon?"));
+  CHECK_THROWS_AS(device_model("flacon"), UsageError);
+  CHECK_THROWS_WITH(device_model("zzzzzzzzz"), holds_text("touchtrial device models"));
   const TempFolder folder;
   const fs::path file = folder.path() / "ours.json";
   replace_file(file, device::device_model_json(full_model()));
-  CHECK(device::device_model(file.string()).lowpass_hz == 120.0);
-  CHECK_THROWS_AS(device::device_model((folder.path() / "gone.json").string()), FileError);
+  CHECK(device_model(file.string()).lowpass_hz == 120.0);
+  CHECK_THROWS_AS(device_model((folder.path() / "gone.json").string()), FileError);
   replace_file(file, R"({"name": "ours", "mass_kg": 50})");
-  CHECK_THROWS_WITH(device::device_model(file.string()), holds_text("ours.json: /mass_kg"));
+  CHECK_THROWS_WITH(device_model(file.string()), holds_text("ours.json: /mass_kg"));
 }
 
 }  // namespace touchtrial

@@ -48,9 +48,7 @@ inline device::DeviceModel frictionless(device::DeviceModel model) {
 }
 
 inline device::HandOptions hand_by(device::HandKind model) {
-  device::HandOptions options;
-  options.model = model;
-  return options;
+  return {.model = model};
 }
 
 /// Calls f(model, hand's options) for each shipped model in each hand.

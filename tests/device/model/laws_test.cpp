@@ -11,11 +11,7 @@
 namespace touchtrial {
 namespace {
 
-using device::DeviceDynamics;
-using device::DeviceModel;
-using device::HandKind;
-using device::HandOptions;
-using device::HeldDevice;
+using namespace device;
 using Complex = std::complex<double>;
 
 /// The simulated hand's equations, written out: a mass without a device, by the semi-implicit step.
@@ -24,7 +20,7 @@ struct PlainHand {
   Vec3 position_mm;
   Vec3 velocity_mm_s;
 
-  void tick(double time_s, Vec3 force_n, const device::PathPoint& target) {
+  void tick(double time_s, Vec3 force_n, const PathPoint& target) {
     const double u = std::min(time_s / device::SimulatedHand::kPushBuildUpS, 1.0);
     const Vec2 off_mm = target.position_mm - Vec2{position_mm.x, position_mm.y};
     const double arm = options.arm_damping_n_s_per_mm;
@@ -48,19 +44,19 @@ TEST_CASE("law 1: an ideal device moves the point mass as no device does, bit fo
   options.factors = {1.0, 1.0, 1.0};
   RandomStream path_random(4, "device_dynamics_test");
   const device::ExplorationPath path({0.2, 500, 500}, {.duration_s = 5.0}, path_random);
-  device::SimulatedHand simulated(options, path, device::device_model("ideal"));
-  device::DeviceSample sample;
-  REQUIRE(simulated.read(sample) == device::DeviceStatus::ok);
+  device::SimulatedHand simulated(options, path, device_model("ideal"));
+  DeviceSample sample;
+  REQUIRE(simulated.read(sample) == DeviceStatus::ok);
   PlainHand plain{options, sample.position_mm, {}};
   RandomStream random(5, "device_dynamics_test");
   std::size_t stroke = 0;
   for (int i = 0; i < 4999; ++i) {
-    const double time_s = i * device::kServoTickS;
+    const double time_s = i * kServoTickS;
     const Vec3 force_n = random_vec(random, 1.0);
-    const device::PathPoint target = path.at(time_s, stroke);
+    const PathPoint target = path.at(time_s, stroke);
     plain.tick(time_s, force_n, target);
-    REQUIRE(simulated.write(force_n) == device::DeviceStatus::ok);
-    REQUIRE(simulated.read(sample) == device::DeviceStatus::ok);
+    REQUIRE(simulated.write(force_n) == DeviceStatus::ok);
+    REQUIRE(simulated.read(sample) == DeviceStatus::ok);
     REQUIRE(sample.position_mm == plain.position_mm);
     REQUIRE(sample.velocity_mm_s == plain.velocity_mm_s);
   }
@@ -72,7 +68,7 @@ void require_rest(DeviceModel model, const HandOptions& options, double holds_n)
   HeldDevice held(options, model);
   const Vec3 place_mm{1.0, 2.0, 3.0};
   held.place(place_mm);
-  const device::PathPoint there{{1.0, 2.0}, {}};
+  const PathPoint there{{1.0, 2.0}, {}};
   RandomStream random(1, "laws_test");
   for (int i = 0; i < 1000; ++i) {
     const Vec3 direction = random_vec(random, 1.0);
@@ -91,7 +87,7 @@ TEST_CASE("law 2: at rest, forces up to static friction move nothing, exactly") 
     model.static_n = 1.5 * model.coulomb_n;
     model.stribeck_mm_s = 5.0;
     require_rest(model, options, model.static_n);
-    model.friction = device::FrictionShape::per_axis;
+    model.friction = FrictionShape::per_axis;
     require_rest(model, options, model.static_n);
   });
 }
@@ -134,14 +130,13 @@ double turned_way_mm(Vec3 was_mm_s, Vec3 is_mm_s) {
 }
 
 TEST_CASE("law 3: friction never adds energy; without it nothing is lost") {
-  for (const DeviceModel& shipped : device::shipped_device_models()) {
+  for (const DeviceModel& shipped : shipped_device_models()) {
     if (shipped.coulomb_n == 0.0) continue;
     INFO(shipped.name);
     DeviceModel model = unrounded(shipped);
     model.viscous_n_s_per_m = 0.0;
     model.structure.damping_ratio = 0.0;
-    HandOptions undamped;
-    undamped.model = HandKind::stylus_grip;
+    HandOptions undamped{.model = HandKind::stylus_grip};
     undamped.factors.damping = 0.0;
     const DeviceModel slick_model = frictionless(model);
     HeldDevice held(undamped, model);

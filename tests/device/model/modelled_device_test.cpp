@@ -3,7 +3,6 @@
 #include "device/model/device_model.hpp"
 #include "support/catch.hpp"
 
-#include <algorithm>
 #include <string>
 
 namespace touchtrial {

@@ -22,21 +22,19 @@
 namespace touchtrial {
 namespace {
 
+using namespace device;
+
 /// Sends from a thread of its own into a pipe: 'F' for force, 'z' for zero.
-class PipeDevice final : public device::HapticDevice {
+class PipeDevice final : public HapticDevice {
  public:
   explicit PipeDevice(int pipe) : sender_([this, pipe] { send_to(pipe); }) { wait_for_sends(1); }
   ~PipeDevice() override {
     ends_.store(true);
     sender_.join();
   }
-  [[nodiscard]] device::DeviceInfo info() const override { return {"pipe", "", 3.3, true}; }
-  [[nodiscard]] device::DeviceStatus read(device::DeviceSample&) noexcept override {
-    return device::DeviceStatus::ok;
-  }
-  [[nodiscard]] device::DeviceStatus write(Vec3) noexcept override {
-    return device::DeviceStatus::ok;
-  }
+  [[nodiscard]] DeviceInfo info() const override { return {"pipe", "", 3.3, true}; }
+  [[nodiscard]] DeviceStatus read(DeviceSample&) noexcept override { return DeviceStatus::ok; }
+  [[nodiscard]] DeviceStatus write(Vec3) noexcept override { return DeviceStatus::ok; }
   void halt() noexcept override {
     halted_at_.store(std::chrono::steady_clock::now());
     halted_.store(true);
@@ -81,17 +79,16 @@ const std::map<std::string, int>& asking_signals() {
   return signals;
 }
 
-void put_things_in_order(const device::ServoControl& control) {
+void put_things_in_order(const ServoControl& control) {
   while (!control.emergency_stop_asked()) std::this_thread::yield();
 }
 
-void leave_by(const std::string& way, const device::ServoControl& control,
-              const PipeDevice& device) {
+void leave_by(const std::string& way, const ServoControl& control, const PipeDevice& device) {
   if (const auto asked = asking_signals().find(way); asked != asking_signals().end()) {
     std::raise(asked->second);
     put_things_in_order(control);
     device.wait_for_sends(2);
-    ::_exit(device::StopOnSignals::exit_code());
+    ::_exit(StopOnSignals::exit_code());
   }
   if (way == "SIGTERM twice") {
     std::raise(SIGTERM);
@@ -129,11 +126,11 @@ void last_act() noexcept {
   for (const int signal : {SIGABRT, SIGSEGV, SIGFPE, SIGQUIT}) std::signal(signal, SIG_DFL);
   std::set_terminate(nullptr);
   PipeDevice device(pipe);
-  device::ServoControl control;
-  const device::StopOnSignals stop(device, control);
+  ServoControl control;
+  const StopOnSignals stop(device, control);
   pipe_to_tell = pipe;
   device_in_use = &device;
-  device::StopOnSignals::before_dying(last_act);
+  StopOnSignals::before_dying(last_act);
   leave_by(way, control, device);
   ::_exit(99);
 }
@@ -197,21 +194,21 @@ TEST_CASE("a crash sends zero before the program dies of it") {
 
 TEST_CASE("without a signal there is no exit code, and only one handler may exist") {
   RestingDevice device;
-  device::ServoControl control;
-  const device::StopOnSignals stop(device, control);
-  CHECK_FALSE(device::StopOnSignals::asked());
-  CHECK(device::StopOnSignals::exit_code() == 0);
-  CHECK(device::StopOnSignals::message().empty());
-  CHECK_THROWS_AS(device::StopOnSignals(device, control), std::logic_error);
+  ServoControl control;
+  const StopOnSignals stop(device, control);
+  CHECK_FALSE(StopOnSignals::asked());
+  CHECK(StopOnSignals::exit_code() == 0);
+  CHECK(StopOnSignals::message().empty());
+  CHECK_THROWS_AS(StopOnSignals(device, control), std::logic_error);
 }
 
 TEST_CASE("a program that was asked to end knows by which signal") {
   RestingDevice device;
-  device::ServoControl control;
-  const device::StopOnSignals stop(device, control);
+  ServoControl control;
+  const StopOnSignals stop(device, control);
   std::raise(SIGTERM);
-  CHECK(device::StopOnSignals::asked());
-  CHECK(device::StopOnSignals::message() == "stopped by SIGTERM; the force is zero");
+  CHECK(StopOnSignals::asked());
+  CHECK(StopOnSignals::message() == "stopped by SIGTERM; the force is zero");
   CHECK(control.emergency_stop_asked());
   CHECK(device.halts == 1);
 }

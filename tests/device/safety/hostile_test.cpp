@@ -6,13 +6,14 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
 
 namespace touchtrial {
 namespace {
+
+using namespace device;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -49,14 +50,14 @@ class HostileReadings {
  public:
   explicit HostileReadings(RandomStream& random) : random_(random) {}
 
-  device::DeviceSample next() {
+  DeviceSample next() {
     mood_ = random_.below(60) == 0 ? random_.below(6) : mood_;
     const bool is_stuck = mood_ == 1;
     if (!is_stuck) {
       ++good_.sequence;
       good_.position_mm.x += random_.uniform(-0.2, 0.2);
     }
-    device::DeviceSample sample = good_;
+    DeviceSample sample = good_;
     if (mood_ == 2) sample.ready = random_.below(2) == 0;
     if (mood_ == 3 && random_.below(10) == 0) sample.position_mm.y = hostile_number(random_, 100.0);
     if (mood_ == 4 && random_.below(10) == 0) sample.velocity_mm_s.z = hostile_number(random_, 3e3);
@@ -66,25 +67,24 @@ class HostileReadings {
 
  private:
   RandomStream& random_;
-  device::DeviceSample good_;
+  DeviceSample good_;
   std::uint64_t mood_ = 0;
 };
 
-device::SafetyLimits hostile_limits(RandomStream& random) {
-  device::SafetyLimits limits;
-  limits.max_force_n = random.uniform(0.5, 8.0);
+SafetyLimits hostile_limits(RandomStream& random) {
+  SafetyLimits limits{.max_force_n = random.uniform(0.5, 8.0)};
   limits.max_slew_n_per_s = limits.max_force_n * random.uniform(21.0, 2000.0);
   limits.continuous_force_n = random.below(2) == 0 ? 0.0 : random.uniform(0.1, 2.0);
   limits.thermal_budget_s = random.uniform(0.01, 20.0);
   limits.ramp_up_s = random.uniform(0.0, 0.05);
   limits.max_support_n = random.uniform(0.0, 4.0);
   if (random.below(10) != 0) return limits;
-  double device::SafetyLimits::*const members[] = {
-      &device::SafetyLimits::max_force_n,      &device::SafetyLimits::continuous_force_n,
-      &device::SafetyLimits::thermal_budget_s, &device::SafetyLimits::max_slew_n_per_s,
-      &device::SafetyLimits::max_speed_mm_s,   &device::SafetyLimits::engage_force_n,
-      &device::SafetyLimits::ramp_up_s,        &device::SafetyLimits::stale_s,
-      &device::SafetyLimits::frozen_s,         &device::SafetyLimits::max_support_n};
+  double SafetyLimits::*const members[] = {
+      &SafetyLimits::max_force_n,      &SafetyLimits::continuous_force_n,
+      &SafetyLimits::thermal_budget_s, &SafetyLimits::max_slew_n_per_s,
+      &SafetyLimits::max_speed_mm_s,   &SafetyLimits::engage_force_n,
+      &SafetyLimits::ramp_up_s,        &SafetyLimits::stale_s,
+      &SafetyLimits::frozen_s,         &SafetyLimits::max_support_n};
   limits.*members[random.below(10)] = random.below(2) == 0 ? kNaN : -1.0;
   return limits;
 }
@@ -93,19 +93,18 @@ device::SafetyLimits hostile_limits(RandomStream& random) {
 class Judge {
  public:
   /// \param support_n  the most that a force may have beside its rendered part
-  Judge(const device::SafetyLimits& limits, double tick_s, double support_n)
+  Judge(const SafetyLimits& limits, double tick_s, double support_n)
       : limits_(limits), tick_s_(tick_s), support_n_(support_n) {}
 
   void see(Vec3 force_n, bool is_fault) {
     const double slew_n = limits_.max_slew_n_per_s * tick_s_ + 2.0 * support_n_;
     if (!is_finite(force_n)) broken("not finite");
-    if (!device::is_sound(limits_) && force_n != Vec3{}) broken("force under unsound limits");
-    if (device::is_sound(limits_) && norm(force_n) > (limits_.max_force_n + support_n_) * kRounding)
+    if (!is_sound(limits_) && force_n != Vec3{}) broken("force under unsound limits");
+    if (is_sound(limits_) && norm(force_n) > (limits_.max_force_n + support_n_) * kRounding)
       broken("norm");
     if (is_fault && force_n != Vec3{}) broken("force under a fault");
     const bool drops = is_fault && force_n == Vec3{};
-    if (!drops && norm(force_n - last_n_) > slew_n * kRounding && device::is_sound(limits_))
-      broken("slew");
+    if (!drops && norm(force_n - last_n_) > slew_n * kRounding && is_sound(limits_)) broken("slew");
     last_n_ = force_n;
     forces_ += force_n == Vec3{} ? 0 : 1;
   }
@@ -118,14 +117,14 @@ class Judge {
 
  private:
   static constexpr double kRounding = 1.0 + 1e-9;
-  const device::SafetyLimits limits_;
+  const SafetyLimits limits_;
   double tick_s_;
   double support_n_;
   Vec3 last_n_;
   std::int64_t forces_ = 0;
 };
 
-bool must_fault(Vec3 force_n, const device::DeviceSample& sample) {
+bool must_fault(Vec3 force_n, const DeviceSample& sample) {
   return !is_finite(force_n) || !is_finite(sample.position_mm) || !is_finite(sample.velocity_mm_s);
 }
 
@@ -156,12 +155,12 @@ class ChainRun {
       may_pass_ = false;
     }
     const Vec3 force_n = hostile_force_n(random_);
-    const device::DeviceSample sample = readings_.next();
+    const DeviceSample sample = readings_.next();
     const std::int64_t ticks = random_.below(30) == 0 ? 46 : 1;
     const Vec3 support_n = has_support_ ? hostile_force_n(random_) : Vec3{};
     const bool was_faulted = chain_.faulted() || !is_finite(support_n);
-    const device::SafeForce safe = chain_.check(force_n, sample, ticks, support_n);
-    const bool is_fault = safe.verdict == device::SafetyVerdict::fault;
+    const SafeForce safe = chain_.check(force_n, sample, ticks, support_n);
+    const bool is_fault = safe.verdict == SafetyVerdict::fault;
     judge_.see(safe.rendered_n, is_fault);
     const double carried_n = norm(safe.force_n - safe.rendered_n);
     if (!(carried_n <= 1e-9 + std::max(0.0, limits_.max_support_n))) judge_.broken("support");
@@ -169,7 +168,7 @@ class ChainRun {
     hold(force_n, sample, safe.force_n, is_fault, was_faulted);
   }
 
-  void hold(Vec3 force_n, const device::DeviceSample& sample, Vec3 sent_n, bool is_fault,
+  void hold(Vec3 force_n, const DeviceSample& sample, Vec3 sent_n, bool is_fault,
             bool was_faulted) {
     const bool passes = sent_n != Vec3{};
     if (norm(force_n) <= limits_.engage_force_n && sample.ready && !is_fault) may_pass_ = true;
@@ -188,9 +187,9 @@ class ChainRun {
   }
 
   RandomStream random_;
-  device::SafetyLimits limits_;
+  SafetyLimits limits_;
   Judge judge_;
-  device::SafetyChain chain_;
+  SafetyChain chain_;
   HostileReadings readings_;
   bool has_support_;
   double stale_ticks_;
@@ -213,26 +212,26 @@ TEST_CASE(
   CHECK(forces > 50'000);
 }
 
-class HostileDevice final : public device::HapticDevice {
+class HostileDevice final : public HapticDevice {
  public:
   HostileDevice(RandomStream& random, double max_force_n, bool has_support)
       : random_(random), readings_(random), max_force_n_(max_force_n), has_support_(has_support) {}
 
-  [[nodiscard]] device::DeviceInfo info() const override {
-    device::DeviceInfo info{"hostile", "", max_force_n_, true};
+  [[nodiscard]] DeviceInfo info() const override {
+    DeviceInfo info{"hostile", "", max_force_n_, true};
     info.max_support_n = kMostSupportN;
     info.has_encoders = true;
     return info;
   }
-  [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override {
+  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override {
     sample = readings_.next();
-    return random_.below(500) == 0 ? device::DeviceStatus::fault : device::DeviceStatus::ok;
+    return random_.below(500) == 0 ? DeviceStatus::fault : DeviceStatus::ok;
   }
-  [[nodiscard]] device::DeviceStatus write(Vec3 force_n) noexcept override {
+  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override {
     written.push_back(force_n);
-    return random_.below(1000) == 0 ? device::DeviceStatus::fault : device::DeviceStatus::ok;
+    return random_.below(1000) == 0 ? DeviceStatus::fault : DeviceStatus::ok;
   }
-  [[nodiscard]] Vec3 support_force_n(const device::DeviceSample&) noexcept override {
+  [[nodiscard]] Vec3 support_force_n(const DeviceSample&) noexcept override {
     if (!has_support_) return {};
     return random_.below(300) == 0 ? hostile_force_n(random_)
                                    : Vec3{0.0, random_.uniform(-3.0, 3.0), 1.0};
@@ -252,12 +251,11 @@ class HostileDevice final : public device::HapticDevice {
 };
 
 /// Small at first, so that a run engages; then hostile, and with requests to the servo.
-class HostileForce final : public device::ForceSource {
+class HostileForce final : public ForceSource {
  public:
-  HostileForce(RandomStream& random, device::ServoControl& control)
-      : random_(random), control_(control) {}
+  HostileForce(RandomStream& random, ServoControl& control) : random_(random), control_(control) {}
 
-  [[nodiscard]] Vec3 force_n(const device::DeviceSample&) noexcept override {
+  [[nodiscard]] Vec3 force_n(const DeviceSample&) noexcept override {
     if (++calls_ < 20) return {0.1, 0.0, 0.0};
     switch (random_.below(2000)) {
       case 0:
@@ -278,12 +276,12 @@ class HostileForce final : public device::ForceSource {
 
  private:
   RandomStream& random_;
-  device::ServoControl& control_;
+  ServoControl& control_;
   int calls_ = 0;
 };
 
 /// Stands still now and then.
-class HostileClock final : public device::ServoClock {
+class HostileClock final : public ServoClock {
  public:
   explicit HostileClock(RandomStream& random) : random_(random) {}
   [[nodiscard]] Time now() noexcept override { return now_; }
@@ -297,9 +295,9 @@ class HostileClock final : public device::ServoClock {
   Time now_{};
 };
 
-class CountedSamples final : public device::SampleSink {
+class CountedSamples final : public SampleSink {
  public:
-  void record(const device::ServoSample&) noexcept override { ++count; }
+  void record(const ServoSample&) noexcept override { ++count; }
   std::int64_t count = 0;
 };
 
@@ -310,27 +308,24 @@ TEST_CASE(
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     CAPTURE(seed);
     RandomStream random(seed, "hostile servo");
-    device::ServoOptions options{
-        .limit_ticks = 600, .fade_ticks = 100, .limits = hostile_limits(random)};
+    ServoOptions options{.limit_ticks = 600, .fade_ticks = 100, .limits = hostile_limits(random)};
     options.rate_hz = random.uniform(1000.0, 10'000.0);
     HostileDevice device(random, random.uniform(0.5, 8.0), seed % 2 == 1);
-    device::ServoControl control;
+    ServoControl control;
     HostileForce force(random, control);
     CountedSamples sink;
     HostileClock clock(random);
-    device::ServoHooks hooks;
-    hooks.control = &control;
-    const device::ServoReport report =
-        device::run_servo(device, force, sink, options, clock, hooks);
-    Judge judge(device::limits_on(device.info(), options.limits), 1.0 / options.rate_hz,
+    ServoHooks hooks{.control = &control};
+    const ServoReport report = device::run_servo(device, force, sink, options, clock, hooks);
+    Judge judge(limits_on(device.info(), options.limits), 1.0 / options.rate_hz,
                 HostileDevice::kMostSupportN);
     for (std::size_t i = 0; i + 1 < device.written.size(); ++i) judge.see(device.written[i], false);
     forces += judge.forces();
     INFO(judge.first_broken);
     CHECK(judge.first_broken.empty());
     CHECK(device.written.back() == Vec3{});
-    CHECK((report.end == device::ServoEnd::fault) == (report.fault != device::SafetyFault::none));
-    CHECK(device.halted == (report.end == device::ServoEnd::fault));
+    CHECK((report.end == ServoEnd::fault) == (report.fault != SafetyFault::none));
+    CHECK(device.halted == (report.end == ServoEnd::fault));
     CHECK(report.ticks == sink.count);
   }
   CHECK(forces > 20'000);

@@ -297,10 +297,8 @@ class LinkByLink {
 };
 
 TEST_CASE("a chain sends what its links give one after the other, however the force jumps") {
-  device::SafetyLimits limits;
-  limits.continuous_force_n = GENERATE(0.0, 1.5);
-  limits.thermal_budget_s = 1.0;
-  limits.max_support_n = 0.1;
+  device::SafetyLimits limits{
+      .continuous_force_n = GENERATE(0.0, 1.5), .thermal_budget_s = 1.0, .max_support_n = 0.1};
   const bool supported = GENERATE(false, true);
   device::SafetyChain safety(limits);
   LinkByLink links(limits);

@@ -12,10 +12,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 device::DeviceInfo device_of(double max_force_n, double continuous_force_n) {
-  device::DeviceInfo info;
-  info.max_force_n = max_force_n;
-  info.continuous_force_n = continuous_force_n;
-  return info;
+  return {.max_force_n = max_force_n, .continuous_force_n = continuous_force_n};
 }
 
 TEST_CASE("the default limits are sound") {

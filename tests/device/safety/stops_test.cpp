@@ -57,8 +57,7 @@ Stopped stop_by(void (device::ServoControl::*request)() noexcept, device::ServoO
   force.call = [&] { (control.*request)(); };
   NoSamples sink;
   device::VirtualClock clock;
-  device::ServoHooks hooks;
-  hooks.control = &control;
+  device::ServoHooks hooks{.control = &control};
   const device::ServoReport report = device::run_servo(device, force, sink, options, clock, hooks);
   return {report, device.written, static_cast<std::size_t>(force.calls_at)};
 }

@@ -152,9 +152,7 @@ TEST_CASE("a run whose callback stands still ends as stalled, on the system's cl
   });
   NoSamples sink;
   device::VirtualClock clock;
-  device::ServoHooks hooks;
-  hooks.control = &control;
-  hooks.heartbeat = &heartbeat;
+  device::ServoHooks hooks{.control = &control, .heartbeat = &heartbeat};
   watchdog.arm();
   // The watchdog needs a beat between arming and the stall, which it sees at its next look.
   const device::ServoReport report =

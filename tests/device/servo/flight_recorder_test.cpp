@@ -21,8 +21,7 @@ std::vector<device::FlightTick> fly(ScriptedDevice& device, Vec3 force_n,
   ConstantForce force(force_n);
   KeptSamples kept;
   LateClock clock({microseconds(0), microseconds(20)});
-  device::ServoHooks hooks;
-  hooks.recorder = &recorder;
+  device::ServoHooks hooks{.recorder = &recorder};
   static_cast<void>(device::run_servo(device, force, kept, options, clock, hooks));
   return recorder.ticks();
 }
@@ -98,16 +97,15 @@ TEST_CASE("a flight recorder of no length, or of more than it could hold, is ref
 }
 
 TEST_CASE("a flight as CSV has a name for every column and one row per tick") {
-  device::FlightTick tick;
-  tick.tick = 12;
-  tick.time = microseconds(12'500);
-  tick.sample = {{0.1, -2.0, 3.5}, {1.0, 2.0, 3.0}, 77, 5, true};
-  tick.requested_n = {0.0, 0.25, 4.0};
-  tick.sent_n = {0.0, 0.2, 3.2};
-  tick.verdict = device::SafetyVerdict::fault;
-  tick.fault = device::SafetyFault::stale_sample;
-  tick.device_fault = device::DeviceFault::warm_motors;
-  tick.lateness_us = 1.25;
+  device::FlightTick tick{.tick = 12,
+                          .time = microseconds(12'500),
+                          .sample = {{0.1, -2.0, 3.5}, {1.0, 2.0, 3.0}, 77, 5, true},
+                          .requested_n = {0.0, 0.25, 4.0},
+                          .sent_n = {0.0, 0.2, 3.2},
+                          .verdict = device::SafetyVerdict::fault,
+                          .fault = device::SafetyFault::stale_sample,
+                          .device_fault = device::DeviceFault::warm_motors,
+                          .lateness_us = 1.25};
   const std::string text = device::flight_csv(std::vector{tick});
   const std::string header = text.substr(0, text.find("\r\n"));
   CHECK(header.starts_with("tick,time_s,x_mm,"));

@@ -71,8 +71,7 @@ TEST_CASE("a hand that rests on one plane of a sequence rests on the next") {
   FlatWall first;
   FlatWall second;
   device::ForceSequence sequence(first, second, 1000, 200);
-  device::ServoOptions options;
-  options.limit_ticks = 2000;
+  device::ServoOptions options{.limit_ticks = 2000};
   const device::ServoReport report =
       device::run_servo_in_virtual_time(*hand, sequence, sequence, options);
   CHECK(report.end == device::ServoEnd::time_limit);

@@ -60,9 +60,8 @@ TEST_CASE("a plane's force pushes the hand on a Falcon out of the plane, however
   for (const Axes& axes : {kTable, kWall}) {
     device::falcon::FalconEmulator emulator({.firmware_runs = true, .homed = true});
     device::falcon::Lockstep lockstep;
-    device::falcon::FalconOptions options;
-    options.pace = lockstep.pace();
-    options.scheduling = {device::SchedulingPolicy::other, 0, false};
+    device::falcon::FalconOptions options{
+        .pace = lockstep.pace(), .scheduling = {device::SchedulingPolicy::other, 0, false}};
     device::falcon::FalconDevice device(
         std::make_unique<device::falcon::EmulatorTransport>(emulator), {}, std::move(options));
     device::PlacedDevice placed(device, {axes.orientation, {-20.0, 0.0, 0.0}});

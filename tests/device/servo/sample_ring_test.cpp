@@ -6,7 +6,6 @@
 #include <atomic>
 #include <stdexcept>
 #include <thread>
-#include <vector>
 
 namespace touchtrial {
 namespace {

@@ -8,15 +8,12 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 
 namespace touchtrial {
 namespace {
 
-using device::DeviceInfo;
-using device::DeviceScale;
-using device::ScaledDevice;
+using namespace device;
 
 constexpr DeviceScale kScale{{2.0, 0.5, 1.25}, {0.8, 1.0, 1.6}};
 
@@ -25,42 +22,42 @@ DeviceInfo full_info() {
   info.continuous_force_n = 1.0;
   info.max_stiffness_n_per_mm = 0.8;
   info.max_damping_n_s_per_mm = 0.004;
-  info.workspace = device::Workspace{{-40.0, -30.0, -20.0}, {40.0, 30.0, 20.0}};
+  info.workspace = Workspace{{-40.0, -30.0, -20.0}, {40.0, 30.0, 20.0}};
   return info;
 }
 
 /// Keeps what it is told, and stands where it is put.
-class Recorder final : public device::HapticDevice {
+class Recorder final : public HapticDevice {
  public:
   [[nodiscard]] DeviceInfo info() const override { return full_info(); }
-  [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override {
+  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override {
     sample = at;
-    return device::DeviceStatus::ok;
+    return DeviceStatus::ok;
   }
-  [[nodiscard]] device::DeviceStatus write(Vec3 force_n) noexcept override {
+  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override {
     told_n = force_n;
     most_n = std::max(most_n, norm(force_n));
-    return device::DeviceStatus::ok;
+    return DeviceStatus::ok;
   }
-  [[nodiscard]] Vec3 support_force_n(const device::DeviceSample& sample) noexcept override {
+  [[nodiscard]] Vec3 support_force_n(const DeviceSample& sample) noexcept override {
     asked_mm = sample.position_mm;
     return {0.0, 0.7, 0.0};
   }
   void halt() noexcept override { halted = true; }
   void rearm() noexcept override { halted = false; }
-  [[nodiscard]] device::DeviceFault fault() const noexcept override { return fault_now; }
-  [[nodiscard]] device::DeviceReadiness readiness() const noexcept override {
-    return device::DeviceReadiness::needs_homing;
+  [[nodiscard]] DeviceFault fault() const noexcept override { return fault_now; }
+  [[nodiscard]] DeviceReadiness readiness() const noexcept override {
+    return DeviceReadiness::needs_homing;
   }
   void calibrate() noexcept override { ++calibrated; }
 
-  device::DeviceSample at{{10.0, 20.0, -5.0}, {100.0, -50.0, 25.0}, 9};
+  DeviceSample at{{10.0, 20.0, -5.0}, {100.0, -50.0, 25.0}, 9};
   Vec3 told_n;
   Vec3 asked_mm;
   double most_n = 0.0;
   bool halted = false;
   int calibrated = 0;
-  device::DeviceFault fault_now = device::DeviceFault::warm_motors;
+  DeviceFault fault_now = DeviceFault::warm_motors;
 };
 
 struct Scaled {
@@ -78,8 +75,8 @@ struct Scaled {
 TEST_CASE("scales correct positions, velocities and delivered forces axis by axis") {
   Scaled lab;
   lab.recorder->at.delivered_n = Vec3{1.0, 1.0, 1.0};
-  device::DeviceSample sample;
-  REQUIRE(lab.device->read(sample) == device::DeviceStatus::ok);
+  DeviceSample sample;
+  REQUIRE(lab.device->read(sample) == DeviceStatus::ok);
   CHECK(norm(sample.position_mm - Vec3{8.0, 20.0, -8.0}) < 1e-12);
   CHECK(norm(sample.velocity_mm_s - Vec3{80.0, -50.0, 40.0}) < 1e-12);
   CHECK(norm(*sample.delivered_n - Vec3{2.0, 0.5, 1.25}) < 1e-12);
@@ -88,21 +85,21 @@ TEST_CASE("scales correct positions, velocities and delivered forces axis by axi
 
 TEST_CASE("a driver is told the force that is then felt as computed") {
   Scaled lab;
-  REQUIRE(lab.device->write({1.0, 1.0, 1.0}) == device::DeviceStatus::ok);
+  REQUIRE(lab.device->write({1.0, 1.0, 1.0}) == DeviceStatus::ok);
   CHECK(norm(lab.recorder->told_n - Vec3{0.5, 2.0, 0.8}) < 1e-12);
 }
 
 TEST_CASE("a driver is asked for its support in its own millimetres, and its weight is as it is") {
   Scaled lab;
-  device::DeviceSample sample;
-  REQUIRE(lab.device->read(sample) == device::DeviceStatus::ok);
+  DeviceSample sample;
+  REQUIRE(lab.device->read(sample) == DeviceStatus::ok);
   CHECK(lab.device->support_force_n(sample) == Vec3{0.0, 0.7, 0.0});
   CHECK(norm(lab.recorder->asked_mm - Vec3{10.0, 20.0, -5.0}) < 1e-12);
 }
 
 TEST_CASE("limits of a scaled device hold as felt and as told, in every direction") {
   const DeviceInfo own = full_info();
-  const DeviceInfo info = device::scaled(own, kScale);
+  const DeviceInfo info = scaled(own, kScale);
   CHECK(info.scale == kScale);
   CHECK(info.max_force_n == Approx(2.0));
   CHECK(info.continuous_force_n == Approx(0.5));
@@ -111,15 +108,15 @@ TEST_CASE("limits of a scaled device hold as felt and as told, in every directio
   CHECK(info.workspace->greatest_mm == Vec3{32.0, 30.0, 32.0});
   CHECK(info.workspace->least_mm == Vec3{-32.0, -30.0, -32.0});
   // A device that delivers more than it is told gets no higher limit.
-  const DeviceInfo strong = device::scaled(own, {{3.0, 2.0, 2.0}, {0.5, 0.5, 0.5}});
+  const DeviceInfo strong = scaled(own, {{3.0, 2.0, 2.0}, {0.5, 0.5, 0.5}});
   CHECK(strong.max_force_n == own.max_force_n);
   CHECK(strong.max_stiffness_n_per_mm == own.max_stiffness_n_per_mm);
 }
 
 TEST_CASE("everything else of a scaled device is the driver's") {
   Scaled lab;
-  CHECK(lab.device->fault() == device::DeviceFault::warm_motors);
-  CHECK(lab.device->readiness() == device::DeviceReadiness::needs_homing);
+  CHECK(lab.device->fault() == DeviceFault::warm_motors);
+  CHECK(lab.device->readiness() == DeviceReadiness::needs_homing);
   lab.device->calibrate();
   CHECK(lab.recorder->calibrated == 1);
   lab.device->halt();
@@ -132,13 +129,12 @@ TEST_CASE("the safety chain's limits hold in newtons as they are felt") {
   // Twice as strong as its driver believes: of 3 N felt it may be told 1.5.
   auto own = std::make_unique<Recorder>();
   Recorder& recorder = *own;
-  recorder.fault_now = device::DeviceFault::none;
+  recorder.fault_now = DeviceFault::none;
   recorder.at.velocity_mm_s = {};
   ScaledDevice device(std::move(own), {{2.0, 2.0, 2.0}, {1.0, 1.0, 1.0}});
   ConstantForce force({0.0, 100.0, 0.0});
   KeptSamples kept;
-  device::ServoOptions options;
-  options.limit_ticks = 9;
+  ServoOptions options{.limit_ticks = 9};
   options.limits.max_force_n = 3.0;
   options.limits.engage_force_n = 1000.0;
   options.limits.ramp_up_s = 0.0;
@@ -147,7 +143,7 @@ TEST_CASE("the safety chain's limits hold in newtons as they are felt") {
 }
 
 TEST_CASE("a driver is opened with the scales of its settings") {
-  device::DeviceSettings settings;
+  DeviceSettings settings;
   CHECK(device::open_device("simulated", settings)->info().scale == DeviceScale{});
   settings.uses["simulated"].scale = kScale;
   CHECK(device::open_device("simulated", settings)->info().scale == kScale);

@@ -5,7 +5,6 @@
 #include "device/servo_fakes.hpp"
 #include "support/catch.hpp"
 
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -85,8 +84,7 @@ TEST_CASE("a loop that stood still until time was up sends only the final zero")
 
 TEST_CASE("lateness counts from the tick that was due first") {
   device::DurationHistogram lateness;
-  device::ServoHooks hooks;
-  hooks.lateness = &lateness;
+  device::ServoHooks hooks{.lateness = &lateness};
   const device::ServoOptions options{.limit_ticks = 10, .fade_ticks = 0};
   static_cast<void>(run(LateClock({kOnTime, milliseconds(4)}), options, hooks));
   CHECK(lateness.worst() == milliseconds(4));
@@ -100,8 +98,7 @@ TEST_CASE("lateness counts from the tick that was due first") {
 
 TEST_CASE("a watcher sees how late the newest tick was") {
   device::LatestValue<device::ServoState> state;
-  device::ServoHooks hooks;
-  hooks.state = &state;
+  device::ServoHooks hooks{.state = &state};
   static_cast<void>(run(LateClock({kOnTime, kOnTime, microseconds(250)}),
                         {.limit_ticks = 3, .fade_ticks = 0}, hooks));
   CHECK(state.get().tick == 2);
@@ -137,8 +134,7 @@ TEST_CASE("finishing before a fade of no length ends the run without a fault") {
   KeptSamples kept;
   device::ServoControl control;
   control.finish();
-  device::ServoHooks hooks;
-  hooks.control = &control;
+  device::ServoHooks hooks{.control = &control};
   device::VirtualClock clock;
   const device::ServoReport report =
       device::run_servo(device, force, kept, {.fade_ticks = 0}, clock, hooks);

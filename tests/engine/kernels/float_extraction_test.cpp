@@ -49,9 +49,7 @@ constexpr double kAnyTolerance = 4e-5;
 constexpr double kPhotographTolerance = 2e-5;
 
 engine::ExtractionOptions adaptive_options(int radius) {
-  engine::ExtractionOptions options;
-  options.radius = radius;
-  return options;
+  return {.radius = radius};
 }
 
 /// The largest difference away from the branch points.
@@ -109,8 +107,7 @@ TEST_CASE("the adaptive kernels keep their precision where CSGV is small and tex
 
 TEST_CASE("the adaptive kernels compute a ramp's CSGV exactly, even on the branch point") {
   on_every_simd_target([] {
-    engine::WantedPlanes wanted;
-    wanted.csgv = true;
+    engine::WantedPlanes wanted{.csgv = true};
     GreyImage image(40, 60);
     for (int y = 0; y < 40; ++y) {
       for (int x = 0; x < 60; ++x) image.at(y, x) = static_cast<std::uint8_t>(4 * x + 3);
@@ -198,10 +195,8 @@ TEST_CASE("a megapixel is extracted by several threads at once, to the same digi
 
 /// The texture of one order, by extract_fixed().
 Plane<float> texture_of(const GreyImage& image, int radius, double order) {
-  engine::ExtractionOptions options;
-  options.method = engine::Method::fixed;
-  options.radius = radius;
-  options.order = order;
+  engine::ExtractionOptions options{
+      .method = engine::Method::fixed, .radius = radius, .order = order};
   return engine::extract_texture<float>(image, options).texture;
 }
 
@@ -218,8 +213,7 @@ TEST_CASE("an image that is processed in tiles has the planes of double, at ever
 
 TEST_CASE("an image that is processed in several strips has the CSGV of double") {
   const GreyImage image = noise_image({5, 2100});
-  engine::WantedPlanes wanted;
-  wanted.csgv = true;
+  engine::WantedPlanes wanted{.csgv = true};
   const auto truth = engine::extract_texture<double>(image, adaptive_options(1), wanted);
   on_every_simd_target([&] {
     const auto result = engine::extract_texture<float>(image, adaptive_options(1), wanted);
@@ -245,8 +239,7 @@ TEST_CASE("a reused extraction holds the wanted planes of the last image") {
 
 TEST_CASE("extract_sub_bands gives the sub-bands that an extraction gives") {
   const GreyImage image = noise_image({21, 36});
-  engine::WantedPlanes wanted;
-  wanted.sub_bands = true;
+  engine::WantedPlanes wanted{.sub_bands = true};
   const auto expected = engine::extract_texture<float>(image, adaptive_options(2), wanted);
   engine::Extraction<float> result;
   engine::extract_sub_bands(image, result);

@@ -7,7 +7,6 @@
 #include "support/guarded_bytes.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -79,8 +78,7 @@ TEST_CASE("decoding a field and making its model read the header's page only") {
   GuardedBytes guarded(std::as_bytes(std::span(file)));
   guarded.leave_only({0});
   const engine::FieldView read = engine::decode_field(guarded.as<std::uint8_t>(), kFieldPath);
-  engine::RenderingOptions options;
-  options.model = read.model;
+  engine::RenderingOptions options{.model = read.model};
   const engine::RenderingModel model(read, options, {0.01, 0.01, 0.01});
   engine::Bristle touch;
   CHECK(model.force_n({9.0, 8.0, 50.0}, {}, touch) == Vec3{});

@@ -12,7 +12,9 @@
 namespace touchtrial {
 namespace {
 
-engine::ForceField<double> force_of(const GreyImage& image) {
+using namespace engine;
+
+ForceField<double> force_of(const GreyImage& image) {
   return engine::tangential_force(converted<double>(image), 3);
 }
 
@@ -26,10 +28,9 @@ GreyImage square_in_flat(Size size, int top, int left, int side) {
 }
 
 TEST_CASE("the patch is where the force is strongest") {
-  const engine::ArrowPatch patch =
-      engine::strongest_patch(force_of(square_in_flat({90, 120}, 60, 20, 10)));
-  CHECK(patch.height == engine::kArrowPatchSide_px);
-  CHECK(patch.width == engine::kArrowPatchSide_px);
+  const ArrowPatch patch = engine::strongest_patch(force_of(square_in_flat({90, 120}, 60, 20, 10)));
+  CHECK(patch.height == kArrowPatchSide_px);
+  CHECK(patch.width == kArrowPatchSide_px);
   CHECK(patch.y <= 59);
   CHECK(patch.y + patch.height >= 71);
   CHECK(patch.x <= 19);
@@ -38,24 +39,24 @@ TEST_CASE("the patch is where the force is strongest") {
 }
 
 TEST_CASE("the patch of a flat texture is its middle, without arrows") {
-  const engine::ArrowPatch patch = engine::strongest_patch(force_of(flat_image({100, 60}, 7)));
+  const ArrowPatch patch = engine::strongest_patch(force_of(flat_image({100, 60}, 7)));
   CHECK(patch.y == 38);
   CHECK(patch.x == 18);
   CHECK(patch.force_of_unit_arrow == 0.0);
 }
 
 TEST_CASE("a texture smaller than a patch is the patch") {
-  const engine::ArrowPatch patch = engine::strongest_patch(force_of(noise_image({5, 30})));
+  const ArrowPatch patch = engine::strongest_patch(force_of(noise_image({5, 30})));
   CHECK(patch.y == 0);
   CHECK(patch.height == 5);
-  CHECK(patch.width == engine::kArrowPatchSide_px);
+  CHECK(patch.width == kArrowPatchSide_px);
 }
 
 TEST_CASE("arrows are drawn at the pixels beside a step, and nowhere else") {
   const TempFolder folder;
   const auto path = folder.path() / "arrows.png";
   const GreyImage step = step_image({24, 24}, 40, 200);  // brighter on the right
-  (void)engine::write_force_arrows(path, step, force_of(step));
+  (void)write_force_arrows(path, step, force_of(step));
   const GreyImage drawn = engine::read_grey_image(path);
   CHECK(drawn.height() == 720);
   CHECK(drawn.width() == 2 * 720 + 24);
@@ -77,38 +78,35 @@ TEST_CASE("force arrows can be drawn for any size of texture") {
   const TempFolder folder;
   for (const Size size : {Size{1, 1}, Size{1, 3000}, Size{3000, 2}, Size{25, 7}}) {
     const GreyImage image = noise_image(size);
-    CHECK_NOTHROW(engine::write_force_arrows(folder.path() / "arrows.png", image, force_of(image)));
+    CHECK_NOTHROW(write_force_arrows(folder.path() / "arrows.png", image, force_of(image)));
   }
 }
 
 TEST_CASE("force arrows refuse a field of another size and a missing folder") {
   const GreyImage image = noise_image({6, 7});
   CHECK_FALSE(refusal_of([&] {
-                (void)engine::write_force_arrows("x.png", image, force_of(noise_image({7, 6})));
+                (void)write_force_arrows("x.png", image, force_of(noise_image({7, 6})));
               }).empty());
   CHECK_FALSE(refusal_of([] { (void)engine::strongest_patch({}); }).empty());
-  CHECK_THROWS_AS(engine::write_force_arrows("/no/such/folder/x.png", image, force_of(image)),
-                  FileError);
+  CHECK_THROWS_AS(write_force_arrows("/no/such/folder/x.png", image, force_of(image)), FileError);
 }
 
 TEST_CASE("arrows are drawn over a patch that fills the square") {
   const GreyImage texture(30, 40, 100);
-  engine::ForceField<double> force{Plane<double>(30, 40), Plane<double>(30, 40)};
+  ForceField<double> force{Plane<double>(30, 40), Plane<double>(30, 40)};
   force.x.at(12, 12) = 5.0;
-  const engine::ArrowPatch patch = engine::strongest_patch(force);
-  const engine::ColourImage picture = engine::force_arrows(texture, force, patch, 120);
+  const ArrowPatch patch = engine::strongest_patch(force);
+  const ColourImage picture = force_arrows(texture, force, patch, 120);
   REQUIRE(picture.height() == 120);
   REQUIRE(picture.width() == 120);
-  const auto coloured = std::ranges::count_if(picture.samples(), [](const engine::Rgb& pixel) {
+  const auto coloured = std::ranges::count_if(picture.samples(), [](const Rgb& pixel) {
     return pixel.red != pixel.green || pixel.green != pixel.blue;
   });
   CHECK(coloured > 0);
   CHECK(coloured < 300);
-  CHECK_THROWS_AS((void)engine::force_arrows(GreyImage(3, 3), force, patch, 120),
+  CHECK_THROWS_AS((void)force_arrows(GreyImage(3, 3), force, patch, 120), std::invalid_argument);
+  CHECK_THROWS_AS((void)force_arrows(texture, force, ArrowPatch{20, 0, 24, 24, 1.0}, 120),
                   std::invalid_argument);
-  CHECK_THROWS_AS(
-      (void)engine::force_arrows(texture, force, engine::ArrowPatch{20, 0, 24, 24, 1.0}, 120),
-      std::invalid_argument);
 }
 
 }  // namespace

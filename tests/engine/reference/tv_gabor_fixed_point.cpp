@@ -4,11 +4,9 @@
 #include "engine/tv_gabor/problem.hpp"
 #include "engine/tv_gabor/torus_plane.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <span>
-#include <vector>
 
 namespace touchtrial::reference {
 namespace {

@@ -16,6 +16,8 @@
 namespace touchtrial {
 namespace {
 
+using namespace engine;
+
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 /// A wave of whole cycles across a plane.
@@ -26,8 +28,8 @@ struct Wave {
 };
 
 /// Samples whose force along x is a sum of waves on a 100 x 100 plane of 20 mm.
-std::vector<engine::FieldSample> waves(std::initializer_list<Wave> parts, double mean = 0.0) {
-  std::vector<engine::FieldSample> samples(100 * 100);
+std::vector<FieldSample> waves(std::initializer_list<Wave> parts, double mean = 0.0) {
+  std::vector<FieldSample> samples(100 * 100);
   for (int y = 0; y < 100; ++y) {
     for (int x = 0; x < 100; ++x) {
       double force = mean;
@@ -41,8 +43,7 @@ std::vector<engine::FieldSample> waves(std::initializer_list<Wave> parts, double
 }
 
 /// The statistics of the lateral force of these samples.
-engine::FieldStatistics statistics_of(const std::vector<engine::FieldSample>& samples,
-                                      double n_per_grey = 1.0) {
+FieldStatistics statistics_of(const std::vector<FieldSample>& samples, double n_per_grey = 1.0) {
   return engine::lateral_statistics({{0.2, 100, 100}, samples}, n_per_grey);
 }
 
@@ -82,7 +83,7 @@ TEST_CASE("power_shares_above agrees with the transform written out, on even and
   };
   const Plane<double> x = in_single(random_texture(height, width, 1));
   const Plane<double> y = in_single(random_texture(height, width, 2, 15.0));
-  std::vector<engine::FieldSample> samples;
+  std::vector<FieldSample> samples;
   for (std::size_t i = 0; i < x.size(); ++i) {
     samples.push_back(
         {0.0F, static_cast<float>(x.samples()[i]), static_cast<float>(y.samples()[i])});
@@ -99,7 +100,7 @@ TEST_CASE("power_shares_above agrees with the transform written out, on even and
 }
 
 TEST_CASE("power_shares_above is zero for a constant field") {
-  const std::vector<engine::FieldSample> constant(8 * 9, {0.0F, 3.25F, 3.25F});
+  const std::vector<FieldSample> constant(8 * 9, {0.0F, 3.25F, 3.25F});
   CHECK(engine::power_shares_above({{0.2, 8, 9}, constant}, std::vector<double>{0.0}) ==
         std::vector<double>{0.0});
 }
@@ -109,7 +110,7 @@ TEST_CASE("field_statistics gives the rms of a wave and of the heights in newton
         Approx(0.01 * 2.0 / std::sqrt(2.0)).epsilon(1e-6));
   std::vector<float> heights(100 * 100);
   for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = i % 2 == 0 ? 3.0F : -3.0F;
-  const engine::FieldStatistics statistics =
+  const FieldStatistics statistics =
       engine::field_statistics(view_of_heights(heights, 100, 100), {0.01, 0.02});
   CHECK(statistics.normal_rms_n == Approx(0.02 * 3.0).epsilon(1e-12));
 }
@@ -137,33 +138,32 @@ TEST_CASE("field_statistics counts the power over 250 Hz at each stroke speed") 
 }
 
 TEST_CASE("field_statistics does not change its shares with the gain") {
-  const engine::TextureField field = random_field(31, 44, 3);
-  const engine::FieldStatistics weak = engine::field_statistics(field.view(), {0.001, 0.0});
-  const engine::FieldStatistics strong = engine::field_statistics(field.view(), {0.1, 0.0});
+  const TextureField field = random_field(31, 44, 3);
+  const FieldStatistics weak = engine::field_statistics(field.view(), {0.001, 0.0});
+  const FieldStatistics strong = engine::field_statistics(field.view(), {0.1, 0.0});
   CHECK(weak.share_below_1_mm > 0.0);
   CHECK(weak.share_below_1_mm == strong.share_below_1_mm);
   CHECK(strong.tangential_rms_n == Approx(100.0 * weak.tangential_rms_n).epsilon(1e-12));
 }
 
 TEST_CASE("field_statistics finds the 99.9th percentile of the force") {
-  std::vector<engine::FieldSample> samples(2001);
+  std::vector<FieldSample> samples(2001);
   for (int i = 0; i <= 2000; ++i) samples[i].force_y = static_cast<float>((i * 7) % 2001);
-  const engine::FieldStatistics statistics =
-      engine::lateral_statistics({{0.2, 3, 667}, samples}, 0.5);
+  const FieldStatistics statistics = engine::lateral_statistics({{0.2, 3, 667}, samples}, 0.5);
   CHECK(statistics.tangential_p999_n == Approx(0.5 * 1998.0).epsilon(1e-12));
 }
 
 TEST_CASE("field_statistics finds the budget in the stiffness of a field that has it alone") {
-  const engine::TextureField field = random_field(50, 60, 4);
-  const engine::FieldView view = field.view();
-  const engine::StudyGains gains = engine::choose_gains({&view, 1}, {});
+  const TextureField field = random_field(50, 60, 4);
+  const FieldView view = field.view();
+  const StudyGains gains = engine::choose_gains({&view, 1}, {});
   CHECK(engine::field_statistics(view, gains.of_field[0]).stiffness_p99_n_per_mm ==
         Approx(0.4).epsilon(1e-9));
 }
 
 TEST_CASE("field_statistics is zero throughout for a flat field of any size") {
   const int side = GENERATE(1, 2, 16);
-  const engine::FieldStatistics statistics =
+  const FieldStatistics statistics =
       engine::field_statistics(flat_field(side, side).view(), {1.0, 1.0});
   CHECK(statistics.tangential_rms_n == 0.0);
   CHECK(statistics.tangential_p999_n == 0.0);
@@ -183,13 +183,11 @@ TEST_CASE("field_statistics refuses an empty field and samples that are not fini
 
 TEST_CASE("the lateral field of either model has the rms that its statistics state") {
   const Plane<double> texture = random_texture(24, 31, 1);
-  for (const engine::ModelKind model : {engine::ModelKind::paper, engine::ModelKind::surface}) {
-    engine::RenderingOptions options;
-    options.model = model;
-    const engine::TextureField field = engine::make_texture_field(texture, options);
-    const engine::Gains gains = model == engine::ModelKind::paper ? engine::Gains{0.01, 0.02, 0.0}
-                                                                  : engine::Gains{0.0, 0.0, 0.003};
-    const engine::LateralField lateral = engine::lateral_field(field.view(), gains);
+  for (const ModelKind model : {ModelKind::paper, ModelKind::surface}) {
+    RenderingOptions options{.model = model};
+    const TextureField field = engine::make_texture_field(texture, options);
+    const Gains gains = model == ModelKind::paper ? Gains{0.01, 0.02, 0.0} : Gains{0.0, 0.0, 0.003};
+    const LateralField lateral = lateral_field(field.view(), gains);
     double squares = 0.0;
     for (std::size_t i = 0; i < texture.size(); ++i) {
       squares +=
@@ -203,8 +201,7 @@ TEST_CASE("the lateral field of either model has the rms that its statistics sta
 }
 
 TEST_CASE("an empty field has no lateral field") {
-  CHECK_THROWS_AS((void)engine::lateral_field(engine::FieldView{}, engine::Gains{}),
-                  std::invalid_argument);
+  CHECK_THROWS_AS((void)lateral_field(FieldView{}, Gains{}), std::invalid_argument);
 }
 
 }  // namespace

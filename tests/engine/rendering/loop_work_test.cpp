@@ -137,8 +137,7 @@ TEST_CASE("loop_work of a wall is zero, and of a ramp the difference between bor
   std::vector<float> heights(50 * 50);
   for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = static_cast<float>(i / 50);
   const engine::FieldView ramp = view_of_heights(heights, 50, 50);
-  engine::RenderingOptions options;
-  options.max_force_n = 1e6;
+  engine::RenderingOptions options{.max_force_n = 1e6};
   const engine::RenderingModel model(ramp, options, {0.01, 0.0});
   // F_y is -4 grey levels per pixel inside, and -3 in the first column, where two of the six
   // neighbours above and below are missing.

@@ -85,10 +85,9 @@ class PaperForce {
 TEST_CASE("PaperModel agrees with its equations at every size, load, speed, ramp and gain") {
   const int height = GENERATE(1, 2, 3, 4, 7);
   const int width = GENERATE(1, 2, 3, 11);
-  engine::RenderingOptions options;
-  options.neighbourhood = GENERATE(3, 5, 31);
-  options.touchdown_ramp_n = GENERATE(0.0, 1e-6, 0.2, 1.0);
-  options.filter_mm = 0.0;
+  engine::RenderingOptions options{.filter_mm = 0.0,
+                                   .neighbourhood = GENERATE(3, 5, 31),
+                                   .touchdown_ramp_n = GENERATE(0.0, 1e-6, 0.2, 1.0)};
   const engine::TextureField field =
       engine::make_texture_field(random_texture(height, width, 3), options);
   const engine::FieldView view = field.view();
@@ -113,8 +112,7 @@ TEST_CASE("PaperModel agrees with its equations at every size, load, speed, ramp
 
 TEST_CASE("PaperModel with a touchdown ramp has no lateral step at landing and at lift-off") {
   const engine::TextureField field = random_field(10, 10, 18, 100.0);
-  engine::RenderingOptions options;
-  options.damping_n_s_per_mm = 0.002;
+  engine::RenderingOptions options{.damping_n_s_per_mm = 0.002};
   const double speed_mm_s = GENERATE(0.0, -50.0, 50.0);
   const auto largest_step_n = [&](double ramp_n) {
     options.touchdown_ramp_n = ramp_n;
@@ -169,8 +167,7 @@ TEST_CASE("PaperModel does not read the field above the reach of any surface") {
 
 TEST_CASE("PaperModel limits the norm of the force and keeps its direction") {
   const engine::TextureField field = random_field(10, 10, 12, 100.0);
-  engine::RenderingOptions unlimited;
-  unlimited.max_force_n = 1e9;
+  engine::RenderingOptions unlimited{.max_force_n = 1e9};
   const engine::Gains strong{0.2, 0.01};
   const engine::PaperModel limited(field.view(), {}, strong);
   const engine::PaperModel free(field.view(), unlimited, strong);

@@ -31,9 +31,7 @@ inline engine::TextureField flat_field(int height, int width) {
 }
 
 inline engine::RenderingOptions surface_options() {
-  engine::RenderingOptions options;
-  options.model = engine::ModelKind::surface;
-  return options;
+  return {.model = engine::ModelKind::surface};
 }
 
 inline engine::TextureField random_surface(int height, int width, std::uint64_t seed,

@@ -77,8 +77,7 @@ TEST_CASE("a hand that pushes on a flat texture keeps contact with a steady forc
 
 TEST_CASE("the same hand bounces on the literal reading, which is why it is not the default") {
   const engine::TextureField field = flat_field(500, 1000);
-  engine::RenderingOptions options;
-  options.reference_grey = 0.0;
+  engine::RenderingOptions options{.reference_grey = 0.0};
   const engine::RenderingModel model(field.view(), options, {0.012, 0.01});
   const Contact contact = land(model, 1.0, options.stiffness_n_per_mm);
   CHECK_FALSE(contact.kept);

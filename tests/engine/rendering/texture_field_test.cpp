@@ -15,8 +15,7 @@ namespace touchtrial {
 namespace {
 
 TEST_CASE("make_texture_field carries the texture's shape and the options' pitch") {
-  engine::RenderingOptions options;
-  options.pitch_mm = 0.25;
+  engine::RenderingOptions options{.pitch_mm = 0.25};
   const engine::TextureField field = engine::make_texture_field(random_texture(3, 7, 1), options);
   CHECK(field.view().geometry.height_px == 3);
   CHECK(field.view().geometry.width_px == 7);
@@ -24,10 +23,7 @@ TEST_CASE("make_texture_field carries the texture's shape and the options' pitch
 }
 
 TEST_CASE("make_texture_field is the force of the filtered surface") {
-  engine::RenderingOptions options;
-  options.pitch_mm = 0.1;
-  options.filter_mm = 0.15;
-  options.neighbourhood = 5;
+  engine::RenderingOptions options{.pitch_mm = 0.1, .filter_mm = 0.15, .neighbourhood = 5};
   const Plane<double> texture = random_texture(17, 12, 2);
   const Plane<double> surface = engine::gaussian_filtered(texture, 1.5);
   const engine::ForceField<double> force = engine::tangential_force(surface, 5);
@@ -44,9 +40,8 @@ TEST_CASE("make_texture_field is the force of the filtered surface") {
 TEST_CASE("the force of stored heights is that of the exact ones, to 3e-7 of the largest height") {
   const double amplitude = GENERATE(1e-3, 40.0, 255.0);
   const Plane<double> texture = random_texture(60, 70, 5, amplitude);
-  engine::RenderingOptions options;
-  options.filter_mm = GENERATE(0.0, 0.4);
-  options.neighbourhood = GENERATE(3, 7);
+  engine::RenderingOptions options{.filter_mm = GENERATE(0.0, 0.4),
+                                   .neighbourhood = GENERATE(3, 7)};
   const Plane<double> smooth =
       engine::gaussian_filtered(texture, to_px(options.filter_mm, options.pitch_mm));
   const engine::ForceField<double> exact = engine::tangential_force(smooth, options.neighbourhood);
@@ -74,10 +69,8 @@ TEST_CASE("make_texture_field refuses an empty texture and impossible options") 
   const Plane<double> texture = random_texture(4, 4, 4);
   CHECK_THROWS_AS(engine::make_texture_field(Plane<double>(), {}), std::invalid_argument);
   const auto with = [](double pitch_mm, double filter_mm, int neighbourhood) {
-    engine::RenderingOptions options;
-    options.pitch_mm = pitch_mm;
-    options.filter_mm = filter_mm;
-    options.neighbourhood = neighbourhood;
+    engine::RenderingOptions options{
+        .pitch_mm = pitch_mm, .filter_mm = filter_mm, .neighbourhood = neighbourhood};
     return options;
   };
   const double infinity = std::numeric_limits<double>::infinity();

@@ -8,6 +8,8 @@
 namespace touchtrial {
 namespace {
 
+using namespace engine;
+
 constexpr double kGreyRange = 255.0;
 
 GreyImage bright_pixel(Size size, int y, int x) {
@@ -21,58 +23,48 @@ double with_rounding(double bound) {
   return bound * (1.0 + 1e-6);
 }
 
-ExtractionCase adaptive_case(int radius, engine::Gradient gradient, engine::Combine combine,
-                             int levels) {
-  engine::ExtractionOptions options;
-  options.radius = radius;
-  options.gradient = gradient;
-  options.combine = combine;
-  options.levels = levels;
+ExtractionCase adaptive_case(int radius, Gradient gradient, Combine combine, int levels) {
+  ExtractionOptions options{
+      .radius = radius, .gradient = gradient, .combine = combine, .levels = levels};
   return {"adaptive, radius " + std::to_string(radius) + ", levels " + std::to_string(levels) +
-              ", " + std::string(name_in(engine::kGradientNames, gradient)) + ", " +
-              std::string(name_in(engine::kCombineNames, combine)),
+              ", " + std::string(name_in(kGradientNames, gradient)) + ", " +
+              std::string(name_in(kCombineNames, combine)),
           options, kGreyRange};
 }
 
-ExtractionCase fixed_case(double order, int radius, engine::Norm norm) {
-  engine::ExtractionOptions options;
-  options.method = engine::Method::fixed;
-  options.order = order;
-  options.radius = radius;
-  options.norm = norm;
-  const double sum = engine::gl_weight_sum(order, radius);
+ExtractionCase fixed_case(double order, int radius, Norm norm) {
+  ExtractionOptions options{
+      .method = Method::fixed, .radius = radius, .order = order, .norm = norm};
+  const double sum = gl_weight_sum(order, radius);
   const double additive = kGreyRange * (1.0 - sum);
-  const double bound = norm == engine::Norm::additive ? additive
-                       : norm == engine::Norm::sum    ? additive / sum
-                                                      : additive + kGreyRange * sum;
+  const double bound = norm == Norm::additive ? additive
+                       : norm == Norm::sum    ? additive / sum
+                                              : additive + kGreyRange * sum;
   return {"fixed, order " + std::to_string(order) + ", radius " + std::to_string(radius) + ", " +
-              std::string(name_in(engine::kNormNames, norm)),
+              std::string(name_in(kNormNames, norm)),
           options, with_rounding(bound) + 1e-6};
 }
 
 void add_adaptive(std::vector<ExtractionCase>& cases) {
-  for (const int radius : {1, 2, 7, engine::ExtractionOptions::kMaxRadius}) {
-    cases.push_back(adaptive_case(radius, engine::Gradient::sobel, engine::Combine::sum, 1));
+  for (const int radius : {1, 2, 7, ExtractionOptions::kMaxRadius}) {
+    cases.push_back(adaptive_case(radius, Gradient::sobel, Combine::sum, 1));
   }
-  for (const engine::Gradient gradient :
-       {engine::Gradient::sobel, engine::Gradient::prewitt, engine::Gradient::central}) {
-    for (const engine::Combine combine :
-         {engine::Combine::sum, engine::Combine::l2, engine::Combine::max}) {
+  for (const Gradient gradient : {Gradient::sobel, Gradient::prewitt, Gradient::central}) {
+    for (const Combine combine : {Combine::sum, Combine::l2, Combine::max}) {
       cases.push_back(adaptive_case(2, gradient, combine, 3));
     }
   }
-  ExtractionCase unnormed = adaptive_case(2, engine::Gradient::sobel, engine::Combine::sum, 1);
+  ExtractionCase unnormed = adaptive_case(2, Gradient::sobel, Combine::sum, 1);
   unnormed.name += ", none";
-  unnormed.options.norm = engine::Norm::none;
+  unnormed.options.norm = Norm::none;
   unnormed.largest_texture = with_rounding(2.0 * kGreyRange);
   cases.push_back(std::move(unnormed));
 }
 
 void add_fixed(std::vector<ExtractionCase>& cases) {
   for (const double order : {0.0, 1e-300, 0.5, 0.999, std::nextafter(1.0, 0.0)}) {
-    for (const int radius : {1, 2, engine::ExtractionOptions::kMaxRadius}) {
-      for (const engine::Norm norm :
-           {engine::Norm::additive, engine::Norm::sum, engine::Norm::none}) {
+    for (const int radius : {1, 2, ExtractionOptions::kMaxRadius}) {
+      for (const Norm norm : {Norm::additive, Norm::sum, Norm::none}) {
         cases.push_back(fixed_case(order, radius, norm));
       }
     }
@@ -80,29 +72,23 @@ void add_fixed(std::vector<ExtractionCase>& cases) {
 }
 
 void add_cited(std::vector<ExtractionCase>& cases) {
-  for (const double sigma_px : {1e-9, 2.0, engine::ExtractionOptions::kMaxSigma_px}) {
-    engine::ExtractionOptions options;
-    options.method = engine::Method::gaussian;
-    options.sigma_px = sigma_px;
+  for (const double sigma_px : {1e-9, 2.0, ExtractionOptions::kMaxSigma_px}) {
+    ExtractionOptions options{.method = Method::gaussian, .sigma_px = sigma_px};
     cases.push_back(
         {"gaussian, sigma " + std::to_string(sigma_px), options, with_rounding(kGreyRange)});
   }
   for (const double threshold_grey : {0.0, 4.0, 255.0}) {
-    engine::ExtractionOptions options;
-    options.method = engine::Method::median;
-    options.threshold_grey = threshold_grey;
-    options.radius = threshold_grey == 0.0 ? engine::ExtractionOptions::kMaxRadius : 2;
+    ExtractionOptions options{.method = Method::median,
+                              .radius = threshold_grey == 0.0 ? ExtractionOptions::kMaxRadius : 2,
+                              .threshold_grey = threshold_grey};
     cases.push_back({"median, threshold " + std::to_string(threshold_grey), options, kGreyRange});
   }
   for (const double divisor :
-       {engine::ExtractionOptions::kMinDivisor, 4.0, engine::ExtractionOptions::kMaxDivisor}) {
-    engine::ExtractionOptions options;
-    options.method = engine::Method::edge;
-    options.divisor = divisor;
+       {ExtractionOptions::kMinDivisor, 4.0, ExtractionOptions::kMaxDivisor}) {
+    ExtractionOptions options{.method = Method::edge, .divisor = divisor};
     cases.push_back({"edge, divisor " + std::to_string(divisor), options, 127.0});
   }
-  engine::ExtractionOptions options;
-  options.method = engine::Method::luminance;
+  ExtractionOptions options{.method = Method::luminance};
   cases.push_back({"luminance", options, 128.0});
 }
 
@@ -139,10 +125,10 @@ const std::vector<ExtractionCase>& extraction_cases() {
 }
 
 bool has_kernel(const ExtractionCase& extraction) {
-  const engine::ExtractionOptions& options = extraction.options;
-  if (options.norm != engine::Norm::additive) return false;
-  return options.method == engine::Method::fixed ||
-         (options.method == engine::Method::adaptive && options.levels == 1);
+  const ExtractionOptions& options = extraction.options;
+  if (options.norm != Norm::additive) return false;
+  return options.method == Method::fixed ||
+         (options.method == Method::adaptive && options.levels == 1);
 }
 
 GreyImage rescaled(const GreyImage& image, int divisor, int offset) {

@@ -28,8 +28,7 @@ struct Comparison {
 };
 
 void compare(const GreyImage& image, int radius, Comparison& counts) {
-  engine::ExtractionOptions options;
-  options.radius = radius;
+  engine::ExtractionOptions options{.radius = radius};
   engine::WantedPlanes wanted;
   wanted.csgv = wanted.picture = true;
   const auto truth = engine::extract_texture<double>(image, options, wanted);

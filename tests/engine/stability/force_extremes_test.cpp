@@ -32,9 +32,8 @@ const std::vector<Vec3>& wild_vectors() {
 
 TEST_CASE("the paper model's force is finite and limited for gains from 1e-12 to 1e12") {
   const engine::TextureField field = field_of(noise_image({33, 35}));
-  engine::RenderingOptions options;
-  options.damping_n_s_per_mm = 0.01;
-  options.touchdown_ramp_n = GENERATE(0.0, 1e-320, 1e-9, 0.2, 1.0);
+  engine::RenderingOptions options{.damping_n_s_per_mm = 0.01,
+                                   .touchdown_ramp_n = GENERATE(0.0, 1e-320, 1e-9, 0.2, 1.0)};
   for (double gain = 1e-12; gain < 2e12; gain *= 1e3) {
     for (const engine::Gains gains :
          {engine::Gains{gain, 0.0}, engine::Gains{0.0, gain}, engine::Gains{gain, gain}}) {
@@ -58,9 +57,8 @@ TEST_CASE("gains of extreme textures are finite, and those of flat ones are zero
       const engine::TextureField field = field_of(image);
       const std::vector<engine::FieldView> views = {field.view()};
       for (const double budget : {1e-12, 0.4, 1e12}) {
-        engine::RenderingOptions options;
-        options.texture_stiffness_n_per_mm = budget;
-        options.touchdown_ramp_n = ramp_n;
+        engine::RenderingOptions options{.texture_stiffness_n_per_mm = budget,
+                                         .touchdown_ramp_n = ramp_n};
         const engine::Gains gains = engine::choose_gains(views, options).of_field.front();
         CHECK(std::isfinite(gains.tangential_n));
         CHECK(std::isfinite(gains.normal_n));

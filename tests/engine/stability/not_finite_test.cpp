@@ -9,7 +9,6 @@
 
 #include <functional>
 #include <limits>
-#include <string>
 #include <vector>
 
 namespace touchtrial {

@@ -14,8 +14,7 @@ namespace {
 constexpr double kLambdas[] = {1e-6, 1e-4, 1e-2, 1.0, 1e3};
 
 engine::ExtractionOptions tv_gabor_options(double lambda, int max_steps = 300) {
-  engine::ExtractionOptions options;
-  options.method = engine::Method::tv_gabor;
+  engine::ExtractionOptions options{.method = engine::Method::tv_gabor};
   options.tv_gabor.lambda = lambda;
   options.tv_gabor.max_steps = max_steps;
   return options;

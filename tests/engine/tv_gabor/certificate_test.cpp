@@ -6,7 +6,6 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 namespace touchtrial {
@@ -72,8 +71,7 @@ Certificate certificate_of(const engine::TvGaborProblem<double>& problem,
 
 TEST_CASE("a certificate agrees with the definitions of primal and dual") {
   const GreyImage image = cloth_image({9, 14});
-  engine::TvGaborOptions options;
-  options.lambda = 0.02;
+  engine::TvGaborOptions options{.lambda = 0.02};
   const engine::TvGaborProblem<double> problem = problem_of(image, options);
   const int height = problem.image.height();
   const int width = problem.image.width();

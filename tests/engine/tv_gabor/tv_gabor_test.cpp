@@ -18,11 +18,10 @@
 namespace touchtrial {
 namespace {
 
-engine::TvGaborOptions precise_options() {
-  engine::TvGaborOptions options;
-  options.gap = 1e-9;
-  options.max_steps = 20000;
-  return options;
+using namespace engine;
+
+TvGaborOptions precise_options() {
+  return {.gap = 1e-9, .max_steps = 20000};
 }
 
 /// Waves of the texture's frequency over a coarse step.
@@ -39,8 +38,8 @@ GreyImage striped_image(Size size) {
 
 TEST_CASE("tv_gabor agrees with accelerated projected gradient on the dual") {
   for (const GreyImage& image : {striped_image({10, 10}), noise_image({2, 3})}) {
-    const engine::TvGaborOptions options = precise_options();
-    const engine::TvGaborResult<double> result = engine::tv_gabor<double>(image, options);
+    const TvGaborOptions options = precise_options();
+    const TvGaborResult<double> result = tv_gabor<double>(image, options);
     const reference::TvGabor definition(image, options);
     const Plane<double> expected = definition.cropped(definition.texture(definition.fista(2000)));
     CHECK(result.converged);
@@ -57,20 +56,19 @@ TEST_CASE("the fixed point on the engine's transforms takes the steps that defin
 }
 
 TEST_CASE("tv_gabor takes any components and lambda") {
-  engine::TvGaborOptions options = precise_options();
+  TvGaborOptions options = precise_options();
   options.lambda = 0.05;
   options.components = {{0.2, 30.0}, {0.4, 120.0}};
   const GreyImage image = striped_image({8, 10});
   const reference::TvGabor definition(image, options);
   const Plane<double> expected = definition.cropped(definition.texture(definition.fista(2000)));
-  CHECK(distance_relative_to(engine::tv_gabor<double>(image, options).texture, expected) < 1e-4);
+  CHECK(distance_relative_to(tv_gabor<double>(image, options).texture, expected) < 1e-4);
 }
 
 TEMPLATE_TEST_CASE("tv_gabor of a flat image is zero with gap zero and no steps", "", float,
                    double) {
   for (const Size size : {Size{1, 1}, Size{3, 5}, Size{40, 40}}) {
-    const engine::TvGaborResult<TestType> result =
-        engine::tv_gabor<TestType>(flat_image(size, 77), {});
+    const TvGaborResult<TestType> result = tv_gabor<TestType>(flat_image(size, 77), {});
     CHECK(largest_magnitude(result.texture) == 0.0);
     CHECK(result.cartoon == Plane<TestType>(size.height, size.width, TestType{77}));
     CHECK(result.gap == 0.0);
@@ -81,8 +79,8 @@ TEMPLATE_TEST_CASE("tv_gabor of a flat image is zero with gap zero and no steps"
 
 TEST_CASE("tv_gabor in float finds the texture that double finds") {
   for (const GreyImage& image : {noise_image({90, 81}), cloth_image({90, 81})}) {
-    const auto exact = engine::tv_gabor<double>(image, {});
-    const auto single = engine::tv_gabor<float>(image, {});
+    const auto exact = tv_gabor<double>(image, {});
+    const auto single = tv_gabor<float>(image, {});
     CHECK(exact.converged);
     CHECK(single.converged);
     CHECK(distance_relative_to(single.texture, exact.texture) < 1e-3);
@@ -90,26 +88,22 @@ TEST_CASE("tv_gabor in float finds the texture that double finds") {
 }
 
 TEST_CASE("tv_gabor in float continues in double where float's digits end") {
-  engine::TvGaborOptions options;
-  options.gap = 1e-8;
-  const auto result = engine::tv_gabor<float>(noise_image({40, 41}), options);
+  TvGaborOptions options{.gap = 1e-8};
+  const auto result = tv_gabor<float>(noise_image({40, 41}), options);
   CHECK(result.converged);
   CHECK(result.gap <= 1e-8);
   CHECK(distance_relative_to(result.texture,
-                             engine::tv_gabor<double>(noise_image({40, 41}), options).texture) <
-        1e-4);
+                             tv_gabor<double>(noise_image({40, 41}), options).texture) < 1e-4);
 }
 
 TEMPLATE_TEST_CASE("TV-Gabor's digits are the same whatever the number of jobs", "", float,
                    double) {
   const GreyImage image = cloth_image({180, 70});
-  engine::TvGaborOptions options;
-  options.gap = 1e-300;
-  engine::TvGaborSolver<TestType> alone(image, options, 1), two(image, options, 2),
-      all(image, options, 0);
+  TvGaborOptions options{.gap = 1e-300};
+  TvGaborSolver<TestType> alone(image, options, 1), two(image, options, 2), all(image, options, 0);
   // Past the checks that need no residuals.
   for (auto* const solver : {&alone, &two, &all}) {
-    CHECK(solver->run(230, engine::Patience::unlimited) == engine::SolverStop::exhausted);
+    CHECK(solver->run(230, Patience::unlimited) == SolverStop::exhausted);
   }
   for (auto* const solver : {&two, &all}) {
     CHECK(solver->texture() == alone.texture());
@@ -121,9 +115,8 @@ TEMPLATE_TEST_CASE("TV-Gabor's digits are the same whatever the number of jobs",
 }
 
 TEST_CASE("tv_gabor that runs out of steps says so and returns its last texture") {
-  engine::TvGaborOptions options;
-  options.max_steps = 3;
-  const auto result = engine::tv_gabor<double>(cloth_image({40, 41}), options);
+  TvGaborOptions options{.max_steps = 3};
+  const auto result = tv_gabor<double>(cloth_image({40, 41}), options);
   CHECK_FALSE(result.converged);
   CHECK(result.steps == 3);
   CHECK(result.gap > options.gap);
@@ -163,14 +156,12 @@ double power_at(const GreyImage& image, double fx, double fy) {
 
 TEST_CASE("the strongest component of a wave is the wave") {
   for (const double direction : {0.0, 90.0}) {
-    const engine::GaborComponent found =
-        engine::strongest_component(wave({100, 100}, 0.2, direction));
+    const GaborComponent found = engine::strongest_component(wave({100, 100}, 0.2, direction));
     CHECK(found.frequency_cycles_per_px == Approx(0.2));
     CHECK(found.direction_deg == Approx(direction));
   }
   for (const double direction : {30.0, 45.0, 150.0}) {
-    const engine::GaborComponent found =
-        engine::strongest_component(wave({128, 160}, 0.3, direction));
+    const GaborComponent found = engine::strongest_component(wave({128, 160}, 0.3, direction));
     CHECK(found.frequency_cycles_per_px == Approx(0.3).margin(0.006));
     CHECK(found.direction_deg == Approx(direction).margin(1.5));
   }
@@ -183,7 +174,7 @@ TEST_CASE("shading below 0.04 cycles per pixel is not taken for texture") {
     image.samples()[i] =
         static_cast<std::uint8_t>(image.samples()[i] / 2 + ripple.samples()[i] / 4);
   }
-  const engine::GaborComponent found = engine::strongest_component(image);
+  const GaborComponent found = engine::strongest_component(image);
   CHECK(found.frequency_cycles_per_px == Approx(0.25));
   CHECK(found.direction_deg == Approx(90.0));
 }
@@ -191,7 +182,7 @@ TEST_CASE("shading below 0.04 cycles per pixel is not taken for texture") {
 TEST_CASE("no frequency of the grid within the range is stronger than the strongest") {
   for (const Size size : {Size{16, 21}, Size{15, 16}, Size{3, 3}, Size{1, 12}}) {
     const GreyImage image = cloth_image(size);
-    const engine::GaborComponent found = engine::strongest_component(image);
+    const GaborComponent found = engine::strongest_component(image);
     const double direction = found.direction_deg * std::numbers::pi / 180.0;
     const double most = power_at(image, found.frequency_cycles_per_px * std::cos(direction),
                                  found.frequency_cycles_per_px * std::sin(direction));
@@ -217,17 +208,16 @@ TEST_CASE("an image without any frequency in the range is refused") {
 
 TEST_CASE("automatic tv-gabor is tv-gabor with the strongest component, and says which") {
   const GreyImage image = wave({48, 40}, 0.2, 0.0);
-  engine::ExtractionOptions automatic;
-  automatic.method = engine::Method::tv_gabor;
+  ExtractionOptions automatic{.method = Method::tv_gabor};
   automatic.tv_gabor.automatic = true;
   automatic.tv_gabor.components.clear();
-  engine::ExtractionOptions listed = automatic;
+  ExtractionOptions listed = automatic;
   listed.tv_gabor.automatic = false;
   listed.tv_gabor.components = {engine::strongest_component(image)};
-  const auto result = engine::extract_texture<double>(image, automatic);
+  const auto result = extract_texture<double>(image, automatic);
   CHECK(result.components == listed.tv_gabor.components);
-  CHECK(result.texture == engine::extract_texture<double>(image, listed).texture);
-  const auto flat = engine::extract_texture<double>(flat_image({2, 2}, 9), automatic);
+  CHECK(result.texture == extract_texture<double>(image, listed).texture);
+  const auto flat = extract_texture<double>(flat_image({2, 2}, 9), automatic);
   CHECK(largest_magnitude(flat.texture) == 0.0);
   CHECK(flat.components.empty());
 }

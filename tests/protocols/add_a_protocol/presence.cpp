@@ -17,7 +17,7 @@ namespace touchtrial::example {
 namespace {
 
 using study::Presentation;
-using study::PresentationKind;
+using study::Role;
 using study::ScheduleDraw;
 using study::Study;
 
@@ -69,8 +69,7 @@ class Presence final : public study::Protocol {
     const int each = options_of(study).each;
     for (int i = 0; i < 2 * each; ++i) {
       schedule.presentations.push_back(
-          {.kind = i < each ? PresentationKind::scored : PresentationKind::catch_trial,
-           .stimulus = {}});
+          {.role = i < each ? Role::scored : Role::catch_trial, .stimulus = {}});
     }
     RandomStream random(draw.secret, "presence");
     shuffle(std::span<Presentation>(schedule.presentations), random);

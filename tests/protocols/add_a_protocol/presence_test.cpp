@@ -30,8 +30,7 @@ class SimulatedPresence {
         store_(record::StudyStore::create(
             tiny_.next_database(), session::commitment_of(tiny_.key(), tiny_.pack(), true, false),
             std::chrono::nanoseconds(0), tiny_.key().signer())) {
-    simulation::SubjectModel subject;
-    subject.explore_s = 2.0;
+    simulation::SubjectModel subject{.explore_s = 2.0};
     simulation::simulate_study(tiny_.key(), tiny_.pack(), subject, {.participants = 3, .seed = 4},
                                store_);
     store_.close_study(store_.events(0).back().at);
@@ -126,7 +125,7 @@ TEST_CASE("a restarted block of the example presents the same again in another o
   REQUIRE(again.size() == first.size());
   CHECK(again.front().trial == 41);
   const auto scored = [](const std::vector<study::Presentation>& shown) {
-    return std::ranges::count(shown, study::PresentationKind::scored, &study::Presentation::kind);
+    return std::ranges::count(shown, study::Role::scored, &study::Presentation::role);
   };
   CHECK(scored(again) == scored(first));
 }

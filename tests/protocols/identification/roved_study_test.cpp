@@ -17,8 +17,7 @@ namespace touchtrial {
 
 TEST_CASE("the gains of a whole study stand in its table once it is unblinded, as scheduled") {
   TinyStudy study({.trials = R"({"repeats": 8, "rove_db": 6})"});
-  simulation::SubjectModel subject;
-  subject.explore_s = 0.5;
+  simulation::SubjectModel subject{.explore_s = 0.5};
   record::StudyStore store = record::StudyStore::create(
       study.next_database(), session::commitment_of(study.key(), study.pack(), true, false), {},
       study.key().signer());

@@ -29,7 +29,7 @@ int longest_run(const std::vector<study::Presentation>& presentations) {
   int run = 0;
   const study::Presentation* before = nullptr;
   for (const study::Presentation& shown : presentations) {
-    if (shown.kind == study::PresentationKind::catch_trial) continue;
+    if (shown.role == study::Role::catch_trial) continue;
     const bool same = before != nullptr && before->block == shown.block &&
                       before->stimulus.class_index == shown.stimulus.class_index;
     run = same ? run + 1 : 1;
@@ -43,14 +43,14 @@ std::map<study::StimulusIndex, int> scored_counts(
     const std::vector<study::Presentation>& presentations) {
   std::map<study::StimulusIndex, int> counts;
   for (const study::Presentation& shown : presentations) {
-    if (shown.kind == study::PresentationKind::scored) ++counts[shown.stimulus];
+    if (shown.role == study::Role::scored) ++counts[shown.stimulus];
   }
   return counts;
 }
 
 std::vector<study::Presentation> without_catch(std::vector<study::Presentation> presentations) {
   std::erase_if(presentations, [](const study::Presentation& shown) {
-    return shown.kind == study::PresentationKind::catch_trial;
+    return shown.role == study::Role::catch_trial;
   });
   for (std::size_t i = 0; i < presentations.size(); ++i) {
     presentations[i].trial = static_cast<int>(i) + 1;
@@ -148,7 +148,7 @@ TEST_CASE("catch trials come at any place but the first, and change nothing else
     REQUIRE(schedule.presentations.size() == 6);
     std::vector<int> at;
     for (const study::Presentation& shown : schedule.presentations) {
-      if (shown.kind == study::PresentationKind::catch_trial) at.push_back(shown.trial);
+      if (shown.role == study::Role::catch_trial) at.push_back(shown.trial);
     }
     REQUIRE(at.size() == 2);
     CHECK(at[0] > 1);
@@ -167,7 +167,7 @@ TEST_CASE("a catch trial belongs to the block of the presentation before it") {
     const auto presentations = schedule_of(study, enrolment).presentations;
     for (std::size_t i = 1; i < presentations.size(); ++i) {
       CHECK(presentations[i].trial == static_cast<int>(i) + 1);
-      if (presentations[i].kind == study::PresentationKind::catch_trial) {
+      if (presentations[i].role == study::Role::catch_trial) {
         CHECK(presentations[i].block == presentations[i - 1].block);
       }
     }
@@ -210,14 +210,14 @@ TEST_CASE("roved gains are uniform below the pack's, and tell nothing of class a
   for (int enrolment = 1; enrolment <= 200; ++enrolment) {
     const auto presentations = schedule_of(study, enrolment).presentations;
     for (const study::Presentation& shown : presentations) {
-      if (shown.kind == study::PresentationKind::catch_trial) {
+      if (shown.role == study::Role::catch_trial) {
         CHECK(shown.gain_db == 0.0);
         continue;
       }
       REQUIRE(shown.gain_db <= 0.0);
       REQUIRE(shown.gain_db >= -6.0);
       ++by_gain[static_cast<int>(-2.0 * shown.gain_db)];
-      if (shown.kind != study::PresentationKind::scored) continue;
+      if (shown.role != study::Role::scored) continue;
       const auto& [class_index, exemplar, method] = shown.stimulus;
       ++by_stimulus_and_half[{class_index, method, shown.gain_db < -3.0}];
     }
@@ -262,7 +262,7 @@ TEST_CASE("a restarted block is a fresh order of the same block under new number
     REQUIRE(again.size() == before.size());
     CHECK(again.front().trial == 101);
     CHECK(again.back().trial == 100 + static_cast<int>(again.size()));
-    CHECK(again.front().kind != study::PresentationKind::catch_trial);
+    CHECK(again.front().role != study::Role::catch_trial);
     CHECK(scored_counts(again) == scored_counts(before));
     CHECK(longest_run(again) <= 2);
     const auto third = study::restarted_block(study, drawn(study, 2), block, 1, 101);

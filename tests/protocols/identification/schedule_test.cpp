@@ -30,7 +30,7 @@ std::vector<int> classes_of(const study::Schedule& schedule) {
 std::map<std::pair<int, int>, int> scored_counts(const study::Schedule& schedule) {
   std::map<std::pair<int, int>, int> counts;
   for (const study::Presentation& shown : schedule.presentations) {
-    if (shown.kind == study::PresentationKind::lead_in) continue;
+    if (shown.role == study::Role::lead_in) continue;
     ++counts[{shown.stimulus.class_index, shown.stimulus.method}];
   }
   return counts;
@@ -72,7 +72,7 @@ TEST_CASE("a shuffled schedule presents every class equally often to every parti
     REQUIRE(schedule.presentations.size() == 25);
     for (std::size_t i = 0; i < 25; ++i) {
       CHECK(schedule.presentations[i].trial == static_cast<int>(i) + 1);
-      CHECK(schedule.presentations[i].kind == study::PresentationKind::scored);
+      CHECK(schedule.presentations[i].role == study::Role::scored);
     }
     const auto counts = scored_counts(schedule);
     CHECK(counts.size() == 5);
@@ -133,10 +133,10 @@ TEST_CASE("a de-bruijn schedule has every transition once, after one lead-in") {
     std::set<std::pair<int, int>> transitions;
     for (std::size_t i = 1; i < classes.size(); ++i) {
       transitions.emplace(classes[i - 1], classes[i]);
-      CHECK(schedule.presentations[i].kind == study::PresentationKind::scored);
+      CHECK(schedule.presentations[i].role == study::Role::scored);
     }
     CHECK(transitions.size() == 25);
-    CHECK(schedule.presentations[0].kind == study::PresentationKind::lead_in);
+    CHECK(schedule.presentations[0].role == study::Role::lead_in);
     for (const auto& [item, count] : scored_counts(schedule)) CHECK(count == 5);
   }
   CHECK(orders.size() == 30);
@@ -159,7 +159,7 @@ TEST_CASE("lead-ins open each block, are not scored, and leave the scored order 
   for (std::size_t i = 0; i < with.presentations.size(); ++i) {
     const study::Presentation& shown = with.presentations[i];
     const bool opens_block = i % 22 < 2;
-    CHECK((shown.kind == study::PresentationKind::lead_in) == opens_block);
+    CHECK((shown.role == study::Role::lead_in) == opens_block);
     CHECK(shown.block == static_cast<int>(i) / 22);
     if (!opens_block) scored.push_back(shown.stimulus);
   }

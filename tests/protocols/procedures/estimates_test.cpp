@@ -75,8 +75,7 @@ TEST_CASE("a track that reaches a bound is censored and gives no threshold") {
   }
   const std::array all_wrong{LevelCounts{-30, 0, 20}, LevelCounts{-20, 0, 20},
                              LevelCounts{-10, 1, 20}};
-  FitOptions yes_no;
-  yes_no.guess = 0.0;
+  FitOptions yes_no{.guess = 0.0};
   CHECK(likelihood_threshold(all_wrong, yes_no).censored == Censored::above);
 }
 

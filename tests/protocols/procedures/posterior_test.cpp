@@ -104,10 +104,8 @@ Posterior posterior_after(const TrackSettings& settings, const std::vector<int>&
 }
 
 TrackSettings watson_track(const std::vector<double>& slopes, const std::vector<double>& lapses) {
-  TrackSettings settings;
-  settings.levels = decibels(-40, 0);
-  settings.grid = {Shape::weibull, decibels(-40, 0), slopes, 0.5, lapses};
-  return settings;
+  return {.levels = decibels(-40, 0),
+          .grid = {Shape::weibull, decibels(-40, 0), slopes, 0.5, lapses}};
 }
 
 }  // namespace

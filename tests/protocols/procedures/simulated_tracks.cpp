@@ -13,10 +13,7 @@ std::vector<double> decibels(int low, int high, int step) {
 }
 
 TrackSettings usual_track(const std::string& procedure, int trials) {
-  TrackSettings settings;
-  settings.procedure = procedure;
-  settings.trials = trials;
-  settings.levels = decibels(-40, 0);
+  TrackSettings settings{.procedure = procedure, .levels = decibels(-40, 0), .trials = trials};
   if (procedure == "constant-stimuli") settings.levels = decibels(-30, -5, 5);
   settings.up_down.first_level = 30;  // -10 dB: easy
   if (procedure == "weighted-up-down") {

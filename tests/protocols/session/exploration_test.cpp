@@ -20,9 +20,7 @@ Stroker stroker(const simulation::SubjectModel& subject) {
 }
 
 TEST_CASE("on a flat texture the contact force is steady to 0.02 N from 0.5 s after landing on") {
-  simulation::SubjectModel subject;
-  subject.push_n = GENERATE(0.3, 0.7, 2.0);
-  subject.explore_s = 3.0;
+  simulation::SubjectModel subject{.explore_s = 3.0, .push_n = GENERATE(0.3, 0.7, 2.0)};
   const engine::RenderingOptions rendering;
   const engine::TextureField field = engine::make_texture_field(Plane<double>(120, 120), rendering);
   const engine::RenderingModel model(field.view(), rendering, {0.01, 0.01});
@@ -43,8 +41,7 @@ TEST_CASE("on a flat texture the contact force is steady to 0.02 N from 0.5 s af
 TEST_CASE("the trace and the participant get the same samples") {
   const TinyStudy study;
   const session::StimulusSource source(study.pack(), study.key().study.rendering);
-  simulation::SubjectModel subject;
-  subject.explore_s = 0.5;
+  simulation::SubjectModel subject{.explore_s = 0.5};
   Stroker explorer = stroker(subject);
   record::Trace trace;
   session::ModelForce force(source.model(study.key().stimuli.front().code));
@@ -60,8 +57,7 @@ TEST_CASE("the trace and the participant get the same samples") {
 TEST_CASE("the time of landing is the same on every texture") {
   const TinyStudy study;
   const session::StimulusSource source(study.pack(), study.key().study.rendering);
-  simulation::SubjectModel subject;
-  subject.explore_s = 1.0;
+  simulation::SubjectModel subject{.explore_s = 1.0};
   std::vector<std::chrono::nanoseconds> landings;
   for (const study::KeyedStimulus& keyed : study.key().stimuli) {
     Stroker explorer = stroker(subject);

@@ -10,20 +10,19 @@
 namespace touchtrial {
 namespace {
 
+using namespace engine;
+
 constexpr int kSidePx = 500;
 
-engine::RenderingOptions options_of(engine::ModelKind model) {
-  engine::RenderingOptions options;
-  options.model = model;
-  return options;
+RenderingOptions options_of(ModelKind model) {
+  return {.model = model};
 }
 
-engine::Gains gains_of(engine::ModelKind model) {
-  return model == engine::ModelKind::surface ? engine::Gains{.height_mm = 0.005}
-                                             : engine::Gains{0.005, 0.005};
+Gains gains_of(ModelKind model) {
+  return model == ModelKind::surface ? Gains{.height_mm = 0.005} : Gains{0.005, 0.005};
 }
 
-engine::TextureField wavy_field(const engine::RenderingOptions& options) {
+TextureField wavy_field(const RenderingOptions& options) {
   Plane<double> texture(kSidePx, kSidePx);
   for (int y = 0; y < kSidePx; ++y) {
     for (int x = 0; x < kSidePx; ++x) texture.at(y, x) = 20.0 * std::sin(0.4 * x + 0.1 * y);
@@ -52,7 +51,7 @@ std::set<std::size_t> pages_under(const record::Trace& trace, const PlaneGeometr
   return pages;
 }
 
-record::Trace explored(const engine::RenderingModel& model, const PlaneGeometry& plane) {
+record::Trace explored(const RenderingModel& model, const PlaneGeometry& plane) {
   Stroker explorer(RandomStream(1, "field_pages_test"));
   record::Trace trace;
   session::ModelForce force(model);
@@ -63,19 +62,17 @@ record::Trace explored(const engine::RenderingModel& model, const PlaneGeometry&
 
 /// The pages that ten seconds of exploration touch. Repeats the exploration with access to no other
 /// page.
-std::size_t touched_pages(engine::ModelKind model, std::size_t& of) {
-  const engine::RenderingOptions options = options_of(model);
-  const engine::TextureField field = wavy_field(options);
-  engine::FieldView view = field.view();
+std::size_t touched_pages(ModelKind model, std::size_t& of) {
+  const RenderingOptions options = options_of(model);
+  const TextureField field = wavy_field(options);
+  FieldView view = field.view();
   const PlaneGeometry plane = view.geometry;
-  const record::Trace trace =
-      explored(engine::RenderingModel(view, options, gains_of(model)), plane);
+  const record::Trace trace = explored(RenderingModel(view, options, gains_of(model)), plane);
   GuardedBytes guarded(std::as_bytes(view.heights));
   const auto pages = pages_under(trace, plane, 1, 2, sizeof(float));
   guarded.leave_only(pages);
   view.heights = guarded.as<float>();
-  const record::Trace again =
-      explored(engine::RenderingModel(view, options, gains_of(model)), plane);
+  const record::Trace again = explored(RenderingModel(view, options, gains_of(model)), plane);
   REQUIRE(again.samples.size() == trace.samples.size());
   for (std::size_t i = 0; i < trace.samples.size(); ++i) {
     REQUIRE(again.samples[i].force_n == trace.samples[i].force_n);
@@ -87,8 +84,8 @@ std::size_t touched_pages(engine::ModelKind model, std::size_t& of) {
 TEST_CASE("ten seconds on a texture touch no page of its field but those under the stylus") {
   std::size_t of_surface = 0;
   std::size_t of_paper = 0;
-  const std::size_t surface = touched_pages(engine::ModelKind::surface, of_surface);
-  const std::size_t paper = touched_pages(engine::ModelKind::paper, of_paper);
+  const std::size_t surface = touched_pages(ModelKind::surface, of_surface);
+  const std::size_t paper = touched_pages(ModelKind::paper, of_paper);
   CAPTURE(surface, of_surface, paper, of_paper);
   CHECK(surface > 0);
   CHECK(surface < of_surface * 9 / 10);
@@ -97,15 +94,14 @@ TEST_CASE("ten seconds on a texture touch no page of its field but those under t
 }
 
 TEST_CASE("a hand that does not come down touches no page of a field") {
-  const engine::RenderingOptions options =
-      options_of(GENERATE(engine::ModelKind::paper, engine::ModelKind::surface));
-  const engine::TextureField field = wavy_field(options);
-  engine::FieldView view = field.view();
+  const RenderingOptions options = options_of(GENERATE(ModelKind::paper, ModelKind::surface));
+  const TextureField field = wavy_field(options);
+  FieldView view = field.view();
   GuardedBytes guarded(std::as_bytes(view.heights));
   guarded.leave_only({});
   view.heights = guarded.as<float>();
-  const engine::RenderingModel model(view, options, gains_of(options.model));
-  engine::Bristle touch;
+  const RenderingModel model(view, options, gains_of(options.model));
+  Bristle touch;
   for (int x_mm = 0; x_mm < 100; ++x_mm) {
     REQUIRE(model.force_n({1.0 * x_mm, 50.0, 0.5}, {0.0, 0.0, -100.0}, touch) == Vec3{});
   }

@@ -53,8 +53,7 @@ TEST_CASE("a hand is low, right or high beside what participants are told") {
 }
 
 TEST_CASE("a study's own window of force holds where it is narrower, or another one") {
-  study::ValidityRule rule;
-  rule.largest_median_n = 0.6;
+  study::ValidityRule rule{.largest_median_n = 0.6};
   CHECK(levels_after(0.7, 100.0, rule)->force == HandLevel::high);
   rule = {.least_median_n = 1.5, .largest_median_n = 3.0};
   CHECK(levels_after(0.7, 100.0, rule)->force == HandLevel::low);
@@ -112,8 +111,7 @@ class Reader final : public device::SampleSink {
 /// A texture of white noise, as rough as its stiffness budget allows; 0: a blank wall.
 std::vector<std::optional<HandLevels>> read_over(double budget_n_per_mm, engine::ModelKind kind,
                                                  double push_n) {
-  engine::RenderingOptions options;
-  options.model = kind;
+  engine::RenderingOptions options{.model = kind};
   if (budget_n_per_mm > 0.0) options.texture_stiffness_n_per_mm = budget_n_per_mm;
   Plane<double> texture(200, 200);
   RandomStream random(3, "hand meter: texture");
@@ -124,11 +122,8 @@ std::vector<std::optional<HandLevels>> read_over(double budget_n_per_mm, engine:
                                   ? engine::choose_gains({&view, 1}, options).of_field.front()
                                   : engine::Gains{};
   const engine::RenderingModel model(view, options, gains);
-  device::HandOptions hand;
-  hand.push_n = push_n;
-  hand.explore_s = 6.0;
-  device::ExplorationOptions path;
-  path.duration_s = 6.0;
+  device::HandOptions hand{.push_n = push_n, .explore_s = 6.0};
+  device::ExplorationOptions path{.duration_s = 6.0};
   path.slowest_mm_s = path.fastest_mm_s = 100.0;
   RandomStream way(4, "hand meter: path");
   device::SimulatedHand stroking(hand, device::ExplorationPath(view.geometry, path, way));

@@ -39,9 +39,7 @@ struct Course {
       : session(study::make_schedule(study.key().study,
                                      study.key().draw_of(1, study::Draws::rehearsal)),
                 study.key().study.trials, record::SessionRecorder(1, key, events)) {
-    record::SessionOpening opening;
-    opening.participant = "P001";
-    opening.enrolment = 1;
+    record::SessionOpening opening{.participant = "P001", .enrolment = 1};
     session.open(now(), opening, "{}");
     session.calibrate(now());
     session.instruct(now());

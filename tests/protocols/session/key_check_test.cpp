@@ -18,9 +18,7 @@ study::StationKey station_of(const study::StudyKey& key) {
 }
 
 TinyStudyOptions with_pictures() {
-  TinyStudyOptions options;
-  options.pictures = true;
-  return options;
+  return {.pictures = true};
 }
 
 /// What a station's file that was changed in one way is refused with.

@@ -118,13 +118,12 @@ struct KilledSession {
 
   static record::SessionOpening opening() {
     const study::StudyKey& key = laboratory().study.key();
-    record::SessionOpening opening;
-    opening.participant = "P001";
-    opening.enrolment = 1;
-    opening.study_id = key.study_id;
-    opening.seal = study::study_seal(key);
-    opening.device = "simulated";
-    opening.simulated = true;
+    record::SessionOpening opening{.participant = "P001",
+                                   .enrolment = 1,
+                                   .study_id = key.study_id,
+                                   .seal = study::study_seal(key),
+                                   .device = "simulated",
+                                   .simulated = true};
     return opening;
   }
 };

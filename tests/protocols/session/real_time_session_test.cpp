@@ -71,9 +71,7 @@ struct Laboratory {
   session::SessionTally run(session::Participant& participant,
                             session::Experimenter& experimenter = session::no_experimenter()) {
     REQUIRE(station.make_ready() == session::SupplyState::ready);
-    record::SessionOpening opening;
-    opening.participant = "P001";
-    opening.enrolment = 1;
+    record::SessionOpening opening{.participant = "P001", .enrolment = 1};
     session::describe_station(opening, station.info(), explorer.scheduling(), device::kServoRateHz,
                               "");
     session.open({}, opening, "{}");
@@ -345,9 +343,7 @@ TEST_CASE("an error on the session's thread leaves the hand without force") {
 TEST_CASE("a real-time session on the machine's own clock records how late its ticks were") {
   const TinyStudy study({.trials = R"({"repeats": 1})"});
   const session::StimulusSource source(study.pack(), study.key().study.rendering);
-  simulation::SubjectModel subject;
-  subject.explore_s = 0.2;
-  subject.training_passes = 1;
+  simulation::SubjectModel subject{.explore_s = 0.2, .training_passes = 1};
   const simulation::FeltKnowledge knowledge = simulation::learn_by_feeling(
       simulation::LabelledFields(study.key(), source), subject, 3.3, 1, 1);
   simulation::identification::IdentifyingParticipant participant(subject, knowledge, 1, 1);
@@ -360,9 +356,7 @@ TEST_CASE("a real-time session on the machine's own clock records how late its t
   session::Session session(
       study::make_schedule(study.key().study, study.key().draw_of(1, study::Draws::rehearsal)),
       study.key().study.trials, record::SessionRecorder(1, SecretKey{}, events));
-  record::SessionOpening opening;
-  opening.participant = "P001";
-  opening.enrolment = 1;
+  record::SessionOpening opening{.participant = "P001", .enrolment = 1};
   session.open(clock.now(), opening, "{}");
   const session::SessionTally tally =
       session::run_session(session, {study.key(), source, participant, clock, explorer, devices});
@@ -435,9 +429,7 @@ TEST_CASE("the experimenter sees force and speed of the hand while a plane is on
   HandWatcher watcher;
   SeenExplorer explorer(lab.explorer, [&] { return watcher.seen.has_value(); });
   REQUIRE(lab.station.make_ready() == session::SupplyState::ready);
-  record::SessionOpening opening;
-  opening.participant = "P001";
-  opening.enrolment = 1;
+  record::SessionOpening opening{.participant = "P001", .enrolment = 1};
   lab.session.open({}, opening, "{}");
   (void)session::run_session(lab.session, {.key = lab.study.key(),
                                            .source = lab.source,

@@ -18,6 +18,8 @@
 namespace touchtrial {
 namespace {
 
+using namespace session;
+
 /// A participant who always names the first picture. The device is lost in the first `losses`
 /// presentations.
 class Unlucky final : public simulation::PromptParticipant {
@@ -43,7 +45,7 @@ class Unlucky final : public simulation::PromptParticipant {
 };
 
 struct Ran {
-  session::SessionTally tally;
+  SessionTally tally;
   record::BufferedEvents events;
 
   [[nodiscard]] int count(record::EventKind kind) const {
@@ -57,30 +59,28 @@ template <typename Run>
 Ran ran_session(const Run& run, const std::string& trials = R"({"repeats": 1})",
                 int side_px = 120) {
   const TinyStudy study({.side_px = side_px, .trials = trials});
-  const session::StimulusSource source(study.pack(), study.key().study.rendering);
+  const StimulusSource source(study.pack(), study.key().study.rendering);
   Ran ran;
-  session::Session session(
+  Session session(
       study::make_schedule(study.key().study, study.key().draw_of(1, study::Draws::rehearsal)),
       study.key().study.trials, record::SessionRecorder(1, SecretKey{}, ran.events));
-  record::SessionOpening opening;
-  opening.participant = "P001";
-  opening.enrolment = 1;
+  record::SessionOpening opening{.participant = "P001", .enrolment = 1};
   session.open({}, opening, "{}");
   ran.tally = run(session, study.key(), source);
   return ran;
 }
 
-Ran run(session::Participant& participant) {
-  return ran_session([&](session::Session& session, const study::StudyKey& key,
-                         const session::StimulusSource& source) {
-    const auto tally = session::run_session_in_virtual_time(session, key, source, participant);
-    CHECK(session.phase() == session::SessionPhase::closed);
-    return tally;
-  });
+Ran run(Participant& participant) {
+  return ran_session(
+      [&](Session& session, const study::StudyKey& key, const StimulusSource& source) {
+        const auto tally = run_session_in_virtual_time(session, key, source, participant);
+        CHECK(session.phase() == SessionPhase::closed);
+        return tally;
+      });
 }
 
 /// Real time in which every call takes a while.
-class CreepingClock final : public session::SessionClock {
+class CreepingClock final : public SessionClock {
  public:
   [[nodiscard]] Time now() override { return now_ += std::chrono::milliseconds(3); }
   void pass(Time duration) override { now_ += duration; }
@@ -91,15 +91,14 @@ class CreepingClock final : public session::SessionClock {
 
 /// Reads the field of each presentation before it is felt, as the servo would, and counts the pages
 /// that had to be fetched.
-class PageCountingExplorer final : public session::Explorer {
+class PageCountingExplorer final : public Explorer {
  public:
   explicit PageCountingExplorer(bool in_real_time) : in_real_time_(in_real_time) {}
 
   [[nodiscard]] bool in_real_time() const noexcept override { return in_real_time_; }
-  [[nodiscard]] session::Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
-                                             session::Participant& participant,
-                                             const device::ServoOptions& options,
-                                             record::Trace& trace) override {
+  [[nodiscard]] Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
+                                    Participant& participant, const device::ServoOptions& options,
+                                    record::Trace& trace) override {
     const long before = fetched_so_far();
     for (double y_mm = 0.1; y_mm < plane.height_mm(); y_mm += plane.pitch_mm) {
       for (double x_mm = 0.1; x_mm < plane.width_mm(); x_mm += plane.pitch_mm) {
@@ -125,13 +124,12 @@ class PageCountingExplorer final : public session::Explorer {
 };
 
 /// Works in virtual time, but obeys the experimenter while the plane is on.
-class AttendedExplorer final : public session::Explorer {
+class AttendedExplorer final : public Explorer {
  public:
   [[nodiscard]] bool in_real_time() const noexcept override { return false; }
-  [[nodiscard]] session::Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
-                                             session::Participant& participant,
-                                             const device::ServoOptions& options,
-                                             record::Trace& trace) override {
+  [[nodiscard]] Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
+                                    Participant& participant, const device::ServoOptions& options,
+                                    record::Trace& trace) override {
     device::ServoControl control;
     participant.exploring(control);
     participant.exploring(control);
@@ -148,13 +146,11 @@ class AttendedExplorer final : public session::Explorer {
 /// An experimenter who asks to leave at every opportunity from the first exploration on.
 class Insisting final : public session::Experimenter {
  public:
-  void show(const session::SessionStatus& status) override {
-    insists_ |= status.stage == "exploring";
-  }
-  [[nodiscard]] std::optional<session::ExperimenterRequest> request() override {
+  void show(const SessionStatus& status) override { insists_ |= status.stage == "exploring"; }
+  [[nodiscard]] std::optional<ExperimenterRequest> request() override {
     if (!insists_) return std::nullopt;
     if (++asked_ > 100) throw std::runtime_error("the desk does not stop asking");
-    return session::ExperimenterRequest{session::ExperimenterRequest::Kind::leave, "a signal", ""};
+    return ExperimenterRequest{ExperimenterRequest::Kind::leave, "a signal", ""};
   }
 
  private:
@@ -162,13 +158,12 @@ class Insisting final : public session::Experimenter {
   int asked_ = 0;
 };
 
-Ran run_with(session::Explorer& explorer, session::SessionClock& clock,
-             session::Experimenter& experimenter = session::no_experimenter(), int side_px = 120) {
+Ran run_with(Explorer& explorer, SessionClock& clock,
+             session::Experimenter& experimenter = no_experimenter(), int side_px = 120) {
   return ran_session(
-      [&](session::Session& session, const study::StudyKey& key,
-          const session::StimulusSource& source) {
+      [&](Session& session, const study::StudyKey& key, const StimulusSource& source) {
         Unlucky person(1);
-        session::AlwaysReady devices;
+        AlwaysReady devices;
         return session::run_session(session, {key, source, person, clock, explorer, devices,
                                               device::kServoRateHz, experimenter});
       },
@@ -178,17 +173,17 @@ Ran run_with(session::Explorer& explorer, session::SessionClock& clock,
 /// A step, and what the experimenter was shown last when it came.
 struct Moment {
   session::Step step;
-  session::SessionStatus status;
+  SessionStatus status;
 };
 
 /// Both people of a session, who write down what they see. The participant goes on at once.
-class Diary final : public session::Experimenter, public session::Participant {
+class Diary final : public session::Experimenter, public Participant {
  public:
-  void show(const session::SessionStatus& status) override { status_ = status; }
+  void show(const SessionStatus& status) override { status_ = status; }
   void see_pictures(const std::vector<std::string>& labels) override {
     person_.see_pictures(labels);
   }
-  [[nodiscard]] std::optional<session::StepReply> attend(const session::Step& step) override {
+  [[nodiscard]] std::optional<StepReply> attend(const session::Step& step) override {
     moments.push_back({step, status_});
     return person_.attend(step);
   }
@@ -199,8 +194,8 @@ class Diary final : public session::Experimenter, public session::Participant {
 
   /// The moments of one kind of step.
   template <typename Step>
-  [[nodiscard]] std::vector<std::pair<Step, session::SessionStatus>> all() const {
-    std::vector<std::pair<Step, session::SessionStatus>> found;
+  [[nodiscard]] std::vector<std::pair<Step, SessionStatus>> all() const {
+    std::vector<std::pair<Step, SessionStatus>> found;
     for (const Moment& moment : moments) {
       if (const auto* const step = std::get_if<Step>(&moment.step)) {
         found.emplace_back(*step, moment.status);
@@ -212,20 +207,19 @@ class Diary final : public session::Experimenter, public session::Participant {
   std::vector<Moment> moments;
 
  private:
-  session::SessionStatus status_;
+  SessionStatus status_;
   Unlucky person_{0};
 };
 
 /// Ends the exploration with this number, from 1, in another way; 0: all of them.
-class EndingExplorer final : public session::Explorer {
+class EndingExplorer final : public Explorer {
  public:
   EndingExplorer(device::ServoEnd end, int which) : end_(end), which_(which) {}
 
-  [[nodiscard]] session::Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
-                                             session::Participant& participant,
-                                             const device::ServoOptions& options,
-                                             record::Trace& trace) override {
-    session::Exploration done = usual_.explore(force, plane, participant, options, trace);
+  [[nodiscard]] Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
+                                    Participant& participant, const device::ServoOptions& options,
+                                    record::Trace& trace) override {
+    Exploration done = usual_.explore(force, plane, participant, options, trace);
     ++count_;
     if (which_ == 0 || which_ == count_) done.servo.end = end_;
     return done;
@@ -240,11 +234,11 @@ class EndingExplorer final : public session::Explorer {
 
 /// A device that needs consent after an interruption, which comes when it is asked for a third
 /// time.
-class Reluctant final : public session::DeviceSupply {
+class Reluctant final : public DeviceSupply {
  public:
-  [[nodiscard]] session::SupplyState make_ready() override {
+  [[nodiscard]] SupplyState make_ready() override {
     if (wanted_ > 0) --wanted_;
-    return wanted_ > 0 ? session::SupplyState::not_yet : session::SupplyState::ready;
+    return wanted_ > 0 ? SupplyState::not_yet : SupplyState::ready;
   }
   void interrupted() override { wanted_ = 3; }
 
@@ -252,20 +246,18 @@ class Reluctant final : public session::DeviceSupply {
   int wanted_ = 0;
 };
 
-Ran run_diary(Diary& diary, session::Explorer& explorer, session::DeviceSupply& devices,
+Ran run_diary(Diary& diary, Explorer& explorer, DeviceSupply& devices,
               const std::string& trials = R"({"repeats": 1})", int practice = 0) {
-  session::VirtualSessionClock clock;
+  VirtualSessionClock clock;
   return ran_session(
-      [&](session::Session& session, const study::StudyKey& of_study,
-          const session::StimulusSource& source) {
+      [&](Session& session, const study::StudyKey& of_study, const StimulusSource& source) {
         study::StudyKey key = of_study;
         key.study.trials.practice = practice;
         key.study.practice.criterion = practice;
         key.study.practice.rounds = 1;
-        const session::PracticeTextures textures{
+        const PracticeTextures textures{
             source.plane(), practice, key.study.practice, [&](int) {
-              return session::PracticeRound{
-                  {"sand", "cork"}, {&source.flat(), &source.flat()}, {0, 0}};
+              return PracticeRound{{"sand", "cork"}, {&source.flat(), &source.flat()}, {0, 0}};
             }};
         return session::run_session(session, {.key = key,
                                               .source = source,
@@ -283,22 +275,22 @@ TEST_CASE("after a comfort stop a page tells the participant, and the experiment
   const bool needs_consent = GENERATE(false, true);
   Diary diary;
   EndingExplorer explorer(device::ServoEnd::comfort_stop, 2);
-  session::AlwaysReady ready;
+  AlwaysReady ready;
   Reluctant reluctant;
-  const Ran ran = run_diary(diary, explorer,
-                            needs_consent ? static_cast<session::DeviceSupply&>(reluctant) : ready);
+  const Ran ran =
+      run_diary(diary, explorer, needs_consent ? static_cast<DeviceSupply&>(reluctant) : ready);
   CHECK(ran.count(record::EventKind::interrupted) == 1);
   CHECK(ran.count(record::EventKind::answered) == 5);
-  const auto notices = diary.all<session::NoticeStep>();
+  const auto notices = diary.all<NoticeStep>();
   REQUIRE(!notices.empty());
   for (const auto& [notice, status] : notices) {
-    CHECK(notice.what == session::NoticeStep::What::stopped);
+    CHECK(notice.what == NoticeStep::What::stopped);
     CHECK(notice.may_go_on == !needs_consent);
     CHECK(status.stage == "stopped");
     CHECK(status.participant_stopped);
     CHECK(status.needs_consent == needs_consent);
   }
-  for (const auto& [step, status] : diary.all<session::ReadyStep>()) {
+  for (const auto& [step, status] : diary.all<ReadyStep>()) {
     CHECK_FALSE(status.participant_stopped);
   }
 }
@@ -308,17 +300,17 @@ TEST_CASE("a lost device is no comfort stop, and the participant is asked to wai
   EndingExplorer explorer(device::ServoEnd::fault, 2);
   Reluctant devices;
   static_cast<void>(run_diary(diary, explorer, devices));
-  CHECK(diary.all<session::NoticeStep>().empty());
-  REQUIRE(!diary.all<session::PauseStep>().empty());
-  CHECK(diary.all<session::PauseStep>().front().second.stage == "waiting for the device");
+  CHECK(diary.all<NoticeStep>().empty());
+  REQUIRE(!diary.all<PauseStep>().empty());
+  CHECK(diary.all<PauseStep>().front().second.stage == "waiting for the device");
 }
 
 TEST_CASE("the experimenter's status counts trials as the participant's window does") {
   Diary diary;
   EndingExplorer explorer(device::ServoEnd::comfort_stop, 4);
-  session::AlwaysReady devices;
+  AlwaysReady devices;
   static_cast<void>(run_diary(diary, explorer, devices, R"({"repeats": 1})", 2));
-  const auto ready = diary.all<session::ReadyStep>();
+  const auto ready = diary.all<ReadyStep>();
   CHECK(ready.size() == 2 + 6);
   for (const auto& [step, status] : ready) {
     CHECK(status.stage == "ready");
@@ -326,13 +318,13 @@ TEST_CASE("the experimenter's status counts trials as the participant's window d
     CHECK(status.of == step.of);
     CHECK(status.practice == step.practice);
   }
-  for (const auto& [step, status] : diary.all<session::AnswerStep>()) {
+  for (const auto& [step, status] : diary.all<AnswerStep>()) {
     CHECK(status.stage == "answering");
     CHECK(status.trial == step.trial);
     CHECK(status.of == step.of);
     CHECK(status.practice == step.practice);
   }
-  for (const auto& [step, status] : diary.all<session::FeedbackStep>()) {
+  for (const auto& [step, status] : diary.all<FeedbackStep>()) {
     CHECK(status.stage == "feedback");
   }
 }
@@ -340,13 +332,13 @@ TEST_CASE("the experimenter's status counts trials as the participant's window d
 TEST_CASE("the participant is told that practice is over, and in it that the time is up") {
   Diary diary;
   EndingExplorer explorer(device::ServoEnd::time_limit, 1);
-  session::AlwaysReady devices;
+  AlwaysReady devices;
   static_cast<void>(run_diary(diary, explorer, devices, R"({"repeats": 1})", 2));
-  const auto notices = diary.all<session::NoticeStep>();
+  const auto notices = diary.all<NoticeStep>();
   REQUIRE(notices.size() == 1);
-  CHECK(notices.front().first.what == session::NoticeStep::What::practice_over);
+  CHECK(notices.front().first.what == NoticeStep::What::practice_over);
   CHECK(notices.front().second.stage == "practice is over");
-  const auto answers = diary.all<session::AnswerStep>();
+  const auto answers = diary.all<AnswerStep>();
   REQUIRE(answers.size() == 2 + 5);
   CHECK(answers[0].first.time_is_up);
   CHECK_FALSE(answers[1].first.time_is_up);
@@ -355,14 +347,14 @@ TEST_CASE("the participant is told that practice is over, and in it that the tim
 TEST_CASE("a trial that ends without an answer tells the participant so") {
   Diary diary;
   EndingExplorer explorer(device::ServoEnd::time_limit, 0);
-  session::AlwaysReady devices;
+  AlwaysReady devices;
   static_cast<void>(
       run_diary(diary, explorer, devices, R"({"repeats": 1, "on_timeout": "no-response"})"));
-  CHECK(diary.all<session::AnswerStep>().empty());
-  const auto notices = diary.all<session::NoticeStep>();
+  CHECK(diary.all<AnswerStep>().empty());
+  const auto notices = diary.all<NoticeStep>();
   REQUIRE(notices.size() == 5);
   for (const auto& [notice, status] : notices) {
-    CHECK(notice.what == session::NoticeStep::What::time_is_up);
+    CHECK(notice.what == NoticeStep::What::time_is_up);
     CHECK(notice.may_go_on);
     CHECK(status.stage == "time is up");
   }
@@ -371,10 +363,10 @@ TEST_CASE("a trial that ends without an answer tells the participant so") {
 TEST_CASE("in real time every field is in memory before it is felt") {
   // Larger than what the system fetches round the first page that is read.
   constexpr int kSidePx = 300;
-  session::VirtualSessionClock clock;
+  VirtualSessionClock clock;
   const auto fetched = [&](bool in_real_time) {
     PageCountingExplorer explorer(in_real_time);
-    CHECK(run_with(explorer, clock, session::no_experimenter(), kSidePx).tally.presentations == 6);
+    CHECK(run_with(explorer, clock, no_experimenter(), kSidePx).tally.presentations == 6);
     return explorer.fetched;
   };
   // The careless one goes first: pages of the code come with the first force.
@@ -396,7 +388,7 @@ TEST_CASE("times say when an exploration ended, not how long its trace took to p
   CreepingClock clock;
   session::VirtualExplorer explorer;
   const Ran ran = run_with(explorer, clock);
-  session::SessionClock::Time plane_on{};
+  SessionClock::Time plane_on{};
   int ends = 0;
   const std::vector<record::Event> events = as_recorded(ran.events.events, SecretKey{});
   for (std::size_t i = 0; i < events.size(); ++i) {
@@ -442,7 +434,7 @@ TEST_CASE("a presentation in which the device was lost is repeated and leaves no
 }
 
 TEST_CASE("a request to leave while the plane is on is obeyed once, however often it is repeated") {
-  session::VirtualSessionClock clock;
+  VirtualSessionClock clock;
   AttendedExplorer explorer;
   Insisting experimenter;
   const Ran ran = run_with(explorer, clock, experimenter);

@@ -34,7 +34,7 @@ study::Schedule schedule_of(int trials) {
   study::Schedule schedule;
   for (int i = 0; i < trials; ++i) {
     schedule.presentations.push_back(
-        {i + 1, i / 2, study::PresentationKind::scored, {.class_index = i % 3}});
+        {.trial = i + 1, .block = i / 2, .stimulus = {.class_index = i % 3}});
   }
   schedule.layout = {2, 0, 1};
   return schedule;
@@ -244,8 +244,7 @@ TEST_CASE("a pause that an answer waits for names the trial, and the answer has 
 }
 
 record::TrialEvidence evidence_of(const session::Session& session, double height_mm) {
-  record::TraceBody body;
-  body.trial = 1;
+  record::TraceBody body{.trial = 1};
   return session.packed(body, {}, {1000.0, {{{1.0, 2.0, height_mm}, {0.0, 0.0, 0.5}}}});
 }
 
@@ -293,8 +292,7 @@ TEST_CASE("once time is up, the participant cannot go back to the plane") {
 }
 
 TEST_CASE("an interrupted trial is left out if the study says so") {
-  study::TrialOptions options;
-  options.on_interruption = study::OnInterruption::leave_out;
+  study::TrialOptions options{.on_interruption = study::OnInterruption::leave_out};
   Laboratory lab(2, options);
   lab.session.present(seconds(4));
   lab.session.interrupt(seconds(5), "device lost");
@@ -315,8 +313,7 @@ TEST_CASE("when time is up an answer is still required") {
 }
 
 TEST_CASE("when time is up and the study says no-response, the trial is over without an answer") {
-  study::TrialOptions options;
-  options.on_timeout = study::OnTimeout::no_response;
+  study::TrialOptions options{.on_timeout = study::OnTimeout::no_response};
   Laboratory lab(1, options);
   lab.session.present(seconds(4));
   lab.session.time_out(seconds(64));
@@ -337,8 +334,7 @@ TEST_CASE("only the first contact of a presentation is recorded") {
 }
 
 TEST_CASE("a break is due when the study says so") {
-  study::TrialOptions options;
-  options.break_every = 2;
+  study::TrialOptions options{.break_every = 2};
   Laboratory lab(4, options);
   CHECK_FALSE(lab.session.break_due());
   lab.run_trial(0);
@@ -375,16 +371,14 @@ TEST_CASE("a session that was stopped closes as incomplete") {
 session::BlockDrawing two_trials_again() {
   return {[](int block, int, int first_trial) {
             return std::vector<study::Presentation>{
-                {first_trial, block, study::PresentationKind::scored, {.class_index = 2}},
-                {first_trial + 1, block, study::PresentationKind::scored, {.class_index = 1}}};
+                {.trial = first_trial, .block = block, .stimulus = {.class_index = 2}},
+                {.trial = first_trial + 1, .block = block, .stimulus = {.class_index = 1}}};
           },
           [](const std::vector<study::Presentation>&) { return std::string("{}"); }};
 }
 
 study::TrialOptions restarting_blocks() {
-  study::TrialOptions options;
-  options.on_interruption = study::OnInterruption::restart_block;
-  return options;
+  return {.on_interruption = study::OnInterruption::restart_block};
 }
 
 TEST_CASE("an interrupted trial restarts its block, under new numbers, if the study says so") {
@@ -481,8 +475,7 @@ TEST_CASE("a session is resumed where it stopped, after whichever event it was k
     std::ranges::sort(repeated);
     CHECK(repeated == std::vector<int>{1, 2, 3, 4});
 
-    study::TrialOptions options;
-    options.on_interruption = study::OnInterruption::leave_out;
+    study::TrialOptions options{.on_interruption = study::OnInterruption::leave_out};
     const bool in_trial = kept > 3 && kept < 16 && (kept - 3) % 3 != 0;
     CHECK(killed_after(kept, options).size() == (in_trial ? 3U : 4U));
 

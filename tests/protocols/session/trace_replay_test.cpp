@@ -31,8 +31,7 @@ device::RecordedMotion motion_of(const record::Trace& trace) {
 TEST_CASE("a stored trial, replayed through its model, gives the same forces") {
   const TinyStudy study;
   const session::StimulusSource source(study.pack(), study.key().study.rendering);
-  simulation::SubjectModel subject;
-  subject.explore_s = 2.0;
+  simulation::SubjectModel subject{.explore_s = 2.0};
   for (const study::KeyedStimulus& keyed : study.key().stimuli) {
     const engine::RenderingModel& model = source.model(keyed.code);
     Stroker stroker(RandomStream(3, "trace_replay_test"), subject);

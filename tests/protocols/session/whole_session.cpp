@@ -38,10 +38,7 @@ class MarkedLine final : public session::Instruments {
 };
 
 simulation::SubjectModel quick_subject(double explore_s) {
-  simulation::SubjectModel subject;
-  subject.explore_s = explore_s;
-  subject.training_passes = 4;
-  return subject;
+  return {.explore_s = explore_s, .training_passes = 4};
 }
 
 }  // namespace
@@ -71,11 +68,10 @@ session::SessionTally WholeSession::run(session::DeviceStation& station,
       study::make_schedule(study.key().study, study.key().draw_of(1, study::Draws::rehearsal));
   session::Session session(schedule, study.key().study.trials,
                            record::SessionRecorder(1, participant_key, *sink));
-  record::SessionOpening opening;
-  opening.participant = "P001";
-  opening.enrolment = 1;
-  opening.study_id = study.key().study_id;
-  opening.seal = study::study_seal(study.key());
+  record::SessionOpening opening{.participant = "P001",
+                                 .enrolment = 1,
+                                 .study_id = study.key().study_id,
+                                 .seal = study::study_seal(study.key())};
   session::describe_station(opening, station.info(), explorer.scheduling(), device::kServoRateHz,
                             "");
   session.open({}, opening, study::schedule_to_json(schedule, study.key()));

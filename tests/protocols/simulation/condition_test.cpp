@@ -39,8 +39,7 @@ TEST_CASE("a subject without changes is in the same condition in every trial") {
 }
 
 TEST_CASE("noise begins higher by the factor and falls exponentially with presentations felt") {
-  simulation::SubjectModel subject;
-  subject.learning = {.factor = 1.8, .trials = 20.0};
+  simulation::SubjectModel subject{.learning = {.factor = 1.8, .trials = 20.0}};
   simulation::Condition condition(subject, 1, 1);
   CHECK(condition.before(1, 0).noise_factor == Approx(1.8));
   for (const int nth : {2, 11, 21, 61}) {
@@ -50,8 +49,7 @@ TEST_CASE("noise begins higher by the factor and falls exponentially with presen
 }
 
 TEST_CASE("of what was learnt at earlier visits a share is forgotten at each visit's end") {
-  simulation::SubjectModel subject;
-  subject.learning = {.factor = 2.0, .trials = 40.0, .forgotten = 0.4};
+  simulation::SubjectModel subject{.learning = {.factor = 2.0, .trials = 40.0, .forgotten = 0.4}};
   const auto first_of = [&](int visit) {
     return simulation::Condition(subject, 1, 1, visit, 30).before(1, 0).noise_factor;
   };
@@ -63,8 +61,7 @@ TEST_CASE("of what was learnt at earlier visits a share is forgotten at each vis
 }
 
 TEST_CASE("people learn differently much, and on average what the population's spread says") {
-  simulation::SubjectModel subject;
-  subject.learning = {.factor = 1.5, .trials = 25.0, .spread = 0.4};
+  simulation::SubjectModel subject{.learning = {.factor = 1.5, .trials = 25.0, .spread = 0.4}};
   const auto log_noise = [&](int number, int nth) {
     return std::log(simulation::Condition(subject, 9, number).before(nth, 0).noise_factor);
   };
@@ -99,8 +96,7 @@ TEST_CASE("fatigue grows with the minutes of exploring, and a break takes its sh
 }
 
 TEST_CASE("presentations that were not answered tire as well") {
-  simulation::SubjectModel subject;
-  subject.fatigue = {.noise_per_min = 0.1, .recovered = 0.5};
+  simulation::SubjectModel subject{.fatigue = {.noise_per_min = 0.1, .recovered = 0.5}};
   simulation::Condition every(subject, 1, 1);
   simulation::Condition some(subject, 1, 1);
   for (int nth = 1; nth <= 10; ++nth) {
@@ -113,8 +109,7 @@ TEST_CASE("presentations that were not answered tire as well") {
 }
 
 TEST_CASE("each block and each visit of a person has noise of its own") {
-  simulation::SubjectModel subject;
-  subject.period_noise_spread = 0.3;
+  simulation::SubjectModel subject{.period_noise_spread = 0.3};
   const auto log_noise = [&](int number, int visit, int block, int nth) {
     return std::log(
         simulation::Condition(subject, 9, number, visit).before(nth, block).noise_factor);
@@ -134,8 +129,7 @@ TEST_CASE("each block and each visit of a person has noise of its own") {
 }
 
 TEST_CASE("the trial before leaves its leanings, and a plane without texture none") {
-  simulation::SubjectModel subject;
-  subject.serial = {.answer = 0.5, .stimulus = -0.25};
+  simulation::SubjectModel subject{.serial = {.answer = 0.5, .stimulus = -0.25}};
   simulation::Condition condition(subject, 1, 1);
   CHECK_FALSE(condition.before(1, 0).to_answer.has_value());
   condition.after(3, 1);
@@ -166,10 +160,9 @@ TEST_CASE("people differ in how they lean on the trial before") {
 }
 
 TEST_CASE("one change does not shift the draws of another") {
-  simulation::SubjectModel all;
-  all.learning = {.factor = 1.4, .spread = 0.3};
-  all.period_noise_spread = 0.2;
-  all.serial = {.answer = 0.2, .answer_spread = 0.3};
+  simulation::SubjectModel all{.learning = {.factor = 1.4, .spread = 0.3},
+                               .period_noise_spread = 0.2,
+                               .serial = {.answer = 0.2, .answer_spread = 0.3}};
   simulation::SubjectModel one = all;
   one.learning = {};
   one.serial = {};

@@ -15,21 +15,19 @@ namespace {
 
 /// A subject who is so unsure that answers differ, with every kind of error.
 simulation::SubjectModel erring_subject() {
-  simulation::SubjectModel subject;
-  subject.explore_s = 1.5;
-  subject.training_passes = 4;
-  subject.feature_noise = 1.2;
-  subject.feature_noise_spread = 0.4;
-  subject.lapse = 0.15;
-  subject.lapse_spread = 0.5;
-  subject.position_bias = 0.8;
-  subject.position_bias_spread = 0.4;
-  subject.class_bias_spread = 0.3;
-  subject.class_bias = {{"brick", 0.5}};
-  subject.label_swap = {{"bark", "cloth"}};
-  subject.hand = device::HandKind::stylus_grip;
-  subject.hand_spread = 0.3;
-  return subject;
+  return {.feature_noise = 1.2,
+          .feature_noise_spread = 0.4,
+          .lapse = 0.15,
+          .lapse_spread = 0.5,
+          .position_bias = 0.8,
+          .position_bias_spread = 0.4,
+          .class_bias = {{"brick", 0.5}},
+          .class_bias_spread = 0.3,
+          .label_swap = {{"bark", "cloth"}},
+          .explore_s = 1.5,
+          .hand = device::HandKind::stylus_grip,
+          .hand_spread = 0.3,
+          .training_passes = 4};
 }
 
 std::vector<std::string> labels_of(const study::Schedule& schedule, const study::Study& study) {
@@ -110,10 +108,9 @@ TEST_CASE("a bank is the same for any number of jobs, and a larger one begins wi
 TEST_CASE("a bank does not depend on codes, noise or bias") {
   const TinyStudy study({.secret = 1});
   const TinyStudy recoded({.secret = 2});
-  simulation::SubjectModel still;
-  still.explore_s = erring_subject().explore_s;
-  still.hand = erring_subject().hand;
-  still.hand_spread = erring_subject().hand_spread;
+  simulation::SubjectModel still{.explore_s = erring_subject().explore_s,
+                                 .hand = erring_subject().hand,
+                                 .hand_spread = erring_subject().hand_spread};
   const simulation::FeltBank one = bank_of(study, {.explorations = 2});
   const simulation::FeltBank other(Fields(recoded).all, recoded.key().study, still,
                                    {.explorations = 2});

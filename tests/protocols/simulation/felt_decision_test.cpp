@@ -12,16 +12,14 @@ namespace {
 const std::vector<std::string> kLabels = {"bark", "cloth", "straw"};
 
 simulation::SubjectModel population() {
-  simulation::SubjectModel subject;
-  subject.feature_noise = 0.3;
-  subject.feature_noise_spread = 0.2;
-  subject.lapse = 0.1;
-  subject.lapse_spread = 0.8;
-  subject.position_bias = 0.5;
-  subject.position_bias_spread = 0.4;
-  subject.class_bias = {{"cloth", 1.0}};
-  subject.class_bias_spread = 0.6;
-  return subject;
+  return {.feature_noise = 0.3,
+          .feature_noise_spread = 0.2,
+          .lapse = 0.1,
+          .lapse_spread = 0.8,
+          .position_bias = 0.5,
+          .position_bias_spread = 0.4,
+          .class_bias = {{"cloth", 1.0}},
+          .class_bias_spread = 0.6};
 }
 
 constexpr int kPeople = 4000;

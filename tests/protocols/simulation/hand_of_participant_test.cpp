@@ -37,8 +37,7 @@ TEST_CASE("without a spread everybody has the hand of the model, exactly") {
 }
 
 TEST_CASE("hands spread log-normally, in three ways that know nothing of each other") {
-  SubjectModel subject;
-  subject.hand_spread = 0.3;
+  SubjectModel subject{.hand_spread = 0.3};
   constexpr int kPeople = 4000;
   std::array<double, 3> sums{};
   std::array<double, 3> squares{};
@@ -68,8 +67,7 @@ TEST_CASE("hands spread log-normally, in three ways that know nothing of each ot
 }
 
 TEST_CASE("a hand's kind and factors change the motion, and the path stays the same") {
-  SubjectModel subject;
-  subject.explore_s = 3.0;
+  SubjectModel subject{.explore_s = 3.0};
   const auto point_mass = explored(subject);
   const auto heavier = explored(subject, {.mass = 2.0});
   subject.hand = device::HandKind::stylus_grip;

@@ -16,11 +16,7 @@ namespace {
 using engine::ThresholdCurve;
 
 simulation::SubjectModel by(ThresholdCurve curve) {
-  simulation::SubjectModel subject;
-  subject.sense = curve;
-  subject.feature_noise = 0.28;
-  subject.common_noise = 0.14;
-  return subject;
+  return {.sense = curve, .feature_noise = 0.28, .common_noise = 0.14};
 }
 
 double detected_re_curve_db(const simulation::SubjectModel& subject, double frequency_hz,

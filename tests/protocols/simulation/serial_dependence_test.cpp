@@ -28,10 +28,7 @@ simulation::FeltKnowledge two_classes() {
 }
 
 simulation::SubjectModel leaning_subject() {
-  simulation::SubjectModel subject;
-  subject.feature_noise = 1.0;
-  subject.serial = {.answer = 0.6, .stimulus = -0.4};
-  return subject;
+  return {.feature_noise = 1.0, .serial = {.answer = 0.6, .stimulus = -0.4}};
 }
 
 /// Answers "rough" and all answers, by what was presented, what was presented before and what was
@@ -153,9 +150,7 @@ TEST_CASE("more noise than the participant is used to makes more errors, less ma
 
 TEST_CASE("log odds of a moment move those of a lapse, and none can move a lapse of 0") {
   const auto lapses = [](double lapse, double log_odds) {
-    simulation::SubjectModel subject;
-    subject.lapse = lapse;
-    subject.feature_noise = 1e-3;
+    simulation::SubjectModel subject{.feature_noise = 1e-3, .lapse = lapse};
     // Half of the random answers are right.
     return 2.0 * (1.0 - share_right(subject, {.lapse_log_odds = log_odds}));
   };

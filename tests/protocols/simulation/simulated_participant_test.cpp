@@ -51,15 +51,13 @@ TEST_CASE("an ideal subject names the picture of the class that feels most alike
 }
 
 TEST_CASE("a label swap exchanges the pictures of two classes and leaves the others") {
-  simulation::SubjectModel swapped;
-  swapped.label_swap = {{"bark", "straw"}};
+  simulation::SubjectModel swapped{.label_swap = {{"bark", "straw"}}};
   CHECK(answers(swapped, 1, 1, 0.002).front() == 0);
   CHECK(answers(swapped, 1, 1, 20.0).front() == 2);
 }
 
 TEST_CASE("a subject who always lapses answers every position about equally often") {
-  simulation::SubjectModel lapsing;
-  lapsing.lapse = 1.0;
+  simulation::SubjectModel lapsing{.lapse = 1.0};
   const std::vector<int> given = answers(lapsing, 300);
   for (int position = 0; position < 3; ++position) {
     // 99.9 % of binomial draws with n = 300, p = 1/3 lie within 27 of 100.
@@ -68,19 +66,14 @@ TEST_CASE("a subject who always lapses answers every position about equally ofte
 }
 
 TEST_CASE("a strong bias wins over what is felt") {
-  simulation::SubjectModel first;
-  first.feature_noise = 0.3;
-  first.position_bias = 1e6;
+  simulation::SubjectModel first{.feature_noise = 0.3, .position_bias = 1e6};
   CHECK(answers(first, 1).front() == 0);
-  simulation::SubjectModel fond;
-  fond.feature_noise = 0.3;
-  fond.class_bias = {{"brick", 1e6}};
+  simulation::SubjectModel fond{.feature_noise = 0.3, .class_bias = {{"brick", 1e6}}};
   CHECK(answers(fond, 1).front() == 2);
 }
 
 TEST_CASE("answers and thinking times are functions of the seed and the participant's number") {
-  simulation::SubjectModel unsure;
-  unsure.feature_noise = 30.0;
+  simulation::SubjectModel unsure{.feature_noise = 30.0};
   CHECK(answers(unsure, 40, 5) == answers(unsure, 40, 5));
   CHECK(answers(unsure, 40, 5) != answers(unsure, 40, 6));
 }

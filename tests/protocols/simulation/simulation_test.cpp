@@ -7,7 +7,6 @@
 #include "record/payload_json.hpp"
 #include "support/catch.hpp"
 
-#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -18,10 +17,7 @@ namespace {
 
 /// Quick explorations, with the training that they need.
 simulation::SubjectModel quick_subject(double explore_s = 2.0) {
-  simulation::SubjectModel subject;
-  subject.explore_s = explore_s;
-  subject.training_passes = 6;
-  return subject;
+  return {.explore_s = explore_s, .training_passes = 6};
 }
 
 record::StudyStore empty_store(TinyStudy& study) {
@@ -314,8 +310,7 @@ TEST_CASE("a simulation refuses options and subjects that do not fit") {
   CHECK_THROWS_AS(simulate({}, {.participants = 0}), std::invalid_argument);
   CHECK_THROWS_AS(simulate({}, {.jobs = 0}), std::invalid_argument);
   CHECK_THROWS_AS(simulate({}, {.first_participant = 0}), std::invalid_argument);
-  simulation::SubjectModel stranger;
-  stranger.label_swap = {{"bark", "velvet"}};
+  simulation::SubjectModel stranger{.label_swap = {{"bark", "velvet"}}};
   CHECK_THROWS_AS(simulate(stranger, {}), StudyError);
   CHECK(store.sessions().empty());
 }

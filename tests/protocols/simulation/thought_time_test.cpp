@@ -69,8 +69,7 @@ TEST_CASE("difficulty changes how long people think and not what they answer") {
   for (int label = 0; label < 2; ++label) {
     known.examples.push_back({label, std::vector<double>(engine::kFeltFeatures, 0.3 * label)});
   }
-  simulation::SubjectModel subject;
-  subject.feature_noise = 0.6;
+  simulation::SubjectModel subject{.feature_noise = 0.6};
   const simulation::Individual individual(subject, 1, 1);
   const simulation::FeltDecision decision(individual, known);
   const simulation::SeenPictures pictures =

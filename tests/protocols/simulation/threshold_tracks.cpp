@@ -220,8 +220,7 @@ double displacement_m_per_n(const simulation::SubjectModel& subject, double freq
 }
 
 double vibration_power(double frequency_hz, double force_n) {
-  simulation::SubjectModel subject;
-  subject.sense = engine::ThresholdCurve::israr_2006;
+  simulation::SubjectModel subject{.sense = engine::ThresholdCurve::israr_2006};
   simulation::HandSense sense(subject);
   explore(stroking(subject, frequency_hz), {frequency_hz, force_n},
           RandomStream(1, "tracks: power"), sense);

@@ -20,7 +20,7 @@ constexpr int kPeople = 128;
 constexpr double kExploreLimitS = 10.0;
 
 int stimulus_of(const study::Presentation& presentation) {
-  const bool is_blank = presentation.kind == study::PresentationKind::catch_trial;
+  const bool is_blank = presentation.role == study::Role::catch_trial;
   return is_blank ? kStimuli - 1 : presentation.stimulus.class_index;
 }
 
@@ -116,13 +116,12 @@ void run_session(const study::StudyKey& study, const session::StimulusSource& so
       study::make_schedule(study.study, study.draw_of(number, study::Draws::rehearsal));
   session::Session session(schedule, study.study.trials,
                            record::SessionRecorder(number, key, events));
-  record::SessionOpening opening;
-  opening.participant = "P" + std::to_string(number);
-  opening.enrolment = number;
-  opening.study_id = study.study_id;
-  opening.seal = study.seal;
-  opening.device = "simulated";
-  opening.simulated = true;
+  record::SessionOpening opening{.participant = "P" + std::to_string(number),
+                                 .enrolment = number,
+                                 .study_id = study.study_id,
+                                 .seal = study.seal,
+                                 .device = "simulated",
+                                 .simulated = true};
   session.open({}, opening, study::schedule_to_json(schedule, study));
   Person person(number, schedule);
   session::VirtualSessionClock clock;

@@ -256,8 +256,8 @@ TEST_CASE("catch trials are at the highest level, and control trials come last w
   for (std::size_t i = 0; i < all.size(); ++i) {
     CHECK(all[i].hand_off == (i >= 66));
     CHECK(all[i].block == (i >= 66 ? 1 : 0));
-    if (all[i].kind == study::PresentationKind::catch_trial) ++caught;
-    if (all[i].kind != study::PresentationKind::scored) CHECK(all[i].chosen->level == 40);
+    if (all[i].role == study::Role::catch_trial) ++caught;
+    if (all[i].role != study::Role::scored) CHECK(all[i].chosen->level == 40);
   }
   CHECK(caught == 6);
 }

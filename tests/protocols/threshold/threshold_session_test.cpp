@@ -38,11 +38,8 @@ class SimulatedThresholds {
 
   /// By published thresholds, with little noise.
   static simulation::SubjectModel felt_well() {
-    simulation::SubjectModel subject;
-    subject.sense = engine::ThresholdCurve::israr_2006;
-    subject.feature_noise = 0.05;
-    subject.training_passes = 2;
-    return subject;
+    return {
+        .sense = engine::ThresholdCurve::israr_2006, .feature_noise = 0.05, .training_passes = 2};
   }
 
   [[nodiscard]] const TinyStudy& tiny() const { return tiny_; }
@@ -91,7 +88,7 @@ TEST_CASE("simulated participants feel strong textures, guess at the weakest, an
       ++control;
       heard += trial.correct() ? 1 : 0;
       CHECK_FALSE(trial.scored);
-    } else if (trial.kind == study::PresentationKind::catch_trial) {
+    } else if (trial.role == study::Role::catch_trial) {
       ++caught;
       CHECK_FALSE(trial.counted);
     }

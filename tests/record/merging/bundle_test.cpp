@@ -58,8 +58,8 @@ class TableInMemory final : public BundleTable {
   std::int64_t last_ = 0;
 };
 
-/// A lab, and a server's table that its stations send to.
-struct ServedLab : Lab {
+/// Two stations of a lab, and a server's table that its stations send to.
+struct ServedLab : TwoStations {
   SendReport send(const fs::path& file, bool dry_run = false) {
     return send_station(*stations_of_file(file).at(0), *table, dry_run);
   }
@@ -101,79 +101,74 @@ using Names = std::vector<std::string>;
 
 TEST_CASE("what two stations sent merges to the same file as theirs, to the byte") {
   ServedLab lab;
-  const auto [a, b] = lab.two_stations();
-  CHECK(lab.send(a).sent == Names{"P1", "P3"});
-  CHECK(lab.send(b).sent == Names{"P2", "P4"});
-  CHECK((lab.fetched() == lab.merged({a, b})));
+  CHECK(lab.send(lab.a).sent == Names{"P1", "P3"});
+  CHECK(lab.send(lab.b).sent == Names{"P2", "P4"});
+  CHECK((lab.fetched() == lab.merged({lab.a, lab.b})));
   std::ranges::reverse(lab.table->kept);
-  CHECK((lab.fetched() == lab.merged({a, b})));
+  CHECK((lab.fetched() == lab.merged({lab.a, lab.b})));
 }
 
 TEST_CASE("sending again sends what has come since, and a dry run nothing") {
   ServedLab lab;
-  const auto [a, b] = lab.two_stations();
-  CHECK(lab.send(a, true).sent == Names{"P1", "P3"});
+  CHECK(lab.send(lab.a, true).sent == Names{"P1", "P3"});
   CHECK(lab.table->kept.empty());
-  lab.send(a);
+  lab.send(lab.a);
   const std::size_t rows = lab.table->kept.size();
-  const SendReport again = lab.send(a);
+  const SendReport again = lab.send(lab.a);
   CHECK(again.sent.empty());
   CHECK(again.already_there == 2);
   CHECK(lab.table->kept.size() == rows);
-  Lab::at(a, [](StudyStore& store) {
+  Lab::at(lab.a, [](StudyStore& store) {
     store.exclude(1, kUtc + minutes(40), "coughed");
     begin(store, {"P5", 5, minutes(50)});
   });
-  CHECK(participants_of(lab.send(a).left_out) == Names{"P5"});
-  CHECK((lab.fetched() == lab.merged({a})));
-  Lab::at(a, [](StudyStore& store) { visit(store, {{"P6", 6, minutes(60)}}); });
-  CHECK(lab.send(a).sent == Names{"P6"});
-  CHECK((lab.fetched() == lab.merged({a})));
+  CHECK(participants_of(lab.send(lab.a).left_out) == Names{"P5"});
+  CHECK((lab.fetched() == lab.merged({lab.a})));
+  Lab::at(lab.a, [](StudyStore& store) { visit(store, {{"P6", 6, minutes(60)}}); });
+  CHECK(lab.send(lab.a).sent == Names{"P6"});
+  CHECK((lab.fetched() == lab.merged({lab.a})));
 }
 
 TEST_CASE("a sending that is broken off anywhere goes on from there, and doubles nothing") {
   ServedLab whole;
-  const auto [a, b] = whole.two_stations();
-  whole.send(a);
+  whole.send(whole.a);
   for (int rows = 0; rows < static_cast<int>(whole.table->kept.size()); ++rows) {
     ServedLab lab;
     lab.table->fails_after = rows;
-    CHECK_FALSE(lab.send_refusal(a).empty());
+    CHECK_FALSE(lab.send_refusal(whole.a).empty());
     lab.table->fails_after = -1;
-    lab.send(a);
+    lab.send(whole.a);
     CHECK(lab.table->kept.size() == whole.table->kept.size());
-    CHECK((lab.fetched() == whole.merged({a})));
+    CHECK((lab.fetched() == whole.merged({whole.a})));
   }
 }
 
 TEST_CASE("rows that are there twice, or were sent before a withdrawal, do no harm") {
   ServedLab lab;
-  const auto [a, b] = lab.two_stations();
-  lab.send(a);
+  lab.send(lab.a);
   const std::vector<TableInMemory::Row> before = lab.table->kept;
-  Lab::at(a, [](StudyStore& store) { store.withdraw(1, kUtc + minutes(70), "asked"); });
-  const SendReport report = lab.send(a);
+  Lab::at(lab.a, [](StudyStore& store) { store.withdraw(1, kUtc + minutes(70), "asked"); });
+  const SendReport report = lab.send(lab.a);
   CHECK(report.rows_with_erased_keys == std::vector<std::int64_t>{before.front().row.number});
   for (const TableInMemory::Row& one : before) lab.table->put(one.row, one.chain, one.session);
-  CHECK((lab.fetched() == lab.merged({a})));
+  CHECK((lab.fetched() == lab.merged({lab.a})));
   // The owner destroys the keys.
   std::erase_if(lab.table->kept, [&](const TableInMemory::Row& one) {
     return one.row.is_part(before.front().row) && one.row.keys == 2;
   });
-  CHECK((lab.fetched() == lab.merged({a})));
-  CHECK(lab.send(a).rows_with_erased_keys.empty());
+  CHECK((lab.fetched() == lab.merged({lab.a})));
+  CHECK(lab.send(lab.a).rows_with_erased_keys.empty());
 }
 
 TEST_CASE("an older copy of a file and one that forked are named, and send nothing") {
   ServedLab lab;
-  const auto [a, b] = lab.two_stations();
   const fs::path older = lab.file("older.db");
   const fs::path forked = lab.file("forked.db");
-  fs::copy_file(a, older);
-  fs::copy_file(a, forked);
-  Lab::at(a, [](StudyStore& store) { visit(store, {{"P5", 5, minutes(50)}}); });
+  fs::copy_file(lab.a, older);
+  fs::copy_file(lab.a, forked);
+  Lab::at(lab.a, [](StudyStore& store) { visit(store, {{"P5", 5, minutes(50)}}); });
   Lab::at(forked, [](StudyStore& store) { visit(store, {{"P6", 6, minutes(60)}}); });
-  lab.send(a);
+  lab.send(lab.a);
   const std::size_t rows = lab.table->kept.size();
   for (const fs::path& file : {older, forked}) {
     CHECK_THAT(lab.send_refusal(file),
@@ -184,28 +179,24 @@ TEST_CASE("an older copy of a file and one that forked are named, and send nothi
   other.send(forked);
   const TableInMemory::Row& last = other.table->kept.back();
   lab.table->put(last.row, last.chain, last.session);
-  CHECK_THAT(lab.fetch_refusal(),
-             holds_text("bundle 4, sent by lab_a") && holds_text("two copies"));
+  CHECK_THAT(lab.fetch_refusal(), holds_text("bundle 4, sent by") && holds_text("two copies"));
 }
 
 TEST_CASE("a lost row is missed by merging, and sent again") {
   ServedLab lab;
-  const auto [a, b] = lab.two_stations();
-  lab.send(a);
+  lab.send(lab.a);
   lab.table->kept.erase(lab.table->kept.begin());
-  CHECK_THAT(lab.fetch_refusal(),
-             holds_text("bundle 2, sent by lab_a") && holds_text("from 0 on are missing"));
-  CHECK(lab.send(a).sent == Names{"P1"});
-  CHECK((lab.fetched() == lab.merged({a})));
+  CHECK_THAT(lab.fetch_refusal(), holds_text("bundle 2, sent by") && holds_text("missing"));
+  CHECK(lab.send(lab.a).sent == Names{"P1"});
+  CHECK((lab.fetched() == lab.merged({lab.a})));
 }
 
 TEST_CASE("sessions of another study are refused, at sending and at merging") {
   ServedLab lab;
   StudyCommitment other = lab_commitment();
   other.seal = digest_of("another seal");
-  const fs::path a = lab.two_stations().first;
   const fs::path strange = lab.station("strange.db", {{"P9", 9, minutes(9)}}, other);
-  lab.send(a);
+  lab.send(lab.a);
   CHECK_THAT(lab.send_refusal(strange), holds_text("bundle 1, sent by lab_a"));
   ServedLab elsewhere;
   elsewhere.send(strange);
@@ -217,7 +208,7 @@ TEST_CASE("sessions of another study are refused, at sending and at merging") {
 TEST_CASE("garbage, bombs and altered bytes in a row are refused by its number, or by place") {
   const auto refusal_after = [](const auto& alter) {
     ServedLab lab;
-    lab.send(lab.two_stations().first);
+    lab.send(lab.a);
     alter(lab.table->kept.at(1));
     return lab.fetch_refusal();
   };
@@ -227,13 +218,11 @@ TEST_CASE("garbage, bombs and altered bytes in a row are refused by its number, 
   // A frame's header that promises 2^40 bytes.
   const Bytes promise = {0x28, 0xb5, 0x2f, 0xfd, 0xe0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0};
   for (const Bytes& garbage : {Bytes{}, Bytes(100, 7), bomb, promise}) {
-    CHECK_THAT(refusal_after([&](auto& row) { row.chain = garbage; }),
-               holds_text("bundle 2, sent"));
-    CHECK_THAT(refusal_after([&](auto& row) { row.session = garbage; }),
-               holds_text("bundle 2, sent"));
+    CHECK_THAT(refusal_after([&](auto& row) { row.chain = garbage; }), holds_text("bundle 2,"));
+    CHECK_THAT(refusal_after([&](auto& row) { row.session = garbage; }), holds_text("bundle 2,"));
   }
-  CHECK_THAT(refusal_after([](auto& row) { row.row.head[0] ^= 1; }), holds_text("bundle 2, sent"));
-  CHECK_THAT(refusal_after([](auto& row) { row.row.end += 1; }), holds_text("bundle 2, sent"));
+  CHECK_THAT(refusal_after([](auto& row) { row.row.head[0] ^= 1; }), holds_text("bundle 2,"));
+  CHECK_THAT(refusal_after([](auto& row) { row.row.end += 1; }), holds_text("bundle 2,"));
   CHECK_THAT(refusal_after([](auto& row) { row.row.first = -1; }), holds_text("sent by lab_a"));
   CHECK_THAT(refusal_after([](auto& row) {
                BundleHalf session = unpacked(row.session, 2);
@@ -257,7 +246,7 @@ TEST_CASE("garbage, bombs and altered bytes in a row are refused by its number, 
 
 TEST_CASE("bytes that were cut off or flipped anywhere are unpacked or refused, and nothing else") {
   ServedLab lab;
-  lab.send(lab.two_stations().first);
+  lab.send(lab.a);
   const Bytes packed = lab.table->kept.at(0).session;
   RandomStream random(3, "flipped bytes");
   for (std::size_t i = 0; i < 300; ++i) {

@@ -15,11 +15,10 @@ namespace {
 
 /// The message with which a merge of A and B is refused after B was tampered with; it must name B.
 std::string refused_after(const std::string& sql) {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  tamper_file(b, sql);
-  const std::string line = merge_refusal(lab, {a, b});
-  REQUIRE(contains(line, b.string()));
+  TwoStations lab;
+  tamper_file(lab.b, sql);
+  const std::string line = merge_refusal(lab, {lab.a, lab.b});
+  REQUIRE(contains(line, lab.b.string()));
   return line;
 }
 
@@ -30,7 +29,7 @@ TEST_CASE("a station that was tampered with is refused by file, session and even
                                "'\"trial\":2') WHERE session = 2 AND kind = 'answered'"),
                  "session 2, event 4: the hash of the event does not match its content"));
   CHECK(contains(refused_after("DELETE FROM events WHERE session = 0 AND sequence = 2"),
-                 "the file's chain, event 2"));
+                 "chain, event 2"));
   CHECK(contains(refused_after("UPDATE events SET own_session = 7 WHERE session = 2"),
                  "session 2, event 0: the event belongs to another chain"));
   CHECK(contains(refused_after("DELETE FROM traces WHERE session = 1 AND trial = 1"),
@@ -40,27 +39,24 @@ TEST_CASE("a station that was tampered with is refused by file, session and even
 }
 
 TEST_CASE("tampering with a station gives another error than a station that cannot be merged") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  tamper_file(b, "UPDATE participant_keys SET wrapped = x'00' WHERE session = 1");
-  CHECK_THROWS_AS(stations_in({a, b}), DamagedStore);
-  CHECK_THROWS_AS(stations_in({a, lab.file("none.db")}), StoreError);
+  TwoStations lab;
+  tamper_file(lab.b, "UPDATE participant_keys SET wrapped = x'00' WHERE session = 1");
+  CHECK_THROWS_AS(stations_in({lab.a, lab.b}), DamagedStore);
+  CHECK_THROWS_AS(stations_in({lab.a, lab.file("none.db")}), StoreError);
 }
 
 TEST_CASE("a file that is no station's database is refused with the remedy") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  CHECK(contains(merge_refusal(lab, {a, lab.file("none.db")}), "no such database"));
-  fs::resize_file(b, 20'000);
-  CHECK(contains(merge_refusal(lab, {a, b}), "B.db: is truncated"));
+  TwoStations lab;
+  CHECK(contains(merge_refusal(lab, {lab.a, lab.file("none.db")}), "no such database"));
+  fs::resize_file(lab.b, 20'000);
+  CHECK(contains(merge_refusal(lab, {lab.a, lab.b}), "B.db: is truncated"));
 }
 
 TEST_CASE("an existing file is never overwritten") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  const Bytes before = read_file(b);
-  CHECK(contains(refusal_of([&] { merge({a, b}, b); }), "B.db: exists already"));
-  CHECK(read_file(b) == before);
+  TwoStations lab;
+  const Bytes before = read_file(lab.b);
+  CHECK(refuses([&] { merge({lab.a, lab.b}, lab.b); }, "B.db: exists already"));
+  CHECK(read_file(lab.b) == before);
 }
 
 TEST_CASE("stations of different studies, of pilots or of simulated people are not pooled") {
@@ -105,77 +101,71 @@ TEST_CASE("pilots on a screen are not pooled with pilots by hand") {
     store.add_session(session_of(1, 3, stroking(20, 0.05), opening), wrapped_key_of(1),
                       kUtc + minutes(2));
   });
-  CHECK(contains(merge_refusal(lab, {felt, seen}),
-                 "session 1 is seen on a screen, and others are felt"));
+  CHECK(contains(merge_refusal(lab, {felt, seen}), "session 1 is seen on a screen"));
 }
 
 TEST_CASE("a participant id that was used at two stations is refused, and both are named") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
+  TwoStations lab;
   const fs::path c = lab.station("D.db", {{"P8", 8, minutes(5)}, {"P3", 9, minutes(35)}});
-  const std::string line = merge_refusal(lab, {a, b, c});
-  CHECK(contains(line, "participant P3 is taken twice, by session 2 of " + a.string() +
+  const std::string line = merge_refusal(lab, {lab.a, lab.b, c});
+  CHECK(contains(line, "participant P3 is taken twice, by session 2 of " + lab.a.string() +
                            " and by session 2 of " + c.string()));
 }
 
 TEST_CASE("an enrolment number that was used at two stations is refused, and both are named") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
+  TwoStations lab;
   const fs::path c = lab.station("D.db", {{"P9", 4, minutes(5)}});
-  CHECK(contains(merge_refusal(lab, {a, b, c}),
+  CHECK(contains(merge_refusal(lab, {lab.a, lab.b, c}),
                  "enrolment 4 (participants P9 and P4) is taken twice, by session 1 of " +
-                     c.string() + " and by session 2 of " + b.string()));
+                     c.string() + " and by session 2 of " + lab.b.string()));
 }
 
 TEST_CASE(
     "copies that each went on by themselves are refused, and the message says where they part") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
+  TwoStations lab;
   const fs::path fork = lab.file("fork.db");
-  fs::copy_file(a, fork);
-  Lab::at(a, [](StudyStore& store) { visit(store, {{"P5", 5, minutes(50)}}); });
+  fs::copy_file(lab.a, fork);
+  Lab::at(lab.a, [](StudyStore& store) { visit(store, {{"P5", 5, minutes(50)}}); });
   Lab::at(fork, [](StudyStore& store) { visit(store, {{"P6", 6, minutes(50)}}); });
-  const std::string line = merge_refusal(lab, {a, b, fork});
-  CHECK(contains(line, a.string() + " and " + fork.string() + " are copies of one station's file"));
+  const std::string line = merge_refusal(lab, {lab.a, lab.b, fork});
+  CHECK(contains(line,
+                 lab.a.string() + " and " + fork.string() + " are copies of one station's file"));
   CHECK(contains(line, "event 5 of the file's chain (session 3, participant P5)"));
 }
 
 TEST_CASE("a collected file with decisions of its own is not collected again") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  merge({a, b}, lab.file("C.db"));
+  TwoStations lab;
+  merge({lab.a, lab.b}, lab.file("C.db"));
   Lab::at(lab.file("C.db"), [](StudyStore& store) { store.exclude(1, kUtc, "fell asleep"); });
-  CHECK(contains(merge_refusal(lab, {lab.file("C.db"), a}),
+  CHECK(contains(merge_refusal(lab, {lab.file("C.db"), lab.a}),
                  "'participant-excluded' was recorded in it, which no other file would have; "
                  "record that at the station"));
 }
 
 TEST_CASE("a collected study takes no sessions and no replacements") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  merge({a, b}, lab.file("C.db"));
+  TwoStations lab;
+  merge({lab.a, lab.b}, lab.file("C.db"));
   StudyStore store = writable(lab.file("C.db"));
   CHECK(store.next_session() == 5);
-  CHECK(contains(refusal_of([&] {
-                   visit(store, {{"P7", 7, minutes(70)}});
-                 }),
-                 "was collected from several stations and takes no sessions of its own"));
-  CHECK(contains(refusal_of([&] { begin(store, {"P7", 7, minutes(70)}); }), "takes no sessions"));
+  CHECK(refuses(
+      [&] {
+        visit(store, {{"P7", 7, minutes(70)}});
+      },
+      "was collected from several stations and takes no sessions of its own"));
+  CHECK(refuses([&] { begin(store, {"P7", 7, minutes(70)}); }, "takes no sessions"));
   store.exclude(1, kUtc, "fell asleep");
-  CHECK(
-      contains(refusal_of([&] { store.replace(1, "P7", kUtc, "excluded"); }), "takes no sessions"));
+  CHECK(refuses([&] { store.replace(1, "P7", kUtc, "excluded"); }, "takes no sessions"));
   CHECK_FALSE(store.first_fault());
 }
 
 TEST_CASE("a failing disk leaves no collected file, or a whole one") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
+  TwoStations lab;
   for (const Fault::Kind kind : {Fault::Kind::full, Fault::Kind::error, Fault::Kind::short_write,
                                  Fault::Kind::kill, Fault::Kind::torn_kill}) {
     int refused = 0;
     for (std::int64_t at = 1;; at += 7) {
       FaultVfs vfs;
-      Stations stations = stations_in({a, b});
+      Stations stations = stations_in({lab.a, lab.b});
       const fs::path target = lab.file("C.db");
       vfs.plan({.kind = kind, .at = at, .lasts = true});
       const std::string line = refusal_of([&] { collect_into_file(std::move(stations), target); });
@@ -199,12 +189,11 @@ TEST_CASE("a failing disk leaves no collected file, or a whole one") {
 }
 
 TEST_CASE("after a power cut the collected file is whole if it is there") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
+  TwoStations lab;
   FaultVfs vfs;
   const fs::path target = lab.file("C.db");
   vfs.plan({});
-  merge({a, b}, target);
+  merge({lab.a, lab.b}, target);
   // The file has its name, so its whole content must be on the disk.
   vfs.plan({.kind = Fault::Kind::power_cut, .at = 1});
   static_cast<void>(

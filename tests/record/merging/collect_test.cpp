@@ -23,9 +23,8 @@ StudyStore merged(const Lab& lab, const std::vector<fs::path>& files,
 }  // namespace
 
 TEST_CASE("sessions of several stations get numbers in the order in which they were opened") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  const StudyStore store = merged(lab, {a, b});
+  TwoStations lab;
+  const StudyStore store = merged(lab, {lab.a, lab.b});
   CHECK(store.stations() == 2);
   CHECK(participants_in(store) == Names{"P1", "P2", "P3", "P4"});
   std::vector<std::pair<int, int>> places;
@@ -44,21 +43,19 @@ TEST_CASE("in simulated studies, whose times mean nothing, enrolment numbers dec
 }
 
 TEST_CASE("a collected file depends on the stations' content alone, to the byte") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
+  TwoStations lab;
   const fs::path c = lab.station("another name.db", {{"P5", 5, minutes(20)}});
-  merge({a, b, c}, lab.file("abc.db"));
-  merge({c, b, a}, lab.file("cba.db"));
-  merge({b, a, c, b}, lab.file("bacb.db"));
+  merge({lab.a, lab.b, c}, lab.file("abc.db"));
+  merge({c, lab.b, lab.a}, lab.file("cba.db"));
+  merge({lab.b, lab.a, c, lab.b}, lab.file("bacb.db"));
   CHECK(read_file(lab.file("abc.db")) == read_file(lab.file("cba.db")));
   CHECK(read_file(lab.file("abc.db")) == read_file(lab.file("bacb.db")));
 }
 
 TEST_CASE("events, traces and keys open as they did at the station") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  const StudyStore store = merged(lab, {a, b});
-  const StudyStore station = StudyStore::open(b, Access::read_only);
+  TwoStations lab;
+  const StudyStore store = merged(lab, {lab.a, lab.b});
+  const StudyStore station = StudyStore::open(lab.b, Access::read_only);
   const SessionRow row = store.sessions().at(3);
   REQUIRE(row.own_session == 2);
   const auto key =
@@ -80,11 +77,10 @@ TEST_CASE("events, traces and keys open as they did at the station") {
 }
 
 TEST_CASE("the stations' own chains are kept as they were") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  const StudyStore store = merged(lab, {b, a});
+  TwoStations lab;
+  const StudyStore store = merged(lab, {lab.b, lab.a});
   int station = 0;
-  for (const fs::path& path : {a, b}) {
+  for (const fs::path& path : {lab.a, lab.b}) {
     const std::vector<Event> theirs = StudyStore::open(path, Access::read_only).events(0);
     const std::vector<Event> kept = store.station_chain(++station);
     REQUIRE(kept.size() == theirs.size());
@@ -103,10 +99,9 @@ TEST_CASE("the stations' own chains are kept as they were") {
 }
 
 TEST_CASE("derived tables of a collected study agree with its events") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  Lab::at(a, [](StudyStore& store) { store.exclude(1, kUtc, "fell asleep"); });
-  merge({a, b}, lab.file("C.db"));
+  TwoStations lab;
+  Lab::at(lab.a, [](StudyStore& store) { store.exclude(1, kUtc, "fell asleep"); });
+  merge({lab.a, lab.b}, lab.file("C.db"));
   const StudyStore store = StudyStore::open(lab.file("C.db"), Access::read_only);
   CHECK(store.sessions().at(0).excluded);
   CHECK(store.trials().size() == 12);
@@ -114,10 +109,9 @@ TEST_CASE("derived tables of a collected study agree with its events") {
 }
 
 TEST_CASE("a participant who withdrew at a station stays withdrawn, and no key is collected") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  Lab::at(b, [](StudyStore& store) { store.withdraw(2, kUtc, "asked to"); });
-  const StudyStore store = merged(lab, {a, b});
+  TwoStations lab;
+  Lab::at(lab.b, [](StudyStore& store) { store.withdraw(2, kUtc, "asked to"); });
+  const StudyStore store = merged(lab, {lab.a, lab.b});
   CHECK(store.sessions().at(3).withdrawn);
   CHECK_FALSE(store.wrapped_key(4));
   CHECK(store.wrapped_key(2));
@@ -125,16 +119,15 @@ TEST_CASE("a participant who withdrew at a station stays withdrawn, and no key i
 }
 
 TEST_CASE("of two copies of a station's file the later one counts, with its withdrawal") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
+  TwoStations lab;
   const fs::path early = lab.file("A as it was.db");
-  fs::copy_file(a, early);
-  Lab::at(a, [](StudyStore& store) {
+  fs::copy_file(lab.a, early);
+  Lab::at(lab.a, [](StudyStore& store) {
     visit(store, {{"P5", 5, minutes(50)}});
     store.withdraw(1, kUtc, "asked to");
   });
   for (const std::vector<fs::path>& files :
-       {std::vector<fs::path>{a, b, early}, std::vector<fs::path>{early, b, a}}) {
+       {std::vector<fs::path>{lab.a, lab.b, early}, std::vector<fs::path>{early, lab.b, lab.a}}) {
     const fs::path target = lab.file("C" + files.front().filename().string());
     const CollectReport report = merge(files, target);
     CHECK(report.stations == 2);
@@ -146,14 +139,13 @@ TEST_CASE("of two copies of a station's file the later one counts, with its with
 }
 
 TEST_CASE("what stations wrote about people, and looks at them, are collected and open as there") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  Lab::at(b, [](StudyStore& store) {
+  TwoStations lab;
+  Lab::at(lab.b, [](StudyStore& store) {
     store.note(2, kUtc + minutes(50), "no-curtain", "in the wash");
     store.look_at("P4", kUtc + minutes(51), "asked for the data");
     store.withdraw(2, kUtc + minutes(52), "moves away", Kept::data);
   });
-  const StudyStore store = merged(lab, {a, b});
+  const StudyStore store = merged(lab, {lab.a, lab.b});
   CHECK(store.sessions().at(3).withdrawn);
   CHECK_FALSE(store.sessions().at(3).erased);
   CHECK(store.wrapped_keys(4) ==
@@ -177,16 +169,15 @@ TEST_CASE("what stations wrote about people, and looks at them, are collected an
 }
 
 TEST_CASE("sessions that have not ended are left out and reported") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  Lab::at(b, [](StudyStore& store) {
+  TwoStations lab;
+  Lab::at(lab.b, [](StudyStore& store) {
     begin(store, {"P5", 5, minutes(15)});
     store.exclude(3, kUtc, "an event about it");
     visit(store, {{"P6", 6, minutes(60)}});
   });
-  const CollectReport report = merge({a, b}, lab.file("C.db"));
+  const CollectReport report = merge({lab.a, lab.b}, lab.file("C.db"));
   REQUIRE(report.left_out.size() == 1);
-  CHECK(report.left_out[0].station == b.string());
+  CHECK(report.left_out[0].station == lab.b.string());
   CHECK(report.left_out[0].session == 3);
   CHECK(report.left_out[0].participant == "P5");
   CHECK_FALSE(report.left_out[0].cut_short);
@@ -197,9 +188,8 @@ TEST_CASE("sessions that have not ended are left out and reported") {
 }
 
 TEST_CASE("sessions that were replaced or withdrawn before they ended are reported apart") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  Lab::at(b, [](StudyStore& store) {
+  TwoStations lab;
+  Lab::at(lab.b, [](StudyStore& store) {
     begin(store, {"P5", 5, minutes(15)});
     begin(store, {"P6", 6, minutes(16)});
     begin(store, {"P7", 7, minutes(17)});
@@ -207,7 +197,7 @@ TEST_CASE("sessions that were replaced or withdrawn before they ended are report
     store.replace(3, "P8", kUtc, "excluded");
     store.withdraw(4, kUtc, "asked to");
   });
-  const CollectReport report = merge({a, b}, lab.file("C.db"));
+  const CollectReport report = merge({lab.a, lab.b}, lab.file("C.db"));
   REQUIRE(report.left_out.size() == 3);
   CHECK(report.left_out[0].participant == "P5");
   CHECK(report.left_out[0].cut_short);
@@ -217,23 +207,21 @@ TEST_CASE("sessions that were replaced or withdrawn before they ended are report
 }
 
 TEST_CASE("files without sessions are reported, and if there are no others nothing is made") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
+  TwoStations lab;
   const fs::path empty = lab.station("empty.db", {});
-  CHECK(merge({a, empty, b}, lab.file("C.db")).superfluous == Names{empty.string()});
+  CHECK(merge({lab.a, empty, lab.b}, lab.file("C.db")).superfluous == Names{empty.string()});
   CHECK(contains(merge_refusal(lab, {empty}), "none of the databases holds a session"));
 }
 
 TEST_CASE("a place that was taken again at another station is no clash, whatever the clocks say") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  Lab::at(a, [](StudyStore& store) {
+  TwoStations lab;
+  Lab::at(lab.a, [](StudyStore& store) {
     store.exclude(1, kUtc + minutes(50), "fell asleep");
     store.replace(1, "P9", kUtc + minutes(50), "excluded");
   });
   // This station's clock is slow: the session seems to come before that which it replaces.
   const fs::path c = lab.station("C.db", {{"P9", 1, minutes(5)}});
-  const StudyStore store = merged(lab, {c, b, a}, "all.db");
+  const StudyStore store = merged(lab, {c, lab.b, lab.a}, "all.db");
   CHECK(participants_in(store) == Names{"P1", "P2", "P3", "P4", "P9"});
   CHECK(store.sessions().at(0).replaced_by == "P9");
   CHECK(store.session_of("P9").value().session == 5);
@@ -304,20 +292,19 @@ TEST_CASE("the successor of one of a pair collides with the other again") {
 }
 
 TEST_CASE("the collected study is closed, and then unblinded, when every station's is") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  Lab::at(a, [](StudyStore& store) { store.close_study(kUtc + minutes(100)); });
-  CHECK_FALSE(merged(lab, {a, b}, "open.db").state().closed);
-  Lab::at(b, [](StudyStore& store) { store.close_study(kUtc + minutes(90)); });
+  TwoStations lab;
+  Lab::at(lab.a, [](StudyStore& store) { store.close_study(kUtc + minutes(100)); });
+  CHECK_FALSE(merged(lab, {lab.a, lab.b}, "open.db").state().closed);
+  Lab::at(lab.b, [](StudyStore& store) { store.close_study(kUtc + minutes(90)); });
   {
-    const StudyStore store = merged(lab, {a, b}, "closed.db");
+    const StudyStore store = merged(lab, {lab.a, lab.b}, "closed.db");
     CHECK(store.state().closed);
     CHECK(store.last_event(0).value().at == kUtc + minutes(100));
   }
-  Lab::at(a, [](StudyStore& store) { store.unblind(kUtc, "done", false); });
-  CHECK_FALSE(merged(lab, {a, b}, "one.db").state().unblinded);
-  Lab::at(b, [](StudyStore& store) { store.unblind(kUtc, "done too", false); });
-  const StudyStore store = merged(lab, {a, b}, "both.db");
+  Lab::at(lab.a, [](StudyStore& store) { store.unblind(kUtc, "done", false); });
+  CHECK_FALSE(merged(lab, {lab.a, lab.b}, "one.db").state().unblinded);
+  Lab::at(lab.b, [](StudyStore& store) { store.unblind(kUtc, "done too", false); });
+  const StudyStore store = merged(lab, {lab.a, lab.b}, "both.db");
   CHECK(store.state().unblinded);
   CHECK_FALSE(store.state().interim);
   CHECK(store.state().unblinding_reason == "done; done too");
@@ -325,15 +312,14 @@ TEST_CASE("the collected study is closed, and then unblinded, when every station
 }
 
 TEST_CASE("interim looks show what the stations' looks show, and nothing that came after them") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  Lab::at(a, [](StudyStore& store) {
+  TwoStations lab;
+  Lab::at(lab.a, [](StudyStore& store) {
     store.unblind(kUtc, "a look", true);
     visit(store, {{"P5", 5, minutes(25)}});
   });
-  CHECK_FALSE(merged(lab, {a, b}, "one.db").state().unblinded);
-  Lab::at(b, [](StudyStore& store) { store.unblind(kUtc, "a look", true); });
-  const StudyStore store = merged(lab, {a, b}, "both.db");
+  CHECK_FALSE(merged(lab, {lab.a, lab.b}, "one.db").state().unblinded);
+  Lab::at(lab.b, [](StudyStore& store) { store.unblind(kUtc, "a look", true); });
+  const StudyStore store = merged(lab, {lab.a, lab.b}, "both.db");
   CHECK(participants_in(store) == Names{"P1", "P2", "P3", "P5", "P4"});
   const StudyState state = store.state();
   CHECK(state.unblinding_reason == "a look");
@@ -343,40 +329,37 @@ TEST_CASE("interim looks show what the stations' looks show, and nothing that ca
 }
 
 TEST_CASE("a station that still collects makes others' unblinding an interim look") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  Lab::at(a, [](StudyStore& store) {
+  TwoStations lab;
+  Lab::at(lab.a, [](StudyStore& store) {
     store.close_study(kUtc);
     store.unblind(kUtc, "done", false);
   });
-  Lab::at(b, [](StudyStore& store) { store.unblind(kUtc, "a look", true); });
-  Lab::at(b, [](StudyStore& store) { visit(store, {{"P6", 6, minutes(60)}}); });
-  const StudyState state = merged(lab, {a, b}).state();
+  Lab::at(lab.b, [](StudyStore& store) { store.unblind(kUtc, "a look", true); });
+  Lab::at(lab.b, [](StudyStore& store) { visit(store, {{"P6", 6, minutes(60)}}); });
+  const StudyState state = merged(lab, {lab.a, lab.b}).state();
   CHECK_FALSE(state.closed);
   CHECK(state.interim == std::set<int>{1, 2, 3, 4});
 }
 
 TEST_CASE("a collected file can be collected again, with the same result") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
+  TwoStations lab;
   const fs::path c = lab.station("D.db", {{"P5", 5, minutes(25)}});
-  merge({a, b, c}, lab.file("at once.db"));
-  merge({a, b}, lab.file("first.db"));
+  merge({lab.a, lab.b, c}, lab.file("at once.db"));
+  merge({lab.a, lab.b}, lab.file("first.db"));
   merge({lab.file("first.db"), c}, lab.file("step by step.db"));
-  merge({c, lab.file("first.db"), a}, lab.file("twice.db"));
+  merge({c, lab.file("first.db"), lab.a}, lab.file("twice.db"));
   CHECK(read_file(lab.file("step by step.db")) == read_file(lab.file("at once.db")));
   CHECK(read_file(lab.file("twice.db")) == read_file(lab.file("at once.db")));
   // A station that recorded more sessions since.
-  Lab::at(b, [](StudyStore& store) { visit(store, {{"P6", 6, minutes(60)}}); });
-  merge({a, b, c}, lab.file("later.db"));
-  merge({lab.file("at once.db"), b}, lab.file("brought up.db"));
+  Lab::at(lab.b, [](StudyStore& store) { visit(store, {{"P6", 6, minutes(60)}}); });
+  merge({lab.a, lab.b, c}, lab.file("later.db"));
+  merge({lab.file("at once.db"), lab.b}, lab.file("brought up.db"));
   CHECK(read_file(lab.file("brought up.db")) == read_file(lab.file("later.db")));
 }
 
 TEST_CASE("decisions are recorded in a collected study as in any other") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  merge({a, b}, lab.file("C.db"));
+  TwoStations lab;
+  merge({lab.a, lab.b}, lab.file("C.db"));
   {
     StudyStore store = writable(lab.file("C.db"));
     store.exclude(2, kUtc, "fell asleep");

@@ -10,9 +10,8 @@ namespace {
 
 /// The first fault of a collected study of two stations after SQL was run on it.
 std::string fault_after(const std::string& sql) {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  merge({a, b}, lab.file("C.db"));
+  TwoStations lab;
+  merge({lab.a, lab.b}, lab.file("C.db"));
   tamper_file(lab.file("C.db"), sql);
   const auto fault = StudyStore::open(lab.file("C.db"), Access::read_only).first_fault();
   if (!fault) return "";
@@ -51,11 +50,10 @@ TEST_CASE("every alteration of a collected study is found") {
 }
 
 TEST_CASE("a session that was added to a collected study behind its back is found") {
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
+  TwoStations lab;
   const fs::path one = lab.station("one.db", {{"P5", 5, minutes(50)}});
-  merge({a, b}, lab.file("C.db"));
-  merge({a, b, one}, lab.file("with.db"));
+  merge({lab.a, lab.b}, lab.file("C.db"));
+  merge({lab.a, lab.b, one}, lab.file("with.db"));
   // The events that a merge with this station would have, without the station itself.
   {
     SQLite::Database raw(lab.file("C.db").string(), SQLite::OPEN_READWRITE);
@@ -72,12 +70,11 @@ TEST_CASE("a session that was added to a collected study behind its back is foun
 }
 
 TEST_CASE("a station's own file that pretends to hold a station is found") {
-  Lab lab;
-  const fs::path a = lab.two_stations().first;
-  tamper_file(a,
+  TwoStations lab;
+  tamper_file(lab.a,
               "INSERT INTO events SELECT -2147483647, sequence, kind, at_ns, body, sealed, "
               "previous, hash, signature, 0 FROM events WHERE session = 0");
-  const auto fault = StudyStore::open(a, Access::read_only).first_fault();
+  const auto fault = StudyStore::open(lab.a, Access::read_only).first_fault();
   REQUIRE(fault);
   CHECK(fault->what == "opens no session");
 }

@@ -81,14 +81,14 @@ class Lab {
   }
   [[nodiscard]] fs::path file(const std::string& name) const { return folder_.path() / name; }
 
-  /// Two stations with sessions in turn: P1 and P3 at A, P2 and P4 at B.
-  std::pair<fs::path, fs::path> two_stations() {
-    return {station("A.db", {{"P1", 1, minutes(10)}, {"P3", 3, minutes(30)}}),
-            station("B.db", {{"P2", 2, minutes(20)}, {"P4", 4, minutes(40)}})};
-  }
-
  private:
   TempFolder folder_;
+};
+
+/// Two stations with sessions in turn: P1 and P3 at A, P2 and P4 at B.
+struct TwoStations : Lab {
+  const fs::path a = station("A.db", {{"P1", 1, minutes(10)}, {"P3", 3, minutes(30)}});
+  const fs::path b = station("B.db", {{"P2", 2, minutes(20)}, {"P4", 4, minutes(40)}});
 };
 
 inline merging::Stations stations_in(const std::vector<fs::path>& files) {

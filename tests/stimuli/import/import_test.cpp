@@ -225,11 +225,12 @@ TEST_CASE("crops that overlap, or features of an odd size, are warned about") {
     for (int x = 0; x < 60; ++x) ramp.at(y, x) = static_cast<std::uint8_t>(2 * x + y);
   }
   album.add("ramp.png", ramp);
+  album.add("soft.png", noise(30, 50, 2));
   const ImportReport report = import_photographs(album.options());
   std::string all;
   for (const std::string& warning : report.warnings) all += warning + "\n";
-  CHECK_THAT(all, holds_text("class \"fine\": some crops overlap"));
-  CHECK_THAT(all, holds_text("class \"fine\": features of about 0.6"));
+  CHECK_THAT(all, holds_text("class \"fine\" and 1 more: some crops overlap"));
+  CHECK_THAT(all, holds_text("class \"fine\" and 1 more: features of about 0.6"));
   CHECK_THAT(all, holds_text("class \"ramp\": features of about"));
   CHECK_THAT(all, holds_text("coarse for a picture of 4 mm"));
 }
@@ -298,13 +299,14 @@ TEST_CASE("all photographs and names that cannot be used are named at once") {
     CHECK_THAT(reason, holds_text(fault));
   }
   const Album other;
-  for (const char* name : {"T1_01", "T2-01", "line\nbreak_1"}) {
+  for (const char* name : {"T1_01", "T2-01", "line\nbreak_1", "NA_1"}) {
     other.add(name + std::string(".png"), noise(50, 50, std::hash<std::string>()(name)));
   }
   replace_file(other.photographs() / "T3_01.png", "hostile");
   ImportOptions options = other.options();
   options.names = "{class}_#";
-  CHECK(std::ranges::count(other.refusal(options), '|') == 3);
+  CHECK(std::ranges::count(other.refusal(options), '|') == 4);
+  CHECK_THAT(other.refusal(options), holds_text("the class in its name, \"NA\", is what other"));
 }
 
 TEST_CASE("crops lie where a photograph is opaque, and the list and the manifest say so") {
@@ -374,6 +376,9 @@ TEST_CASE("names that cannot be labels are refused, and labels that look alike")
   CHECK_THAT(refused("\xef\xbc\xa4"
                      "9.png"),
              holds_text("would be the class"));  // a wide D
+  album.add("oak.png", noise(50, 50, 7));
+  CHECK_THAT(refused("\xd0\xbe\xd0\xb0\xd0\xba.png"),  // of Cyrillic letters
+             holds_text("which looks like that of oak.png"));
   CHECK_THAT(refused(" D.png"), holds_text("begins or ends with a blank and cannot be a label"));
   CHECK_THAT(refused("latin\xe9.png"), holds_text("is not UTF-8"));
   album.add("No\xc3\xabl.png", noise(50, 50, 8));
@@ -460,5 +465,6 @@ TEST_CASE("numbers in names count as numbers") {
   CHECK(naturally_before("a", "b2"));
   CHECK(naturally_before("D", "D1"));
   CHECK(naturally_before("D01", "D1"));
+  CHECK(naturally_before("z", "\xc3\xa4"));  // on every platform
   CHECK_FALSE(naturally_before("D1", "D1"));
 }

@@ -2,7 +2,6 @@
 #include "analysis/report/page/page_style.hpp"
 #include "support/catch.hpp"
 
-#include <algorithm>
 #include <map>
 #include <string>
 #include <utility>

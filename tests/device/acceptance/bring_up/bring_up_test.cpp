@@ -18,15 +18,11 @@
 namespace touchtrial {
 namespace {
 
-using device::BringUp;
-using device::BringUpEnd;
-using device::BringUpStep;
-using device::DeviceAxis;
-using device::StepOutcome;
+using namespace device;
 
 struct Interrupted {};
 
-const std::vector<device::UnverifiedFact>& falcon_facts() {
+const std::vector<UnverifiedFact>& falcon_facts() {
   return device::device_driver("falcon").unverified;
 }
 
@@ -36,9 +32,9 @@ double& component(Vec3& v, DeviceAxis axis) {
 }
 
 /// Bench and person in one, on a device model: a person who feels what the model delivers.
-class BringUpRig final : public device::AcceptanceBench, public device::AcceptancePerson {
+class BringUpRig final : public AcceptanceBench, public AcceptancePerson {
  public:
-  explicit BringUpRig(const device::DeviceModel& model)
+  explicit BringUpRig(const DeviceModel& model)
       : force_scale_(model.planted.force_sign_scale), rehearsal_(model) {}
 
   bool feels = true;
@@ -47,21 +43,20 @@ class BringUpRig final : public device::AcceptanceBench, public device::Acceptan
   int calls_left = -1;  ///< until the person ends it; negative: never
   std::set<std::string> skips{};
 
-  [[nodiscard]] device::DeviceInfo info() const override {
-    device::DeviceInfo info = rehearsal_.info();
+  [[nodiscard]] DeviceInfo info() const override {
+    DeviceInfo info = rehearsal_.info();
     info.name = "falcon";
     info.serial = "SN-4711";
     info.firmware = "1.2 of SN-4711";
     return info;
   }
-  [[nodiscard]] device::SafetyLimits limits() const override { return rehearsal_.limits(); }
+  [[nodiscard]] SafetyLimits limits() const override { return rehearsal_.limits(); }
   void limit_force(double most_n) override { rehearsal_.limit_force(most_n); }
-  [[nodiscard]] device::ServoReport run(const std::string& name,
-                                        device::Measurement& measurement) override {
+  [[nodiscard]] ServoReport run(const std::string& name, Measurement& measurement) override {
     count();
-    const device::ServoReport report = rehearsal_.run(name, measurement);
+    const ServoReport report = rehearsal_.run(name, measurement);
     last_n_ = {};
-    for (const device::ServoSample& sample : measurement.samples()) {
+    for (const ServoSample& sample : measurement.samples()) {
       if (norm(sample.force_n) > norm(last_n_)) last_n_ = sample.force_n;
     }
     if (name != "stroke y" && name != "weight y" && name != "wall") {
@@ -73,16 +68,15 @@ class BringUpRig final : public device::AcceptanceBench, public device::Acceptan
     }
     return report;
   }
-  [[nodiscard]] std::optional<device::ServoReport> run_suspended(
-      device::Measurement& measurement) override {
+  [[nodiscard]] std::optional<ServoReport> run_suspended(Measurement& measurement) override {
     if (!suspends) return std::nullopt;
     return run("suspend", measurement);
   }
 
-  [[nodiscard]] device::Consent ready(const device::Prompt& prompt) override {
+  [[nodiscard]] Consent ready(const Prompt& prompt) override {
     count();
-    if (skips.contains(std::string(prompt.step))) return device::Consent::skip;
-    device::Prompt done = prompt;
+    if (skips.contains(std::string(prompt.step))) return Consent::skip;
+    Prompt done = prompt;
     if (carries_elsewhere && prompt.axis == DeviceAxis::z) done.axis = DeviceAxis::x;
     return rehearsal_.ready(done);
   }
@@ -124,24 +118,24 @@ class BringUpRig final : public device::AcceptanceBench, public device::Acceptan
   static constexpr int kNowhere = 7;
 
   Vec3 force_scale_;
-  device::Rehearsal rehearsal_;
+  Rehearsal rehearsal_;
   Vec3 last_n_;
 };
 
 /// The record as its file has it after every step.
 BringUp brought_up(BringUpRig& rig) {
-  BringUp record = device::bring_up_of(rig.info());
+  BringUp record = bring_up_of(rig.info());
   record.program = "test";
   record.scheduling = "other";
   std::string saved;
-  const auto save = [&] { saved = device::bring_up_json(record); };
+  const auto save = [&] { saved = bring_up_json(record); };
   save();
   try {
     device::bring_up(rig, rig, falcon_facts(), record, save);
   } catch (const Interrupted&) {
     save();
   }
-  CHECK(saved == device::bring_up_json(record));
+  CHECK(saved == bring_up_json(record));
   return record;
 }
 
@@ -150,7 +144,7 @@ BringUp brought_up(BringUpRig& rig) {
 TEST_CASE("a bring-up finds signs, lengths, readings, force and a wall of a sound device") {
   for (const std::string name : {"falcon", "touch", "omega_3", "inverse3"}) {
     CAPTURE(name);
-    BringUpRig rig(device::device_model(name));
+    BringUpRig rig(device_model(name));
     const BringUp record = brought_up(rig);
     CHECK(record.ended == BringUpEnd::complete);
     CHECK(record.signs_confirmed());
@@ -165,10 +159,10 @@ TEST_CASE("a bring-up finds signs, lengths, readings, force and a wall of a soun
     CHECK(record.number("contact_s") > 1.0);
     CHECK(record.find("time_ms")->numbers.size() > 1500);
     CHECK(std::ranges::max(record.find("force_up_mn")->numbers) > 300.0);
-    CHECK(rig.greatest_confirmed_n <= device::kConfirmedN);
-    CHECK(rig.confirmed_limit_n == device::kConfirmedN);
-    CHECK(rig.greatest_n <= device::kSecondPushN + 1e-9);
-    CHECK(rig.greatest_limit_n <= device::kSecondPushN);
+    CHECK(rig.greatest_confirmed_n <= kConfirmedN);
+    CHECK(rig.confirmed_limit_n == kConfirmedN);
+    CHECK(rig.greatest_n <= kSecondPushN + 1e-9);
+    CHECK(rig.greatest_limit_n <= kSecondPushN);
     CHECK(record.find("lights")->word == "red");
     CHECK(record.outcome(BringUpStep::cable) == StepOutcome::failed);  // nobody pulled it
     CHECK(record.find("force_without_program") != nullptr);
@@ -176,16 +170,16 @@ TEST_CASE("a bring-up finds signs, lengths, readings, force and a wall of a soun
 }
 
 TEST_CASE("a wrong sign of a force ends a bring-up after small pushes alone") {
-  for (const DeviceAxis axis : device::kDeviceAxes) {
-    CAPTURE(device::name_of(axis));
-    device::DeviceModel model = device::device_model("falcon");
+  for (const DeviceAxis axis : kDeviceAxes) {
+    CAPTURE(name_of(axis));
+    DeviceModel model = device_model("falcon");
     component(model.planted.force_sign_scale, axis) = -1.0;
     BringUpRig rig(model);
     const BringUp record = brought_up(rig);
     CHECK(record.ended == BringUpEnd::wrong_sign);
     CHECK_FALSE(record.signs_confirmed());
-    CHECK(record.findings.back().name == "moved_mm +" + std::string(device::name_of(axis)));
-    CHECK(rig.greatest_n <= device::kFirstPushN + 1e-9);
+    CHECK(record.findings.back().name == "moved_mm +" + std::string(name_of(axis)));
+    CHECK(rig.greatest_n <= kFirstPushN + 1e-9);
     CHECK(rig.greatest_confirmed_n == 0.0);
     CHECK(record.outcome(BringUpStep::push) == StepOutcome::interrupted);
     CHECK(record.outcome(BringUpStep::wall) == StepOutcome::not_reached);
@@ -193,7 +187,7 @@ TEST_CASE("a wrong sign of a force ends a bring-up after small pushes alone") {
 }
 
 TEST_CASE("a reading that runs along another axis ends a bring-up before any force") {
-  BringUpRig rig(device::device_model("falcon"));
+  BringUpRig rig(device_model("falcon"));
   rig.carries_elsewhere = true;
   const BringUp record = brought_up(rig);
   CHECK(record.ended == BringUpEnd::wrong_sign);
@@ -203,20 +197,20 @@ TEST_CASE("a reading that runs along another axis ends a bring-up before any for
 }
 
 TEST_CASE("pushes that nobody feels, or that were left out, confirm nothing") {
-  BringUpRig numb(device::device_model("falcon"));
+  BringUpRig numb(device_model("falcon"));
   numb.feels = false;
   const BringUp felt_nothing = brought_up(numb);
   CHECK(felt_nothing.ended == BringUpEnd::complete);
-  CHECK(felt_nothing.number("push_n -z") == device::kSecondPushN);
+  CHECK(felt_nothing.number("push_n -z") == kSecondPushN);
   for (const std::string step : {"ways", "push"}) {
-    BringUpRig skipping(device::device_model("falcon"));
+    BringUpRig skipping(device_model("falcon"));
     skipping.skips = {step};
     const BringUp record = brought_up(skipping);
     CHECK(record.ended == BringUpEnd::complete);
     CHECK(skipping.greatest_confirmed_n == 0.0);
     CHECK(record.outcome(BringUpStep::weight) == StepOutcome::left_out);
   }
-  CHECK(numb.greatest_n <= device::kSecondPushN + 1e-9);
+  CHECK(numb.greatest_n <= kSecondPushN + 1e-9);
   CHECK(numb.greatest_confirmed_n == 0.0);
   CHECK(felt_nothing.outcome(BringUpStep::wall) == StepOutcome::left_out);
 }
@@ -225,7 +219,7 @@ TEST_CASE("a bring-up that ends at any moment keeps what it has and names the re
   int calls = 0;
   std::set<BringUpStep> interrupted;
   for (; calls < 200; ++calls) {
-    BringUpRig rig(device::device_model("falcon"));
+    BringUpRig rig(device_model("falcon"));
     rig.calls_left = calls;
     const BringUp record = brought_up(rig);
     if (record.ended == BringUpEnd::complete) break;
@@ -240,11 +234,11 @@ TEST_CASE("a bring-up that ends at any moment keeps what it has and names the re
     interrupted.insert(static_cast<BringUpStep>(at - record.outcomes.begin()));
   }
   CHECK(calls < 200);
-  CHECK(interrupted.size() == device::kBringUpSteps - 1);  // it is opened before
+  CHECK(interrupted.size() == kBringUpSteps - 1);  // it is opened before
 }
 
 TEST_CASE("a device that is lost ends a bring-up as a fault") {
-  device::DeviceModel model = device::device_model("falcon");
+  DeviceModel model = device_model("falcon");
   model.planted.lost_after_s = 40.0;
   BringUpRig rig(model);
   const BringUp record = brought_up(rig);
@@ -254,31 +248,27 @@ TEST_CASE("a device that is lost ends a bring-up as a fault") {
 }
 
 TEST_CASE("the file of a bring-up has no serial number, and tells two devices apart") {
-  BringUpRig rig(device::device_model("falcon"));
-  const std::string file = device::bring_up_json(brought_up(rig));
+  BringUpRig rig(device_model("falcon"));
+  const std::string file = bring_up_json(brought_up(rig));
   CHECK(file.find("4711") == std::string::npos);
   CHECK_THAT(file, holds_text(R"("name": "noise_mm")") && holds_text(R"("value": "right")"));
-  device::DeviceInfo one;
-  one.name = "falcon";
-  CHECK(device::bring_up_of(one).device_mark.empty());
+  DeviceInfo one{.name = "falcon"};
+  CHECK(bring_up_of(one).device_mark.empty());
   one.serial = "A1";
-  device::DeviceInfo other = one;
+  DeviceInfo other = one;
   other.serial = "A2";
-  CHECK(device::bring_up_of(one).device_mark.size() == 4);
-  CHECK(device::bring_up_of(one).device_mark != device::bring_up_of(other).device_mark);
+  CHECK(bring_up_of(one).device_mark.size() == 4);
+  CHECK(bring_up_of(one).device_mark != bring_up_of(other).device_mark);
 }
 
 TEST_CASE("a stand-in is called one") {
-  device::DeviceInfo real;
-  real.name = "dhd";
-  real.model = "omega.3";
-  real.library = "3.17.5.1900";
-  CHECK(device::stand_in_of(real, {}).empty());
+  DeviceInfo real{.name = "dhd", .model = "omega.3", .library = "3.17.5.1900"};
+  CHECK(stand_in_of(real, {}).empty());
   const auto is_stand_in = [&](auto&& change) {
-    device::DeviceInfo info = real;
-    device::DeviceSettings settings;
+    DeviceInfo info = real;
+    DeviceSettings settings;
     change(info, settings);
-    return !device::stand_in_of(info, settings).empty();
+    return !stand_in_of(info, settings).empty();
   };
   CHECK(is_stand_in([](auto& info, auto&) { info.simulated = true; }));
   CHECK(is_stand_in([](auto& info, auto&) { info.visual = true; }));
@@ -290,21 +280,20 @@ TEST_CASE("a stand-in is called one") {
 
 TEST_CASE("a loaded stand-in is marked under any name") {
   const TempFolder folder;
-  device::DeviceInfo info;
-  info.name = "openhaptics";
-  device::DeviceSettings settings;
+  DeviceInfo info{.name = "openhaptics"};
+  DeviceSettings settings;
   settings.openhaptics.library = folder.path() / "libHD.so.3.4";
   std::filesystem::copy_file(TOUCHTRIAL_FAKE_HD, settings.openhaptics.library);
-  CHECK(device::stand_in_of(info, settings).empty());
-  const device::DynamicLibrary loaded(settings.openhaptics.library, device::Unload::never, "");
-  CHECK_FALSE(device::stand_in_of(info, settings).empty());
+  CHECK(stand_in_of(info, settings).empty());
+  const device::DynamicLibrary loaded(settings.openhaptics.library, Unload::never, "");
+  CHECK_FALSE(stand_in_of(info, settings).empty());
 }
 
 TEST_CASE("every driver with hardware lists what is unverified, each fact once") {
   for (const std::string driver : {"falcon", "dhd", "openhaptics", "inverse3"}) {
     CAPTURE(driver);
     std::set<std::string> ids;
-    for (const device::UnverifiedFact& fact : device::device_driver(driver).unverified) {
+    for (const UnverifiedFact& fact : device::device_driver(driver).unverified) {
       CAPTURE(fact.id);
       CHECK(ids.insert(fact.id).second);
       CHECK_FALSE(fact.what.empty());

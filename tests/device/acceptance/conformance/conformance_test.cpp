@@ -22,9 +22,7 @@
 namespace touchtrial {
 namespace {
 
-using device::ConformanceCheck;
-using device::ConformanceId;
-using device::ConformanceOutcome;
+using namespace device;
 using Checks = std::vector<ConformanceCheck>;
 using Ids = std::set<ConformanceId>;
 
@@ -48,7 +46,7 @@ Ids unobserved(const Checks& checks) {
 std::string text_of(const Checks& checks) {
   std::string text;
   for (const ConformanceCheck& check : checks) {
-    text += std::string(check.name) + ": " + std::string(device::name_of(check.outcome)) + " (" +
+    text += std::string(check.name) + ": " + std::string(name_of(check.outcome)) + " (" +
             check.finding + ")\n";
   }
   return text;
@@ -59,8 +57,8 @@ std::string finding(const Checks& checks, ConformanceId id) {
   return found == checks.end() ? "no such check" : found->finding;
 }
 
-device::ConformanceOptions brief(bool pushes) {
-  device::ConformanceOptions options;
+ConformanceOptions brief(bool pushes) {
+  ConformanceOptions options;
   options.seconds = 0.5;
   options.pushes = pushes;
   options.judges_calls = false;
@@ -68,14 +66,14 @@ device::ConformanceOptions brief(bool pushes) {
 }
 
 /// Checks a plug-in in the test's time.
-Checks checked(const device::PluginSettings& settings, const device::ConformanceOptions& options) {
+Checks checked(const PluginSettings& settings, const ConformanceOptions& options) {
   LockstepClock clock;
   return device::check_plugin_conformance(settings, clock, options,
                                           [&clock] { return clock.plugin_options(); });
 }
 
 Checks checked_fault(const std::string& fault, const std::string& more = "") {
-  device::ConformanceOptions options = brief(true);
+  ConformanceOptions options = brief(true);
   options.judges_calls = fault == "calls";
   return checked({TOUCHTRIAL_BROKEN_PLUGIN, R"({"fault":")" + fault + "\"" + more + "}"}, options);
 }
@@ -89,11 +87,11 @@ Ids together(Ids a, const Ids& b) {
 }
 
 /// The checks of a driver that passes on a vendor's library, which knows real time alone.
-Checks checks_beside_a_library(const device::ConformanceSubject& subject) {
-  device::PacedClock clock(device::PacedClock::Time{});
-  device::ConformanceOptions options = brief(true);
+Checks checks_beside_a_library(const ConformanceSubject& subject) {
+  PacedClock clock(PacedClock::Time{});
+  ConformanceOptions options = brief(true);
   options.judges_time = false;
-  const Checks checks = device::check_conformance(subject, clock, options);
+  const Checks checks = check_conformance(subject, clock, options);
   INFO(text_of(checks));
   CHECK(failed(checks) == Ids{});
   for (const ConformanceId id :
@@ -113,7 +111,7 @@ TEST_CASE("conformance: the example plug-in passes every check, its calls' time 
   CHECK(checks.size() == 21);
   CHECK(unobserved(checks) == Ids{ConformanceId::calls});
   CHECK(failed(checks) == Ids{});
-  CHECK(device::conforms(checks));
+  CHECK(conforms(checks));
   CHECK_THAT(finding(checks, ConformanceId::calls), holds_text("99 % within"));
   CHECK_THAT(finding(checks, ConformanceId::opening_twice), holds_text("refused: plugin example"));
   // A force lives for 10 ms; after a halt the next exchange sends zero.
@@ -159,7 +157,7 @@ TEST_CASE("conformance: each fault fails the check that is there for it, and no 
   INFO(fault << "\n" << text_of(checks));
   CHECK(failed(checks) == Ids{id});
   CHECK_FALSE(finding(checks, id).empty());
-  CHECK_FALSE(device::conforms(checks));
+  CHECK_FALSE(conforms(checks));
 }
 
 TEST_CASE("conformance: a library without a sound interface fails it, and the rest says nothing") {
@@ -173,7 +171,7 @@ TEST_CASE("conformance: a library without a sound interface fails it, and the re
 }
 
 TEST_CASE("conformance: a check that is stopped says so, and passes nothing more") {
-  device::ConformanceOptions options = brief(true);
+  ConformanceOptions options = brief(true);
   int ticks = 0;
   options.stopped = [&ticks] { return ++ticks > 100; };
   const Checks checks = checked({TOUCHTRIAL_EXAMPLE_PLUGIN, "{}"}, options);
@@ -186,27 +184,27 @@ TEST_CASE("conformance: a check that is stopped says so, and passes nothing more
 }
 
 TEST_CASE("conformance: a device that nobody makes ready is not judged beyond that") {
-  device::ConformanceOptions options = brief(true);
+  ConformanceOptions options = brief(true);
   options.ready_limit_s = 0.1;
   bool advised = false;
-  options.advise = [&advised](device::DeviceReadiness readiness) {
-    advised = readiness != device::DeviceReadiness::ready;
+  options.advise = [&advised](DeviceReadiness readiness) {
+    advised = readiness != DeviceReadiness::ready;
   };
   const Checks checks =
       checked({TOUCHTRIAL_EXAMPLE_PLUGIN, R"({"homing_ticks":1000000})"}, options);
   INFO(text_of(checks));
   CHECK(failed(checks) == Ids{});
-  CHECK_FALSE(device::conforms(checks));
+  CHECK_FALSE(conforms(checks));
   CHECK(passed(checks).count(ConformanceId::unready_zero) == 1);
   CHECK_THAT(finding(checks, ConformanceId::numbering), holds_text("not ready within"));
   CHECK(advised);
 }
 
 TEST_CASE("conformance: the simulated hand passes what can be seen of it") {
-  device::VirtualClock clock;
-  device::ConformanceSubject subject;
+  VirtualClock clock;
+  ConformanceSubject subject;
   subject.open = [] { return device::open_device("simulated", {}); };
-  const Checks checks = device::check_conformance(subject, clock, brief(true));
+  const Checks checks = check_conformance(subject, clock, brief(true));
   INFO(text_of(checks));
   CHECK(failed(checks) == Ids{});
   CHECK(unobserved(checks) ==
@@ -215,13 +213,13 @@ TEST_CASE("conformance: the simulated hand passes what can be seen of it") {
 }
 
 TEST_CASE("conformance: the mouse passes what can be seen of it") {
-  device::VirtualClock clock;
+  VirtualClock clock;
   ScriptedPointer pointer(clock, [](double time_s) {
-    return device::PointerState{{50.0 + 20.0 * std::sin(3.0 * time_s), 50.0}, false, false, 0};
+    return PointerState{{50.0 + 20.0 * std::sin(3.0 * time_s), 50.0}, false, false, 0};
   });
-  device::ConformanceSubject subject;
-  subject.open = [&] { return std::make_unique<device::MouseDevice>(pointer, clock); };
-  const Checks checks = device::check_conformance(subject, clock, brief(true));
+  ConformanceSubject subject;
+  subject.open = [&] { return std::make_unique<MouseDevice>(pointer, clock); };
+  const Checks checks = check_conformance(subject, clock, brief(true));
   INFO(text_of(checks));
   CHECK(failed(checks) == Ids{});
   CHECK(passed(checks).count(ConformanceId::velocity) == 1);
@@ -235,19 +233,17 @@ TEST_CASE("conformance: the Falcon passes every check on its emulator, from homi
   emulator.set_hand([tick = 0](Vec3) mutable {
     return Vec3{0.0, 0.0, 25.0 * std::sin(2e-3 * std::acos(-1.0) * ++tick)};
   });
-  device::ConformanceSubject subject;
-  subject.open = [&]() -> std::unique_ptr<device::HapticDevice> {
-    FalconOptions options;
-    options.pace = clock.pace();
-    options.scheduling = {device::SchedulingPolicy::other, 0, false};
+  ConformanceSubject subject;
+  subject.open = [&]() -> std::unique_ptr<HapticDevice> {
+    FalconOptions options{.pace = clock.pace(), .scheduling = {SchedulingPolicy::other, 0, false}};
     return std::make_unique<FalconDevice>(std::make_unique<EmulatorTransport>(emulator),
-                                          device::FalconSettings{}, std::move(options));
+                                          FalconSettings{}, std::move(options));
   };
   subject.motor_force_n = [&] {
     return emulator.motors() == std::array<std::int16_t, 3>{} ? Vec3{} : emulator.force_n();
   };
   subject.can_open_twice = false;
-  const Checks checks = device::check_conformance(subject, clock, brief(true));
+  const Checks checks = check_conformance(subject, clock, brief(true));
   INFO(text_of(checks));
   CHECK(failed(checks) == Ids{});
   CHECK(unobserved(checks) == Ids{ConformanceId::opening_twice});
@@ -256,9 +252,8 @@ TEST_CASE("conformance: the Falcon passes every check on its emulator, from homi
 // The drivers of vendors' libraries know real time alone, which is not judged here.
 TEST_CASE("conformance: the dhd driver passes on its stand-in, with real time not judged") {
   fakes::LoadedDhd fake;
-  device::DhdSettings settings;
-  settings.library = TOUCHTRIAL_FAKE_DHD;
-  device::ConformanceSubject subject;
+  DhdSettings settings{.library = TOUCHTRIAL_FAKE_DHD};
+  ConformanceSubject subject;
   subject.open = [&] { return std::make_unique<device::DhdDevice>(settings); };
   subject.motor_force_n = [&fake] {
     const Vec3 dhd = fake->force_n.get();
@@ -270,10 +265,9 @@ TEST_CASE("conformance: the dhd driver passes on its stand-in, with real time no
 
 TEST_CASE("conformance: the openhaptics driver passes on its stand-in, real time not judged") {
   fakes::LoadedHd fake;
-  device::OpenHapticsSettings settings;
-  settings.library = TOUCHTRIAL_FAKE_HD;
-  device::ConformanceSubject subject;
-  subject.open = [&] { return std::make_unique<device::OpenHapticsDevice>(settings); };
+  OpenHapticsSettings settings{.library = TOUCHTRIAL_FAKE_HD};
+  ConformanceSubject subject;
+  subject.open = [&] { return std::make_unique<OpenHapticsDevice>(settings); };
   subject.motor_force_n = [&fake] { return fake->force_n.get(); };
   static_cast<void>(checks_beside_a_library(subject));
 }

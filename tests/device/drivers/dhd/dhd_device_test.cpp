@@ -19,6 +19,7 @@
 namespace touchtrial {
 namespace {
 
+using namespace device;
 using fakes::eventually;
 using fakes::LoadedDhd;
 using fakes::next_sample;
@@ -27,22 +28,19 @@ using fakes::write_until;
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kGravityMS2 = 9.80665;
 
-device::DhdSettings settings_of_fake() {
-  device::DhdSettings settings;
-  settings.library = TOUCHTRIAL_FAKE_DHD;
-  return settings;
+DhdSettings settings_of_fake() {
+  return {.library = TOUCHTRIAL_FAKE_DHD};
 }
 
 /// Opens a device whose readings happen in the fake's time, so that velocities do not depend on the
 /// machine's pace.
-device::DhdDevice opened(const LoadedDhd& fake,
-                         const device::DhdSettings& settings = settings_of_fake()) {
+device::DhdDevice opened(const LoadedDhd& fake, const DhdSettings& settings = settings_of_fake()) {
   return device::DhdDevice(settings, kNoLimit, fake.exports().now);
 }
 
 /// Waits until force is on, and one reading more.
-device::DeviceSample ready_sample(device::HapticDevice& device) {
-  device::DeviceSample sample;
+DeviceSample ready_sample(HapticDevice& device) {
+  DeviceSample sample;
   REQUIRE(eventually([&] {
     (void)device.read(sample);
     return sample.ready;
@@ -60,7 +58,7 @@ TEST_CASE("dhd: position, velocity and buttons arrive in the device frame, in mi
   fake->hand.rest_at({30.0, 10.0, -20.0});  // towards the person, to the right, up
   fake->buttons = 5;
   device::DhdDevice device = opened(fake);
-  const device::DeviceSample sample = ready_sample(device);
+  const DeviceSample sample = ready_sample(device);
   CHECK(norm(sample.position_mm - Vec3{10.0, -20.0, 30.0}) < 1e-12);
   CHECK(sample.velocity_mm_s == Vec3{});
   CHECK(sample.buttons == 5);
@@ -80,7 +78,7 @@ TEST_CASE("dhd: mass, time guard, watchdog and largest force are set, and put ba
   LoadedDhd fake;
   fake->own_mass_kg = 0.1;
   fake->watchdog = 200;
-  device::DhdSettings settings = settings_of_fake();
+  DhdSettings settings = settings_of_fake();
   settings.effector_mass_kg = GENERATE(0.0, 0.125);
   settings.gravity_compensation = GENERATE(true, false);
   {
@@ -100,7 +98,7 @@ TEST_CASE("dhd: the library holds the lab's limit behind the safety chain, besid
   LoadedDhd fake;
   fake->arm_mass_kg = 0.4;
   fake->limits_sum = GENERATE(false, true);
-  device::DeviceSettings settings;
+  DeviceSettings settings;
   settings.dhd.library = TOUCHTRIAL_FAKE_DHD;
   settings.uses["dhd"].limits.max_force_n = 2.5;
   const auto device = device::open_device("dhd", settings);
@@ -116,7 +114,7 @@ TEST_CASE("dhd: the library carries arms and end-effector, whatever force is com
   LoadedDhd fake;
   fake->arm_mass_kg = 0.2;
   fake->own_mass_kg = 0.1;
-  device::DhdSettings settings = settings_of_fake();
+  DhdSettings settings = settings_of_fake();
   double mass_kg = 0.3;
   SECTION("as the device knows them") {}
   SECTION("with another end-effector") {
@@ -124,7 +122,7 @@ TEST_CASE("dhd: the library carries arms and end-effector, whatever force is com
     mass_kg = 0.35;
   }
   device::DhdDevice device = opened(fake, settings);
-  const device::DeviceSample sample = ready_sample(device);
+  const DeviceSample sample = ready_sample(device);
   CHECK(std::abs(up_n(fake) - kGravityMS2 * mass_kg) < 1e-9);
   CHECK(write_until(device, {0.0, 1.0, 0.0},
                     [&] { return std::abs(up_n(fake) - kGravityMS2 * mass_kg - 1.0) < 1e-9; }));
@@ -136,7 +134,7 @@ TEST_CASE("dhd: the library carries arms and end-effector, whatever force is com
 TEST_CASE("dhd: without compensation, force comes on once the library has shed the weight") {
   LoadedDhd fake;
   fake->arm_mass_kg = 0.3;
-  device::DhdSettings settings = settings_of_fake();
+  DhdSettings settings = settings_of_fake();
   SECTION("as set") {
     settings.gravity_compensation = false;
   }
@@ -158,16 +156,16 @@ TEST_CASE("dhd: without compensation, force comes on once the library has shed t
 TEST_CASE("dhd: a mass that cannot be true is refused before any force") {
   LoadedDhd fake;
   fake->own_mass_kg = 0.12;
-  device::DhdSettings settings = settings_of_fake();
+  DhdSettings settings = settings_of_fake();
   settings.effector_mass_kg = 1.2;
   CHECK_THROWS_WITH(device::DhdDevice(settings), holds_text("dhd.effector_mass_kg is 1.2") &&
                                                      holds_text("the device says 0.12") &&
                                                      holds_text("10.6 N"));
   CHECK(fake->effector_mass_kg == -1.0);
   CHECK(fake.calls() == "open force_off close ");
-  device::DeviceSettings listed;
+  DeviceSettings listed;
   listed.dhd = settings;
-  const std::vector<device::DeviceListing> listings = device::device_driver("dhd").list(listed);
+  const std::vector<DeviceListing> listings = device::device_driver("dhd").list(listed);
   REQUIRE(listings.at(0).missing.size() == 1);
   CHECK_THAT(listings[0].missing[0], holds_text("dhd.effector_mass_kg"));
 }
@@ -178,7 +176,7 @@ TEST_CASE("dhd: an end-effector that weighs more than the model with its arms is
   CHECK_THROWS_WITH(device::DhdDevice(settings_of_fake()),
                     holds_text("dhd.effector_mass_kg") && holds_text("omega.3"));
   CHECK(fake.calls() == "open force_off close ");
-  device::DhdSettings settings = settings_of_fake();
+  DhdSettings settings = settings_of_fake();
   settings.gravity_compensation = false;
   CHECK_NOTHROW(opened(fake, settings));
 }
@@ -195,9 +193,9 @@ TEST_CASE("dhd: a weight that cannot be one is refused, or a fault before force 
   fake->calibrated = false;
   device::DhdDevice device = opened(fake);
   (void)next_sample(device);
-  CHECK(device.fault() == device::DeviceFault::none);
+  CHECK(device.fault() == DeviceFault::none);
   fake->calibrated = true;
-  REQUIRE(eventually([&] { return device.fault() == device::DeviceFault::bad_data; }));
+  REQUIRE(eventually([&] { return device.fault() == DeviceFault::bad_data; }));
   CHECK(fake.calls().find("force_on") == std::string::npos);
   CHECK(fake->misuses == 0);
 }
@@ -217,10 +215,9 @@ TEST_CASE("dhd: a weight is finite, points up, and is no larger than the model's
 
 TEST_CASE("dhd: the functions of newer libraries tell the weight too") {
   const fakes::LoadedDrd fake;
-  device::DhdSettings settings;
-  settings.library = TOUCHTRIAL_FAKE_DRD;
+  DhdSettings settings{.library = TOUCHTRIAL_FAKE_DRD};
   fake->arm_mass_kg = 0.3;
-  CHECK(device::DhdDevice(settings).fault() == device::DeviceFault::none);
+  CHECK(device::DhdDevice(settings).fault() == DeviceFault::none);
   fake->arm_mass_kg = 0.7;
   CHECK_THROWS_WITH(device::DhdDevice(settings), holds_text("dhd.gravity_compensation"));
   CHECK(fake->misuses == 0);
@@ -244,7 +241,7 @@ TEST_CASE("dhd: heavy models are carried too, within a limit of their own") {
 TEST_CASE("dhd: a setting that the device refuses is named, and the device closed") {
   LoadedDhd fake;
   fake->refuses_mass = true;
-  device::DhdSettings settings = settings_of_fake();
+  DhdSettings settings = settings_of_fake();
   settings.effector_mass_kg = 0.1;
   CHECK_THROWS_AS(device::DhdDevice(settings), DeviceError);
   CHECK_THROWS_WITH(device::DhdDevice(settings),
@@ -254,7 +251,7 @@ TEST_CASE("dhd: a setting that the device refuses is named, and the device close
 
 TEST_CASE("dhd: the device describes itself, and its model gives size and strength") {
   LoadedDhd fake;
-  const device::DeviceInfo info = device::DhdDevice(settings_of_fake()).info();
+  const DeviceInfo info = device::DhdDevice(settings_of_fake()).info();
   CHECK(info.name == "dhd");
   CHECK(info.model == "omega.3");
   CHECK(info.serial == "4242");
@@ -267,7 +264,7 @@ TEST_CASE("dhd: the device describes itself, and its model gives size and streng
   REQUIRE(info.workspace);
   CHECK(info.workspace->least_mm == Vec3{-80.0, -80.0, -55.0});
   CHECK(info.workspace->greatest_mm == Vec3{80.0, 80.0, 55.0});
-  CHECK(info.workspace->shape == device::WorkspaceShape::ellipsoid);
+  CHECK(info.workspace->shape == WorkspaceShape::ellipsoid);
   CHECK_FALSE(info.simulated);
 }
 
@@ -276,11 +273,11 @@ TEST_CASE("dhd: size and strength differ by model, and the settings come first")
   fake->system_type = 63;  // delta.3: 400 mm, 260 mm long; 20 N
   CHECK(device::DhdDevice(settings_of_fake()).info().workspace->greatest_mm ==
         Vec3{200.0, 200.0, 130.0});
-  device::DhdSettings settings = settings_of_fake();
+  DhdSettings settings = settings_of_fake();
   settings.max_force_n = 10.0;
   settings.continuous_force_n = 5.0;
   settings.workspace_mm = Vec3{300.0, 200.0, 100.0};
-  const device::DeviceInfo info = device::DhdDevice(settings).info();
+  const DeviceInfo info = device::DhdDevice(settings).info();
   CHECK(info.max_force_n == 10.0);
   CHECK(info.continuous_force_n == 5.0);
   CHECK(info.workspace->greatest_mm == Vec3{150.0, 100.0, 50.0});
@@ -288,7 +285,7 @@ TEST_CASE("dhd: size and strength differ by model, and the settings come first")
 
 TEST_CASE("dhd: a force that the model does not have, or a model without numbers, is refused") {
   LoadedDhd fake;
-  device::DhdSettings settings = settings_of_fake();
+  DhdSettings settings = settings_of_fake();
   SECTION("too strong") {
     settings.max_force_n = 13.0;
     CHECK_THROWS_WITH(device::DhdDevice(settings), holds_text("13 N, more than the 12 N"));
@@ -305,10 +302,8 @@ TEST_CASE("dhd: a force that the model does not have, or a model without numbers
 
 TEST_CASE(
     "dhd: a library without names and expert mode works, one without another function does not") {
-  device::DhdSettings settings;
-  settings.library = TOUCHTRIAL_OLD_DHD;
-  settings.max_force_n = 4.0;
-  settings.workspace_mm = Vec3{100.0, 100.0, 100.0};
+  DhdSettings settings{
+      .library = TOUCHTRIAL_OLD_DHD, .max_force_n = 4.0, .workspace_mm = Vec3{100.0, 100.0, 100.0}};
   CHECK(device::DhdDevice(settings).info().model == "Force Dimension device");
   {
     device::DhdDevice device(settings);
@@ -349,7 +344,7 @@ class Kit {
 };
 
 std::string library_found(const std::filesystem::path& named) {
-  device::DeviceSettings settings;
+  DeviceSettings settings;
   settings.dhd.library = named;
   const std::string where = device::device_driver("dhd").list(settings).at(0).where;
   return std::filesystem::path(where.substr(0, where.find(','))).filename().string();
@@ -375,8 +370,7 @@ TEST_CASE("dhd: a kit that the environment names is found without any setting") 
 
 TEST_CASE("dhd: a folder without a library is named, with the remedy") {
   const TempFolder empty;
-  device::DhdSettings settings;
-  settings.library = empty.path();
+  DhdSettings settings{.library = empty.path()};
   CHECK_THROWS_WITH(device::DhdDevice(settings), holds_text(empty.path().string()) &&
                                                      holds_text("is not found") &&
                                                      holds_text("dhd.library"));
@@ -384,7 +378,7 @@ TEST_CASE("dhd: a folder without a library is named, with the remedy") {
 
 TEST_CASE("dhd: a device that is missing, or does not open, is reported with the remedy") {
   LoadedDhd fake;
-  device::DhdSettings settings = settings_of_fake();
+  DhdSettings settings = settings_of_fake();
   SECTION("fewer devices") {
     settings.index = 1;
     CHECK_THROWS_WITH(device::DhdDevice(settings), holds_text("no device 1 (1 connected"));
@@ -402,14 +396,14 @@ TEST_CASE("dhd: a device that waits for its calibration gets no force, and none 
   fake->calibrated = false;
   device::DhdDevice device = opened(fake);
   CHECK_FALSE(next_sample(device).ready);
-  CHECK(device.readiness() == device::DeviceReadiness::needs_calibration);
+  CHECK(device.readiness() == DeviceReadiness::needs_calibration);
   const long begun = fake->polls;
   REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->polls > begun + 50; }));
   CHECK(fake->zero_forces_last >= 50);
   CHECK(fake.calls() == "open force_off ");
   fake->calibrated = true;
   CHECK(write_until(device, {0.0, 1.0, 0.0}, [&] { return up_n(fake) == 1.0; }));
-  CHECK(device.readiness() == device::DeviceReadiness::ready);
+  CHECK(device.readiness() == DeviceReadiness::ready);
 }
 
 TEST_CASE("dhd: a device that loses its calibration is not ready, and its force is off") {
@@ -419,20 +413,19 @@ TEST_CASE("dhd: a device that loses its calibration is not ready, and its force 
   fake->calibrated = false;
   REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->brakes.load(); }));
   CHECK_FALSE(next_sample(device).ready);
-  CHECK(device.readiness() == device::DeviceReadiness::needs_calibration);
-  CHECK(device.fault() == device::DeviceFault::none);
+  CHECK(device.readiness() == DeviceReadiness::needs_calibration);
+  CHECK(device.fault() == DeviceFault::none);
 }
 
 TEST_CASE("dhd: a device whose force comes on by its button alone asks a person to press it") {
   LoadedDhd fake;
   fake->wants_button = true;
   device::DhdDevice device = opened(fake);
-  REQUIRE(
-      eventually([&] { return device.readiness() == device::DeviceReadiness::needs_force_on; }));
+  REQUIRE(eventually([&] { return device.readiness() == DeviceReadiness::needs_force_on; }));
   CHECK_FALSE(next_sample(device).ready);
   fake.exports().press_force_button();
   CHECK(write_until(device, {0.0, 1.0, 0.0}, [&] { return up_n(fake) == 1.0; }));
-  CHECK(device.readiness() == device::DeviceReadiness::ready);
+  CHECK(device.readiness() == DeviceReadiness::ready);
 }
 
 TEST_CASE("dhd: a device at which a person switches force off is not ready, without a fault") {
@@ -441,25 +434,22 @@ TEST_CASE("dhd: a device at which a person switches force off is not ready, with
   REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return up_n(fake) == 1.0; }));
   const int cause = GENERATE(1, 4, 6);
   fake.exports().force_off(cause);
-  REQUIRE(
-      eventually([&] { return device.readiness() == device::DeviceReadiness::needs_force_on; }));
+  REQUIRE(eventually([&] { return device.readiness() == DeviceReadiness::needs_force_on; }));
   CHECK_FALSE(next_sample(device).ready);
-  CHECK(device.fault() == device::DeviceFault::none);
+  CHECK(device.fault() == DeviceFault::none);
   REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->zero_forces_last > 10; }));
   fake.exports().press_force_button();
   CHECK(write_until(device, {0.0, 1.0, 0.0}, [&] { return up_n(fake) == 1.0; }));
 }
 
 TEST_CASE("dhd: force that the device itself switches off is a fault by its cause") {
-  const auto [cause, fault] =
-      GENERATE(table<int, device::DeviceFault>({{2, device::DeviceFault::limit_passed},
-                                                {3, device::DeviceFault::driver},
-                                                {5, device::DeviceFault::link_lost}}));
+  const auto [cause, fault] = GENERATE(table<int, DeviceFault>(
+      {{2, DeviceFault::limit_passed}, {3, DeviceFault::driver}, {5, DeviceFault::link_lost}}));
   LoadedDhd fake;
   device::DhdDevice device = opened(fake);
   (void)ready_sample(device);
   fake.exports().force_off(cause);
-  CHECK(eventually([&] { return device.fault() != device::DeviceFault::none; }));
+  CHECK(eventually([&] { return device.fault() != DeviceFault::none; }));
   CHECK(device.fault() == fault);
 }
 
@@ -469,7 +459,7 @@ TEST_CASE("dhd: what switched force off in an earlier program is no fault of thi
   fake->wants_button = GENERATE(true, false);
   device::DhdDevice device = opened(fake);
   for (int i = 0; i < 100; ++i) (void)next_sample(device);
-  CHECK(device.fault() == device::DeviceFault::none);
+  CHECK(device.fault() == DeviceFault::none);
 }
 
 TEST_CASE(
@@ -477,7 +467,7 @@ TEST_CASE(
   LoadedDhd fake;
   device::DhdDevice device = opened(fake);
   REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return up_n(fake) == 1.0; }));
-  device::DeviceFault expected = device::DeviceFault::driver;
+  DeviceFault expected = DeviceFault::driver;
   SECTION("a position that cannot be read") {
     fake->position_fails = true;
   }
@@ -486,18 +476,18 @@ TEST_CASE(
   }
   SECTION("unplugged") {
     fake->connected = false;
-    expected = device::DeviceFault::link_lost;
+    expected = DeviceFault::link_lost;
   }
   SECTION("a position that is not a number") {
     fake->hand.rest_at({0.0, std::numeric_limits<double>::infinity(), 0.0});
-    expected = device::DeviceFault::bad_data;
+    expected = DeviceFault::bad_data;
   }
   REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->zero_forces_last > 10; }));
   CHECK(device.fault() == expected);
-  device::DeviceSample sample;
-  CHECK(device.read(sample) == device::DeviceStatus::fault);
+  DeviceSample sample;
+  CHECK(device.read(sample) == DeviceStatus::fault);
   CHECK(is_finite(sample.position_mm));
-  CHECK(device.write({}) == device::DeviceStatus::fault);
+  CHECK(device.write({}) == DeviceStatus::fault);
 }
 
 TEST_CASE("dhd: no reading is new while the library exchanges nothing with the device") {
@@ -507,11 +497,11 @@ TEST_CASE("dhd: no reading is new while the library exchanges nothing with the d
   fake->exchanges = false;
   const long begun = fake->polls;
   REQUIRE(eventually([&] { return fake->polls > begun + 10; }));
-  device::DeviceSample sample;
-  REQUIRE(device.read(sample) == device::DeviceStatus::ok);
+  DeviceSample sample;
+  REQUIRE(device.read(sample) == DeviceStatus::ok);
   const std::uint64_t last = sample.sequence;
   REQUIRE(eventually([&] { return fake->polls > begun + 60; }));
-  CHECK(device.read(sample) == device::DeviceStatus::ok);
+  CHECK(device.read(sample) == DeviceStatus::ok);
   CHECK(sample.sequence == last);
   fake->exchanges = true;
   CHECK(next_sample(device).sequence > last);
@@ -522,7 +512,7 @@ TEST_CASE("dhd: saturated motors are not a fault, and the servo is told of them"
   fake->saturated = true;
   device::DhdDevice device = opened(fake);
   REQUIRE(eventually([&] { return fake->polls > 100; }));
-  CHECK(device.fault() == device::DeviceFault::none);
+  CHECK(device.fault() == DeviceFault::none);
   CHECK(next_sample(device).limited);
   fake->saturated = false;
   CHECK_FALSE(next_sample(device).limited);
@@ -539,7 +529,7 @@ TEST_CASE("dhd: halting switches force off and the brakes on, until it is re-arm
   REQUIRE(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->polls > begun + 20; }));
   CHECK(fake->force_n.get() == Vec3{});  // nor the weight
   CHECK(fake->zero_forces_last > 10);
-  CHECK(device.readiness() == device::DeviceReadiness::ready);
+  CHECK(device.readiness() == DeviceReadiness::ready);
   device.rearm();
   CHECK(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->force_n.get().y == 1.0; }));
 }
@@ -549,7 +539,7 @@ TEST_CASE("dhd: a device that a session opens halted is ready, and pushes only o
   fake->own_mass_kg = 0.3;
   device::DhdDevice device = opened(fake);
   device.halt();
-  REQUIRE(eventually([&] { return device.readiness() == device::DeviceReadiness::ready; }));
+  REQUIRE(eventually([&] { return device.readiness() == DeviceReadiness::ready; }));
   const long begun = fake->polls;
   REQUIRE(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->polls > begun + 50; }));
   CHECK(fake->force_n.get() == Vec3{});
@@ -560,10 +550,10 @@ TEST_CASE("dhd: a device that a session opens halted is ready, and pushes only o
 /// A run of the servo in the fake's time, against a hand that bears a press of 1.2 N; the press
 /// grows within 0.3 s, so that the servo engages.
 /// \param tremble_n  of the hand
-device::ServoReport pressed(LoadedDhd& fake, device::HapticDevice& device, double tremble_n) {
+ServoReport pressed(LoadedDhd& fake, HapticDevice& device, double tremble_n) {
   constexpr double kPressN = 1.2;
-  device::PlacedDevice placed(device, {});
-  ForceBy press([&, ticks = 0](const device::DeviceSample& /*sample*/) mutable {
+  PlacedDevice placed(device, {});
+  ForceBy press([&, ticks = 0](const DeviceSample& /*sample*/) mutable {
     const double tremble = ++ticks % 2 == 0 ? tremble_n : -tremble_n;
     fake->hand.push_n.set({0.0, 0.0, tremble - kPressN});
     return Vec3{0.0, 0.0, std::min(kPressN, 0.004 * ticks)};
@@ -577,9 +567,9 @@ TEST_CASE("dhd: a position that stands still to the last bit under a press ends 
   LoadedDhd fake;
   device::DhdDevice device = opened(fake);
   (void)ready_sample(device);
-  const device::ServoReport report = pressed(fake, device, 0.0);
-  CHECK(report.end == device::ServoEnd::fault);
-  CHECK(report.fault == device::SafetyFault::frozen_encoders);
+  const ServoReport report = pressed(fake, device, 0.0);
+  CHECK(report.end == ServoEnd::fault);
+  CHECK(report.fault == SafetyFault::frozen_encoders);
   CHECK(report.ticks > 500);
   CHECK(eventually([&] { return fake->force_n.get() == Vec3{}; }));
 }
@@ -588,8 +578,8 @@ TEST_CASE("dhd: a hand that keeps as still under a press as a hand can is no fau
   LoadedDhd fake;
   device::DhdDevice device = opened(fake);
   (void)ready_sample(device);
-  CHECK(pressed(fake, device, 0.1).end == device::ServoEnd::time_limit);
-  CHECK(device.fault() == device::DeviceFault::none);
+  CHECK(pressed(fake, device, 0.1).end == ServoEnd::time_limit);
+  CHECK(device.fault() == DeviceFault::none);
 }
 
 TEST_CASE("dhd: a fault switches force off and the brakes on") {
@@ -612,8 +602,8 @@ TEST_CASE("dhd: closing sends zeros, switches force off, and closes the device")
   CHECK(fake.calls() == "open force_off force_on stop force_off close ");
 }
 
-std::vector<device::DeviceListing> listings_with(const std::filesystem::path& library) {
-  device::DeviceSettings settings;
+std::vector<DeviceListing> listings_with(const std::filesystem::path& library) {
+  DeviceSettings settings;
   settings.dhd.library = library;
   return device::device_driver("dhd").list(settings);
 }
@@ -621,9 +611,9 @@ std::vector<device::DeviceListing> listings_with(const std::filesystem::path& li
 TEST_CASE("the list of dhd names every connected device, and closes it") {
   fakes::LoadedDhd fake;
   fake->devices = 2;
-  const std::vector<device::DeviceListing> listings = listings_with(TOUCHTRIAL_FAKE_DHD);
+  const std::vector<DeviceListing> listings = listings_with(TOUCHTRIAL_FAKE_DHD);
   REQUIRE(listings.size() == 2);
-  for (const device::DeviceListing& listing : listings) {
+  for (const DeviceListing& listing : listings) {
     CHECK(listing.driver == "dhd");
     CHECK(listing.present);
     CHECK(listing.model == "omega.3");
@@ -636,7 +626,7 @@ TEST_CASE("the list of dhd names every connected device, and closes it") {
 }
 
 std::string initialised_with(const std::filesystem::path& library) {
-  device::DeviceSettings settings;
+  DeviceSettings settings;
   settings.dhd.library = library;
   return device::device_driver("dhd").initialise(settings);
 }
@@ -692,7 +682,7 @@ TEST_CASE("the list of dhd says what is missing, and how to mend it") {
     INFO(lack.library << " " << lack.missing);
     const fakes::LoadedDhd fake;
     lack.change(*fake.exports().state);
-    const std::vector<device::DeviceListing> listings = listings_with(lack.library);
+    const std::vector<DeviceListing> listings = listings_with(lack.library);
     REQUIRE(listings.size() == 1);
     CHECK(listings[0].present == lack.present);
     REQUIRE(listings[0].missing.size() == 1);

@@ -20,8 +20,7 @@ constexpr Lamps kRed{.red = true};
 constexpr Lamps kBlue{.blue = true};
 
 FalconOptions in_lockstep(Lockstep& lockstep) {
-  FalconOptions options;
-  options.pace = lockstep.pace();
+  FalconOptions options{.pace = lockstep.pace()};
   options.scheduling.policy = device::SchedulingPolicy::other;
   options.scheduling.lock_memory = false;
   return options;
@@ -125,8 +124,7 @@ TEST_CASE("the jump of the origin on homing is not a motion of the hand") {
 }
 
 TEST_CASE("the lights follow the settings") {
-  device::FalconSettings settings;
-  settings.led_order = {2, 1, 0};
+  device::FalconSettings settings{.led_order = {2, 1, 0}};
   Rig rig(true, settings);
   rig.lockstep.steps(3);
   CHECK(rig.emulator.lamps() == Lamps{.green = true});
@@ -172,8 +170,7 @@ TEST_CASE("a force that is not finite is sent as zero") {
 }
 
 TEST_CASE("the gravity bias is the Falcon's support, and the driver adds nothing to a force") {
-  device::FalconSettings settings;
-  settings.gravity_bias_n = {0.0, 0.5, 0.0};
+  device::FalconSettings settings{.gravity_bias_n = {0.0, 0.5, 0.0}};
   Rig rig(true, settings);
   CHECK(rig.device->support_force_n(rig.sample()) == Vec3{0.0, 0.5, 0.0});
   for (int i = 0; i < 20; ++i) rig.push({0.0, 0.0, 1.0});
@@ -183,8 +180,7 @@ TEST_CASE("the gravity bias is the Falcon's support, and the driver adds nothing
 }
 
 TEST_CASE("force and gravity bias each stay within their own limit on a Falcon") {
-  device::FalconSettings settings;
-  settings.gravity_bias_n = {0.0, 1.0, 0.0};
+  device::FalconSettings settings{.gravity_bias_n = {0.0, 1.0, 0.0}};
   Rig rig(true, settings);
   ConstantForce force({0.0, 0.0, 0.4});
   Vec3 most_n;
@@ -192,8 +188,7 @@ TEST_CASE("force and gravity bias each stay within their own limit on a Falcon")
     most_n = {most_n.x, std::max(most_n.y, force_n.y), std::max(most_n.z, force_n.z)};
     return Vec3{};
   });
-  device::ServoOptions options;
-  options.limit_ticks = 300;
+  device::ServoOptions options{.limit_ticks = 300};
   options.limits.max_force_n = 0.3;
   const device::ServoReport report = run_on(rig, force, options);
   CHECK(report.end == device::ServoEnd::time_limit);
@@ -203,15 +198,12 @@ TEST_CASE("force and gravity bias each stay within their own limit on a Falcon")
 
 TEST_CASE(
     "a Falcon's motor that bears all is limited before the force is, and the servo counts it") {
-  device::FalconSettings settings;
-  settings.motor_continuous = 345;
-  settings.motor_peak_s = 0.05;
+  device::FalconSettings settings{.motor_continuous = 345, .motor_peak_s = 0.05};
   Rig rig(true, settings);
   // At the centre 1 N upwards takes about 500 of one motor.
   rig.emulator.set_hand(trembling_hand());
   ConstantForce force({0.0, 1.0, 0.0});
-  device::ServoOptions options;
-  options.limit_ticks = 6'000;
+  device::ServoOptions options{.limit_ticks = 6'000};
   options.limits.engage_force_n = 2.0;
   const device::ServoReport report = run_on(rig, force, options);
   CHECK(report.end == device::ServoEnd::time_limit);
@@ -226,8 +218,7 @@ TEST_CASE("a Falcon whose encoders stop under a force ends the run, and its moto
     if (++calls == 500) rig.emulator.stick_encoders(true);
     return Vec3{0.0, 0.0, 1.1};
   });
-  device::ServoOptions options;
-  options.limit_ticks = 3'000;
+  device::ServoOptions options{.limit_ticks = 3'000};
   options.limits.engage_force_n = 2.0;
   const device::ServoReport report = run_on(rig, force, options);
   CHECK(report.fault == device::SafetyFault::frozen_encoders);
@@ -362,8 +353,7 @@ TEST_CASE("a run on a Falcon survives two lost replies in a row, and ends with t
   paced.lost = lost;
   ConstantForce force({0.0, 0.0, 0.4});
   KeptSamples kept;
-  device::ServoOptions options;
-  options.limit_ticks = 500;
+  device::ServoOptions options{.limit_ticks = 500};
   const device::ServoReport report = device::run_servo_in_virtual_time(paced, force, kept, options);
   INFO(lost << " lost");
   CHECK((report.end == device::ServoEnd::time_limit) == (lost <= 2));
@@ -424,8 +414,7 @@ TEST_CASE("closing sends packets without force and switches the lights off") {
 TEST_CASE("a firmware that does not run is reported") {
   const TempFolder folder;
   FalconEmulator emulator({.boot_loader = {.image = {1, 2, 3}}});
-  device::FalconSettings settings;
-  settings.firmware = write_dummy_firmware(folder.path());
+  device::FalconSettings settings{.firmware = write_dummy_firmware(folder.path())};
   CHECK_THROWS_WITH(FalconDevice(std::make_unique<EmulatorTransport>(emulator), settings),
                     holds_text("may not be a Falcon's firmware"));
 }

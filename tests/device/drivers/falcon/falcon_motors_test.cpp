@@ -18,10 +18,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 FalconSettings with_values(int peak, int continuous) {
-  FalconSettings settings;
-  settings.motor_peak = peak;
-  settings.motor_continuous = continuous;
-  return settings;
+  return {.motor_peak = peak, .motor_continuous = continuous};
 }
 
 /// \return what cold motors are sent

@@ -47,10 +47,7 @@ std::string HaplyService::next_line(const std::string& beginning) {
 }
 
 device::Inverse3Settings HaplyService::settings() const {
-  device::Inverse3Settings settings;
-  settings.host = "127.0.0.1";
-  settings.port = port_;
-  settings.http_port = http_port_;
+  device::Inverse3Settings settings{.host = "127.0.0.1", .port = port_, .http_port = http_port_};
   // Without the channel: one where nobody listens.
   settings.events_port = events_port_ == 0 ? 1 : events_port_;
   return settings;

@@ -33,8 +33,7 @@ TEST_CASE("an observer of the drawn path guesses if the two textures are the sam
 }
 
 TEST_CASE("without displacement there is nothing to see, and the observer guesses") {
-  device::MouseOptions stiff;
-  stiff.pull_n_per_mm = 100.0;
+  device::MouseOptions stiff{.pull_n_per_mm = 100.0};
   const double right =
       share_named_rightly(2, kStrokes, gratings({{4.0, 0.05}, {7.0, 0.05}}), stiff);
   CHECK(right > 0.3);

@@ -16,28 +16,27 @@
 namespace touchtrial {
 namespace {
 
+using namespace device;
 using namespace std::chrono_literals;
 
 /// One run of a script, tick by tick, without a safety chain, to test the device's own laws.
-std::vector<device::ServoSample> run(const ScriptedPointer::Script& script,
-                                     device::ForceSource& force, std::int64_t ticks,
-                                     double rate_hz = 1000.0) {
-  device::VirtualClock clock;
+std::vector<ServoSample> run(const ScriptedPointer::Script& script, ForceSource& force,
+                             std::int64_t ticks, double rate_hz = 1000.0) {
+  VirtualClock clock;
   ScriptedPointer pointer(clock, script);
-  device::MouseDevice mouse(pointer, clock);
-  std::vector<device::ServoSample> samples;
+  MouseDevice mouse(pointer, clock);
+  std::vector<ServoSample> samples;
   for (std::int64_t tick = 0; tick < ticks; ++tick) {
-    clock.wait_until(
-        device::ServoClock::Time(std::llround(static_cast<double>(tick) * 1e9 / rate_hz)));
-    device::DeviceSample sample;
-    REQUIRE(mouse.read(sample) == device::DeviceStatus::ok);
+    clock.wait_until(ServoClock::Time(std::llround(static_cast<double>(tick) * 1e9 / rate_hz)));
+    DeviceSample sample;
+    REQUIRE(mouse.read(sample) == DeviceStatus::ok);
     samples.push_back({sample.position_mm, force.force_n(sample), tick});
-    REQUIRE(mouse.write(samples.back().force_n) == device::DeviceStatus::ok);
+    REQUIRE(mouse.write(samples.back().force_n) == DeviceStatus::ok);
   }
   return samples;
 }
 
-device::PointerState at(double x_mm, double y_mm, bool pressed = false) {
+PointerState at(double x_mm, double y_mm, bool pressed = false) {
   return {{x_mm, y_mm}, pressed, false, 0};
 }
 
@@ -57,7 +56,7 @@ TEST_CASE("on a flat plane the moving stylus trails its pointer by no more than 
   FlatWall wall;
   const double speed_mm_s = 100.0;
   const auto script = [=](double time_s) { return at(speed_mm_s * time_s, 0.0, true); };
-  for (const device::ServoSample& sample : run(script, wall, 2000)) {
+  for (const ServoSample& sample : run(script, wall, 2000)) {
     const double hand_mm = speed_mm_s * static_cast<double>(sample.tick) * 1e-3;
     CHECK(sample.position_mm.x <= hand_mm + 1e-12);
     CHECK(sample.position_mm.x >= hand_mm - 0.025 * speed_mm_s);
@@ -72,13 +71,13 @@ TEST_CASE("a steady tangential force displaces the stylus by four millimetres fo
 }
 
 TEST_CASE("no force displaces the stylus beyond its bound, however it alternates") {
-  ForceBy force([tick = 0](const device::DeviceSample&) mutable {
+  ForceBy force([tick = 0](const DeviceSample&) mutable {
     return Vec3{++tick / 37 % 2 == 0 ? -3.0 : 3.0, 1.0, 0.0};
   });
-  const device::MouseOptions defaults;
+  const MouseOptions defaults;
   const double bound_mm = defaults.greatest_pull_n / defaults.pull_n_per_mm;
   double farthest_mm = 0.0;
-  for (const device::ServoSample& sample : run([](double) { return at(0.0, 0.0); }, force, 5000)) {
+  for (const ServoSample& sample : run([](double) { return at(0.0, 0.0); }, force, 5000)) {
     farthest_mm = std::max(farthest_mm, norm(Vec2{sample.position_mm.x, sample.position_mm.y}));
   }
   CHECK(farthest_mm <= bound_mm + 1e-9);
@@ -86,12 +85,12 @@ TEST_CASE("no force displaces the stylus beyond its bound, however it alternates
 }
 
 TEST_CASE("the stylus returns to the pointer when the force is gone, without passing it") {
-  ForceBy force([tick = 0](const device::DeviceSample&) mutable {
+  ForceBy force([tick = 0](const DeviceSample&) mutable {
     return Vec3{++tick < 300 ? 0.1 : 0.0, 0.0, 0.0};
   });
   const auto samples = run([](double) { return at(5.0, 5.0); }, force, 1000);
   CHECK(samples[299].position_mm.x > 8.9);
-  for (const device::ServoSample& sample : samples) CHECK(sample.position_mm.x >= 5.0);
+  for (const ServoSample& sample : samples) CHECK(sample.position_mm.x >= 5.0);
   CHECK(std::abs(samples.back().position_mm.x - 5.0) < 1e-9);
 }
 
@@ -99,7 +98,7 @@ TEST_CASE(
     "a force that grows against the motion slows the stylus, one that grows with it speeds it") {
   // Uphill or downhill from 20 mm on: the force along x changes by 0.02 N/mm.
   const double rise_n_per_mm = GENERATE(-0.01, 0.02);
-  ForceBy slope([=](const device::DeviceSample& sample) {
+  ForceBy slope([=](const DeviceSample& sample) {
     return Vec3{-rise_n_per_mm * std::clamp(sample.position_mm.x - 20.0, 0.0, 15.0), 0.0, 0.0};
   });
   const auto script = [](double time_s) { return at(20.0 * time_s, 0.0); };
@@ -125,23 +124,23 @@ TEST_CASE("pressing lands smoothly on the wall and holds 0.7 N, releasing lifts 
   CHECK(samples[tick_at(1.15)].force_n.z == Approx(0.7).margin(1e-3));
   CHECK(samples[tick_at(1.15)].position_mm.z == Approx(-0.7 / 0.4).margin(0.01));
   CHECK(samples.back().force_n.z == 0.0);
-  CHECK(samples.back().position_mm.z == Approx(device::MouseOptions{}.hover_mm).margin(1e-3));
+  CHECK(samples.back().position_mm.z == Approx(MouseOptions{}.hover_mm).margin(1e-3));
   CHECK(greatest_n < 0.8);
   CHECK(steepest_n_per_s < 25.0);
 }
 
 TEST_CASE("a hand that was down when a plane went off is up when the next comes on") {
-  device::VirtualClock clock;
+  VirtualClock clock;
   bool pressed = true;
   ScriptedPointer pointer(clock, [&](double) { return at(20.0, 20.0, pressed); });
-  device::MouseDevice mouse(pointer, clock);
+  MouseDevice mouse(pointer, clock);
   FlatWall wall;
-  device::DeviceSample sample;
+  DeviceSample sample;
   const auto feel = [&](int ticks) {
     for (int tick = 0; tick < ticks; ++tick) {
       clock.wait_until(clock.now() + 1ms);
-      REQUIRE(mouse.read(sample) == device::DeviceStatus::ok);
-      REQUIRE(mouse.write(wall.force_n(sample)) == device::DeviceStatus::ok);
+      REQUIRE(mouse.read(sample) == DeviceStatus::ok);
+      REQUIRE(mouse.write(wall.force_n(sample)) == DeviceStatus::ok);
     }
   };
   feel(500);
@@ -149,7 +148,7 @@ TEST_CASE("a hand that was down when a plane went off is up when the next comes 
   pressed = GENERATE(false, true);
   clock.wait_until(clock.now() + 5s);  // nobody reads the device
   feel(1);
-  CHECK(sample.position_mm.z == Approx(device::MouseOptions{}.hover_mm).margin(0.1));
+  CHECK(sample.position_mm.z == Approx(MouseOptions{}.hover_mm).margin(0.1));
   feel(500);
   CHECK((sample.position_mm.z < 0.0) == pressed);
 }
@@ -157,11 +156,11 @@ TEST_CASE("a hand that was down when a plane went off is up when the next comes 
 TEST_CASE("without a wall a pressing hand goes no deeper than its reach") {
   ConstantForce none({});
   const auto samples = run([](double) { return at(0.0, 0.0, true); }, none, 2000);
-  CHECK(samples.back().position_mm.z == -device::MouseDevice::kReachMm);
+  CHECK(samples.back().position_mm.z == -MouseDevice::kReachMm);
 }
 
 TEST_CASE("the stylus is stable on stiff walls and textures at every rate of the servo") {
-  ForceBy stiff([](const device::DeviceSample& sample) -> Vec3 {
+  ForceBy stiff([](const DeviceSample& sample) -> Vec3 {
     const Vec3 p = sample.position_mm;
     if (p.z >= 0.0) return {};
     const auto valley = [](double x) { return -10.0 * (x - std::round(x)) / 5.0; };
@@ -179,31 +178,31 @@ TEST_CASE("the stylus is stable on stiff walls and textures at every rate of the
 TEST_CASE("no pointer and no force moves the stylus faster than the servo lets a hand move") {
   RandomStream random(7, "hostile pointer");
   const auto either = [&random] { return random.uniform() < 0.5 ? -3.0 : 3.0; };
-  ForceBy force([&](const device::DeviceSample&) { return Vec3{either(), either(), 0.0}; });
-  device::VirtualClock clock;
+  ForceBy force([&](const DeviceSample&) { return Vec3{either(), either(), 0.0}; });
+  VirtualClock clock;
   ScriptedPointer pointer(clock, [](double time_s) {
     return at(std::fmod(time_s, 0.4) < 0.2 ? -500.0 : 500.0, 0.0, true);
   });
-  device::MouseDevice mouse(pointer, clock);
-  device::DeviceSample sample;
+  MouseDevice mouse(pointer, clock);
+  DeviceSample sample;
   double fastest_mm_s = 0.0;
   for (int tick = 0; tick < 20'000; ++tick) {
     clock.wait_until(tick * 1ms);
-    REQUIRE(mouse.read(sample) == device::DeviceStatus::ok);
+    REQUIRE(mouse.read(sample) == DeviceStatus::ok);
     fastest_mm_s = std::max(fastest_mm_s, norm(sample.velocity_mm_s));
-    REQUIRE(mouse.write(force.force_n(sample)) == device::DeviceStatus::ok);
+    REQUIRE(mouse.write(force.force_n(sample)) == DeviceStatus::ok);
   }
   CHECK(fastest_mm_s < 1700.0);
   CHECK(fastest_mm_s > 400.0);
 }
 
 TEST_CASE("readings are numbered even while the pointer rests, and the window gets them") {
-  device::VirtualClock clock;
+  VirtualClock clock;
   ScriptedPointer pointer(clock, [](double) { return at(3.0, 4.0, true); });
-  device::MouseDevice mouse(pointer, clock);
-  device::DeviceSample sample;
+  MouseDevice mouse(pointer, clock);
+  DeviceSample sample;
   for (std::uint64_t reading = 1; reading <= 3; ++reading) {
-    REQUIRE(mouse.read(sample) == device::DeviceStatus::ok);
+    REQUIRE(mouse.read(sample) == DeviceStatus::ok);
     CHECK(sample.sequence == reading);
     CHECK(sample.buttons == 1U);
     CHECK(pointer.shown.sequence == reading);
@@ -212,47 +211,46 @@ TEST_CASE("readings are numbered even while the pointer rests, and the window ge
 }
 
 TEST_CASE("while the window hangs the hand lets go, and the stylus stays where it was") {
-  device::VirtualClock clock;
+  VirtualClock clock;
   ScriptedPointer pointer(clock, [](double) { return at(3.0, 4.0, true); });
   pointer.hangs_after = 100;
-  device::MouseDevice mouse(pointer, clock);
+  MouseDevice mouse(pointer, clock);
   FlatWall wall;
   KeptSamples kept;
   CHECK(device::run_servo(mouse, wall, kept, {.limit_ticks = 2500}, clock).end ==
-        device::ServoEnd::time_limit);
+        ServoEnd::time_limit);
   CHECK(kept.samples[1400].force_n.z > 0.69);
   CHECK(kept.samples[2400].force_n.z == 0.0);
   CHECK(kept.samples[2400].position_mm.x == 3.0);
 }
 
 TEST_CASE("a closed window is a lost link, and the last force is zero") {
-  device::VirtualClock clock;
+  VirtualClock clock;
   ScriptedPointer pointer(clock, [](double time_s) {
-    device::PointerState state = at(0.0, 0.0, true);
+    PointerState state = at(0.0, 0.0, true);
     state.closed = time_s >= 0.5;
     return state;
   });
-  device::MouseDevice mouse(pointer, clock);
+  MouseDevice mouse(pointer, clock);
   FlatWall wall;
   KeptSamples kept;
-  const device::ServoReport report =
-      device::run_servo(mouse, wall, kept, {.limit_ticks = 1000}, clock);
-  CHECK(report.end == device::ServoEnd::fault);
-  CHECK(report.device_fault == device::DeviceFault::link_lost);
+  const ServoReport report = device::run_servo(mouse, wall, kept, {.limit_ticks = 1000}, clock);
+  CHECK(report.end == ServoEnd::fault);
+  CHECK(report.device_fault == DeviceFault::link_lost);
   CHECK(report.ticks == 500);
 }
 
 TEST_CASE("halt makes the hand let go and takes the force from the stylus until it is re-armed") {
-  device::VirtualClock clock;
+  VirtualClock clock;
   ScriptedPointer pointer(clock, [](double) { return at(0.0, 0.0, true); });
-  device::MouseDevice mouse(pointer, clock);
-  device::DeviceSample sample;
-  const auto tick_for = [&](device::ServoClock::Time time) {
+  MouseDevice mouse(pointer, clock);
+  DeviceSample sample;
+  const auto tick_for = [&](ServoClock::Time time) {
     for (const auto end = clock.now() + time; clock.now() < end;
          clock.wait_until(clock.now() + 1ms)) {
-      REQUIRE(mouse.read(sample) == device::DeviceStatus::ok);
+      REQUIRE(mouse.read(sample) == DeviceStatus::ok);
       REQUIRE(mouse.write({0.1, 0.0, std::max(0.0, -0.4 * sample.position_mm.z)}) ==
-              device::DeviceStatus::ok);
+              DeviceStatus::ok);
     }
   };
   tick_for(1s);
@@ -270,33 +268,31 @@ TEST_CASE("halt makes the hand let go and takes the force from the stylus until 
 TEST_CASE(
     "a mouse is not ready before its window has begun, and takes a force that is not a number as "
     "zero") {
-  device::VirtualClock clock;
-  device::PointerExchange exchange;
-  device::MouseDevice mouse(exchange, clock);
-  device::DeviceSample sample;
-  REQUIRE(mouse.read(sample) == device::DeviceStatus::ok);
+  VirtualClock clock;
+  PointerExchange exchange;
+  MouseDevice mouse(exchange, clock);
+  DeviceSample sample;
+  REQUIRE(mouse.read(sample) == DeviceStatus::ok);
   CHECK_FALSE(sample.ready);
   exchange.publish(at(7.0, 8.0));
-  REQUIRE(mouse.write({std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}) ==
-          device::DeviceStatus::ok);
+  REQUIRE(mouse.write({std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}) == DeviceStatus::ok);
   clock.wait_until(1ms);
-  REQUIRE(mouse.read(sample) == device::DeviceStatus::ok);
+  REQUIRE(mouse.read(sample) == DeviceStatus::ok);
   CHECK(sample.ready);
   CHECK(sample.position_mm.x == 7.0);
   CHECK(exchange.stylus().sequence == 2);
 }
 
 TEST_CASE("the mouse says that it is visual, and refuses options out of range") {
-  device::VirtualClock clock;
-  device::PointerExchange exchange;
-  CHECK(device::MouseDevice(exchange, clock).info().visual);
-  CHECK(device::MouseDevice(exchange, clock).info().name == "mouse");
-  CHECK_THROWS_AS(device::MouseDevice(exchange, clock, {.pull_n_per_mm = 0.0}),
-                  std::invalid_argument);
+  VirtualClock clock;
+  PointerExchange exchange;
+  CHECK(MouseDevice(exchange, clock).info().visual);
+  CHECK(MouseDevice(exchange, clock).info().name == "mouse");
+  CHECK_THROWS_AS(MouseDevice(exchange, clock, {.pull_n_per_mm = 0.0}), std::invalid_argument);
 }
 
 TEST_CASE("a smooth pull never leaves the range of its targets, whatever the steps") {
-  device::SmoothPull pull(0.01);
+  SmoothPull pull(0.01);
   const double step_s = GENERATE(0.0, 1e-4, 1e-3, 0.5, 1e6);
   for (int i = 0; i < 500; ++i) {
     pull.step({i % 3 == 0 ? -2.0 : 1.0, 0.5}, step_s);
@@ -310,13 +306,13 @@ TEST_CASE("the mouse is present where there is a display, and says what is missi
   const EnvironmentVariable wayland("WAYLAND_DISPLAY", nullptr);
   {
     const EnvironmentVariable display("DISPLAY", ":7");
-    const device::DeviceListing listing = device::device_driver("mouse").list({}).at(0);
+    const DeviceListing listing = device::device_driver("mouse").list({}).at(0);
     CHECK(listing.present);
     CHECK(listing.where == ":7");
     CHECK(listing.missing.empty());
   }
   const EnvironmentVariable no_display("DISPLAY", nullptr);
-  const device::DeviceListing listing = device::device_driver("mouse").list({}).at(0);
+  const DeviceListing listing = device::device_driver("mouse").list({}).at(0);
   CHECK_FALSE(listing.present);
   REQUIRE(listing.missing.size() == 1);
   CHECK_THAT(listing.missing[0], holds_text("graphical session"));
@@ -325,8 +321,7 @@ TEST_CASE("the mouse is present where there is a display, and says what is missi
 TEST_CASE("the registry knows the mouse, and says that only a window can open it") {
   CHECK_THROWS_AS(device::open_device("mouse", {}), DeviceError);
   bool listed = false;
-  for (const device::DeviceListing& listing : device::list_devices({}))
-    listed |= listing.driver == "mouse";
+  for (const DeviceListing& listing : list_devices({})) listed |= listing.driver == "mouse";
   CHECK(listed);
 }
 

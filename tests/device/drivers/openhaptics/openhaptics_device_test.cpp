@@ -18,9 +18,7 @@ using fakes::next_sample;
 using fakes::write_until;
 
 device::OpenHapticsSettings settings_of_fake() {
-  device::OpenHapticsSettings settings;
-  settings.library = TOUCHTRIAL_FAKE_HD;
-  return settings;
+  return {.library = TOUCHTRIAL_FAKE_HD};
 }
 
 TEST_CASE("openhaptics: the device is opened by the first of its default names that answers") {
@@ -348,8 +346,7 @@ TEST_CASE("openhaptics: what is missing is listed, and refused: device, library,
   CHECK_FALSE(listing.present);
   REQUIRE(listing.missing.size() == 1);
   CHECK_THAT(listing.missing[0], holds_text(missing));
-  device::OpenHapticsSettings settings;
-  settings.library = library;
+  device::OpenHapticsSettings settings{.library = library};
   CHECK_THROWS_AS(device::OpenHapticsDevice(settings), DeviceError);
   CHECK_THROWS_WITH(device::OpenHapticsDevice(settings), holds_text(missing));
 }

@@ -24,10 +24,7 @@ class LockstepClock final : public device::ServoClock {
     return std::make_unique<EndingPace>(locksteps_.back()->pace());
   }
   [[nodiscard]] device::PluginOptions plugin_options() {
-    device::PluginOptions options;
-    options.pace = pace();
-    options.scheduling = {device::SchedulingPolicy::other, 0, false};
-    return options;
+    return {.pace = pace(), .scheduling = {device::SchedulingPolicy::other, 0, false}};
   }
 
   [[nodiscard]] Time now() noexcept override { return now_; }

@@ -198,8 +198,7 @@ TEST_CASE("a plug-in that repeats a reading gives no new one, which the safety c
 }
 
 TEST_CASE("a plug-in whose call never returns gives no new reading, and closing does not wait") {
-  device::PluginOptions options;
-  options.scheduling = {device::SchedulingPolicy::other, 0, false};
+  device::PluginOptions options{.scheduling = {device::SchedulingPolicy::other, 0, false}};
   device::PluginSettings settings = broken_by("hanging");
   settings.library = TOUCHTRIAL_HANGING_PLUGIN;
   device::PluginDevice device(settings, std::move(options));

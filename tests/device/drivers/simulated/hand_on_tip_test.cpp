@@ -17,21 +17,17 @@
 namespace touchtrial {
 namespace {
 
-using device::HandKind;
-using device::HeldDevice;
+using namespace device;
 
 constexpr PlaneGeometry kPlane{0.2, 500, 500};
 
-device::HandOptions grip(const device::HandFactors& factors = {}) {
-  device::HandOptions options;
-  options.model = HandKind::stylus_grip;
-  options.factors = factors;
-  return options;
+HandOptions grip(const HandFactors& factors = {}) {
+  return {.model = HandKind::stylus_grip, .factors = factors};
 }
 
 /// How far a constant force moves the tip in the end.
-Vec3 deflection_mm(const device::HandOptions& options, Vec3 force_n) {
-  HeldDevice held(options, device::device_model("ideal"));
+Vec3 deflection_mm(const HandOptions& options, Vec3 force_n) {
+  HeldDevice held(options, device_model("ideal"));
   for (int i = 0; i < 20'000; ++i) held.tick(force_n, {}, 0.0);
   return held.device.true_position_mm();
 }
@@ -45,18 +41,18 @@ TEST_CASE("a constant force bends fingers and arm along the plane by what their 
 }
 
 TEST_CASE("across the plane the grip pushes with one force at every height") {
-  const device::HandFactors factors{.damping = GENERATE(1.0, 2.0), .mass = 1.5};
-  HeldDevice held(grip(factors), device::device_model("ideal"));
+  const HandFactors factors{.damping = GENERATE(1.0, 2.0), .mass = 1.5};
+  HeldDevice held(grip(factors), device_model("ideal"));
   for (int i = 0; i < 3000; ++i) held.tick({0.0, 0.0, 0.2}, {}, 0.7);
   CHECK(held.device.true_velocity_mm_s().z ==
         Approx(-500.0 / (6.4 * factors.damping)).epsilon(1e-6));
 }
 
 TEST_CASE("a grip stays stable on a device of any mass, however stiff the hand is") {
-  device::DeviceModel model;
+  DeviceModel model;
   model.mass_kg = GENERATE(0.0, 0.0001, 0.02, 5.0);
   model.zero_order_hold = GENERATE(false, true);
-  const device::HandFactors factors{GENERATE(1.0, 20.0, 400.0), GENERATE(0.0, 1.0), 0.05};
+  const HandFactors factors{GENERATE(1.0, 20.0, 400.0), GENERATE(0.0, 1.0), 0.05};
   HeldDevice held(grip(factors), model);
   held.place({3.0, -2.0, 1.0});
   double farthest_mm = 0.0;
@@ -70,7 +66,7 @@ TEST_CASE("a grip stays stable on a device of any mass, however stiff the hand i
 
 TEST_CASE("a grip gives a device at least 0.03 kg at the tip, and no more than that") {
   const auto jump_mm_s = [](double mass_kg) {
-    device::DeviceModel model;
+    DeviceModel model;
     model.mass_kg = mass_kg;
     HeldDevice held(grip({0.0, 0.0, 1.0}), model);
     held.tick({3.0, 0.0, 0.0}, {}, 0.0);
@@ -82,21 +78,20 @@ TEST_CASE("a grip gives a device at least 0.03 kg at the tip, and no more than t
 }
 
 TEST_CASE("a hand with a grip lands, keeps its push, and follows its path") {
-  device::HandOptions options = grip();
+  HandOptions options = grip();
   options.explore_s = 6.0;
   RandomStream random(8, "hand_on_tip_test");
   const device::ExplorationPath path(kPlane, {.duration_s = options.explore_s}, random);
-  device::SimulatedHand hand(options, path, device::device_model(GENERATE("ideal", "touch")));
+  device::SimulatedHand hand(options, path, device_model(GENERATE("ideal", "touch")));
   FlatWall wall;
   KeptSamples kept;
-  const device::ServoReport report = device::run_servo_in_virtual_time(hand, wall, kept, {});
-  REQUIRE(report.end == device::ServoEnd::hand_stopped);
+  const ServoReport report = device::run_servo_in_virtual_time(hand, wall, kept, {});
+  REQUIRE(report.end == ServoEnd::hand_stopped);
   std::size_t stroke = 0;
   double farthest_mm = 0.0;
   double push_sum_n = 0.0;
   for (std::size_t i = 0; i < kept.samples.size(); ++i) {
-    const Vec2 target_mm =
-        path.at(static_cast<double>(i) * device::kServoTickS, stroke).position_mm;
+    const Vec2 target_mm = path.at(static_cast<double>(i) * kServoTickS, stroke).position_mm;
     const Vec3 at_mm = kept.samples[i].position_mm;
     farthest_mm = std::max(farthest_mm, norm(Vec2{at_mm.x, at_mm.y} - target_mm));
     if (i >= 1500) push_sum_n += kept.samples[i].force_n.z;
@@ -107,7 +102,7 @@ TEST_CASE("a hand with a grip lands, keeps its push, and follows its path") {
 }
 
 TEST_CASE("a hand that foresees its way without forces, and its copies, move and feel the same") {
-  class Sensed final : public device::TipSense {
+  class Sensed final : public TipSense {
    public:
     void feel(const Vec3& position_mm, const Vec3& /*force_n*/,
               const Vec3& acceleration_m_s2) noexcept override {
@@ -118,10 +113,9 @@ TEST_CASE("a hand that foresees its way without forces, and its copies, move and
   };
   const std::string name = GENERATE("ideal", "touch", "falcon");
   RandomStream random(4, "hand_on_tip_test");
-  device::HandOptions options;
-  options.explore_s = 0.7;
+  HandOptions options{.explore_s = 0.7};
   const device::ExplorationPath path(kPlane, {}, random);
-  const device::SimulatedHand plain(options, path, device::device_model(name));
+  const device::SimulatedHand plain(options, path, device_model(name));
   device::SimulatedHand foreseeing = plain;
   foreseeing.foresee();
   std::vector<Vec3> expected;
@@ -129,12 +123,12 @@ TEST_CASE("a hand that foresees its way without forces, and its copies, move and
     device::SimulatedHand hand = one;
     Sensed sense;
     hand.feel_by(sense);
-    device::DeviceSample sample;
-    for (int i = 0; hand.read(sample) == device::DeviceStatus::ok; ++i) {
+    DeviceSample sample;
+    for (int i = 0; hand.read(sample) == DeviceStatus::ok; ++i) {
       REQUIRE(hand.write({0.1 * std::sin(0.3 * i), -0.1 * std::cos(0.2 * i), 0.2}) ==
-              device::DeviceStatus::ok);
+              DeviceStatus::ok);
     }
-    REQUIRE(hand.write({}) == device::DeviceStatus::ok);
+    REQUIRE(hand.write({}) == DeviceStatus::ok);
     REQUIRE(sense.felt.size() == 2 * 701);
     if (expected.empty()) expected = sense.felt;
     CHECK(sense.felt == expected);
@@ -142,7 +136,7 @@ TEST_CASE("a hand that foresees its way without forces, and its copies, move and
 }
 
 TEST_CASE("a simulated hand yields by its tip's velocity less that without forces") {
-  class Sensed final : public device::TipSense {
+  class Sensed final : public TipSense {
    public:
     void feel(const Vec3& /*position_mm*/, const Vec3& /*force_n*/,
               const Vec3& acceleration_m_s2) noexcept override {
@@ -150,8 +144,8 @@ TEST_CASE("a simulated hand yields by its tip's velocity less that without force
     }
     Vec3 velocity_mm_s;
   };
-  const device::HandOptions options = grip({1.2, 0.9, 1.1});
-  const device::DeviceModel touch = device::device_model("touch");
+  const HandOptions options = grip({1.2, 0.9, 1.1});
+  const DeviceModel touch = device_model("touch");
   RandomStream random(3, "hand_on_tip_test");
   const device::ExplorationPath path(kPlane, {}, random);
   device::SimulatedHand hand(options, path, touch);
@@ -165,14 +159,14 @@ TEST_CASE("a simulated hand yields by its tip's velocity less that without force
     one->place({first_mm.x, first_mm.y, options.start_height_mm});
   }
   for (int i = 0; i < 2000; ++i) {
-    const double t_s = i * device::kServoTickS;
+    const double t_s = i * kServoTickS;
     const double u = std::min(t_s / device::SimulatedHand::kPushBuildUpS, 1.0);
-    const device::PathPoint target = path.at(t_s, stroke);
+    const PathPoint target = path.at(t_s, stroke);
     const double push_n = options.push_n * (u * u * (3.0 - 2.0 * u));
     const Vec3 force_n{0.1 * std::sin(0.3 * i), -0.1 * std::cos(0.2 * i), 0.2};
     held.tick(force_n, target, push_n);
     in_the_air.tick({}, target, push_n);
-    REQUIRE(hand.write(force_n) == device::DeviceStatus::ok);
+    REQUIRE(hand.write(force_n) == DeviceStatus::ok);
     const Vec3 air_mm_s = in_the_air.device.true_velocity_mm_s();
     const Vec3 off_mm_s = held.device.true_velocity_mm_s() - Vec3{air_mm_s.x, air_mm_s.y, 0.0};
     REQUIRE(norm(hand.yielding_velocity_mm_s() - off_mm_s) < 1e-9);
@@ -181,10 +175,10 @@ TEST_CASE("a simulated hand yields by its tip's velocity less that without force
 }
 
 TEST_CASE("a held device's tick neither allocates nor locks") {
-  HeldDevice held(grip(), device::device_model("touch"));
+  HeldDevice held(grip(), device_model("touch"));
   static_cast<void>(take_realtime_offences());
   {
-    const device::RealtimeRegion region;
+    const RealtimeRegion region;
     for (int i = 0; i < 100; ++i) held.tick({0.5, 0.1, 0.0}, {{1.0, 1.0}, {50.0, 0.0}}, 0.7);
   }
   CHECK(take_realtime_offences() == RealtimeOffences{});
@@ -193,9 +187,8 @@ TEST_CASE("a held device's tick neither allocates nor locks") {
 
 TEST_CASE("a hand whose factors are impossible is refused") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const device::HandFactors& factors :
-       {device::HandFactors{-1.0, 1.0, 1.0}, device::HandFactors{1.0, nan, 1.0},
-        device::HandFactors{1.0, 1.0, 0.0}}) {
+  for (const HandFactors& factors :
+       {HandFactors{-1.0, 1.0, 1.0}, HandFactors{1.0, nan, 1.0}, HandFactors{1.0, 1.0, 0.0}}) {
     CHECK_THROWS_AS(HeldDevice(grip(factors), {}), std::invalid_argument);
   }
 }

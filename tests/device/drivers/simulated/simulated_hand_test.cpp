@@ -34,9 +34,7 @@ std::size_t landing_of(const std::vector<device::ServoSample>& samples) {
 
 TEST_CASE(
     "a hand that pushes on a flat wall keeps contact, steady to 0.02 N, 0.5 s after landing") {
-  device::HandOptions options;
-  options.push_n = GENERATE(0.3, 0.7, 1.3, 2.0);
-  options.explore_s = 3.0;
+  device::HandOptions options{.push_n = GENERATE(0.3, 0.7, 1.3, 2.0), .explore_s = 3.0};
   device::SimulatedHand hand = hand_with(options);
   const std::vector<device::ServoSample> samples = touch_flat_wall(hand);
   const std::size_t settled = landing_of(samples) + 500;
@@ -47,9 +45,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a hand lands from above, gently, within half a second") {
-  device::HandOptions options;
-  options.start_height_mm = GENERATE(8.0, 20.0);
-  options.explore_s = 2.0;
+  device::HandOptions options{.start_height_mm = GENERATE(8.0, 20.0), .explore_s = 2.0};
   device::SimulatedHand hand = hand_with(options);
   const std::vector<device::ServoSample> samples = touch_flat_wall(hand);
   CHECK(samples.front().position_mm.z == options.start_height_mm);
@@ -59,8 +55,7 @@ TEST_CASE("a hand lands from above, gently, within half a second") {
 }
 
 TEST_CASE("a hand on a flat wall follows its path") {
-  device::HandOptions options;
-  options.explore_s = 4.0;
+  device::HandOptions options{.explore_s = 4.0};
   device::SimulatedHand hand = hand_with(options, 8);
   RandomStream random(8, "simulated_hand_test");
   const device::ExplorationPath path(kPlane, {.duration_s = options.explore_s}, random);
@@ -75,10 +70,8 @@ TEST_CASE("a hand on a flat wall follows its path") {
 }
 
 TEST_CASE("a hand that only bounces on a spring loses energy and never gains any") {
-  device::HandOptions options;
-  options.push_n = 0.0;
-  options.push_damping_n_s_per_mm = 0.0005;
-  options.arm_stiffness_n_per_mm = 0.0;
+  device::HandOptions options{
+      .arm_stiffness_n_per_mm = 0.0, .push_n = 0.0, .push_damping_n_s_per_mm = 0.0005};
   device::SimulatedHand hand = hand_with(options);
   constexpr double kStiffness = 0.4;
   const auto energy_mj = [&](const device::DeviceSample& s) {
@@ -101,8 +94,7 @@ TEST_CASE("a hand that only bounces on a spring loses energy and never gains any
 }
 
 TEST_CASE("forces move a hand as far as its arm's spring lets them") {
-  device::HandOptions options;
-  options.explore_s = 3.0;
+  device::HandOptions options{.explore_s = 3.0};
   device::SimulatedHand pushed = hand_with(options);
   device::SimulatedHand free = hand_with(options);
   for (int tick = 0; tick < 2500; ++tick) {
@@ -118,8 +110,7 @@ TEST_CASE("forces move a hand as far as its arm's spring lets them") {
 }
 
 TEST_CASE("a hand's virtual clock counts ticks, and the hand stops at its time") {
-  device::HandOptions options;
-  options.explore_s = 0.25;
+  device::HandOptions options{.explore_s = 0.25};
   device::SimulatedHand hand = hand_with(options);
   CHECK(hand.now() == std::chrono::nanoseconds{0});
   CHECK(touch_flat_wall(hand).size() == 250);
@@ -134,8 +125,7 @@ TEST_CASE(
   device.coulomb_n = 0.1;
   device.position_step_mm = 0.05;
   device.max_force_n = 2.0;
-  device::HandOptions options;
-  options.explore_s = 3.0;
+  device::HandOptions options{.explore_s = 3.0};
   RandomStream random(1, "simulated_hand_test");
   const device::ExplorationPath path(kPlane, {.duration_s = options.explore_s}, random);
   device::SimulatedHand pushed(options, path, device);
@@ -160,11 +150,9 @@ TEST_CASE(
 }
 
 TEST_CASE("a hand refuses impossible options") {
-  device::HandOptions weightless;
-  weightless.mass_kg = 0.0;
+  device::HandOptions weightless{.mass_kg = 0.0};
   CHECK_THROWS_AS(hand_with(weightless), std::invalid_argument);
-  device::HandOptions pulling;
-  pulling.push_n = -0.1;
+  device::HandOptions pulling{.push_n = -0.1};
   CHECK_THROWS_AS(hand_with(pulling), std::invalid_argument);
   device::DeviceModel impossible;
   impossible.coulomb_n = -1.0;

@@ -33,8 +33,8 @@ void add_session(analysis::Outcomes& outcomes, int session, Sense sense, RandomS
     trial.row.block = shown.block;
     trial.row.state = record::TrialState::answered;
     trial.stimulus = shown.stimulus;
-    trial.kind = shown.kind;
-    trial.scored = shown.kind == study::PresentationKind::scored;
+    trial.role = shown.role;
+    trial.scored = shown.role == study::Role::scored;
     trial.counted = trial.scored;
     const auto guess = static_cast<int>(random.below(outcomes.classes.size()));
     trial.response = sense == Sense::everything ? shown.stimulus.class_index : guess;

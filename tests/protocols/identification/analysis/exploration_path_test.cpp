@@ -6,7 +6,6 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace touchtrial {
 namespace {
@@ -56,7 +55,7 @@ TEST_CASE("a field of spline coefficients has a picture too") {
 }
 
 TEST_CASE("a trial's path lies over the field that was felt") {
-  FakeStudy study(study::identification::classification(), {.with_pack = true});
+  FakeStudy study({.with_pack = true});
   study.add({.participant = "P01",
              .answers = FakeStudy::confusing(0, 1),
              .traces = [](const study::Presentation&) { return stroking_over_wave(3.0, 0.2); }});
@@ -99,14 +98,9 @@ TEST_CASE("a trial's name is a participant's, a colon and a number from 1") {
 
 TEST_CASE("without a choice each method's first counted trial is drawn") {
   FakeStudy study(study::identification::comparison());
-  study.add({.participant = "P01",
-             .enrolment = 1,
-             .answers = FakeStudy::always_right(),
-             .complete = false,
-             .stop_after = 1,
-             .traces = wave});
   study.add(
-      {.participant = "P02", .enrolment = 2, .answers = FakeStudy::always_right(), .traces = wave});
+      {.participant = "P01", .enrolment = 1, .complete = false, .stop_after = 1, .traces = wave});
+  study.add({.participant = "P02", .enrolment = 2, .traces = wave});
   study.close_and_unblind();
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   const auto paths = first_explorations(study.store(), study.key(), outcomes);
@@ -120,7 +114,7 @@ TEST_CASE("without a choice each method's first counted trial is drawn") {
 
 TEST_CASE("a named trial is drawn whether it counts or not, and an unknown one is refused") {
   FakeStudy study(study::identification::classification());
-  study.add({.participant = "P01", .answers = FakeStudy::always_right(), .traces = wave});
+  study.add({.participant = "P01", .traces = wave});
   study.close_and_unblind();
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   const ExplorationPath path =

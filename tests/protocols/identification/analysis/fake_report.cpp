@@ -39,9 +39,7 @@ MethodReport fake_method(const FakeReportOptions& options, std::size_t number) {
             3.0 + presented + 9.0 * random.uniform() * random.uniform());
       }
     }
-    ParticipantAccuracy one;
-    one.participant = "P" + std::to_string(p + 1);
-    one.accuracy = own.accuracy();
+    ParticipantAccuracy one{.participant = "P" + std::to_string(p + 1), .accuracy = own.accuracy()};
     accuracies.push_back(one.accuracy.share().value_or(0.0));
     method.per_participant.push_back(one);
   }

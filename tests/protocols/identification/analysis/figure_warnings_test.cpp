@@ -17,7 +17,7 @@ StudyReport report_of(FakeStudy& study) {
 
 /// One participant with these answers.
 StudyReport report_of_one(const FakeAnswers& answers, const FakeOptions& options = {}) {
-  FakeStudy study(study::identification::classification(), options);
+  FakeStudy study(options);
   study.add({.participant = "P01", .answers = answers});
   return report_of(study);
 }
@@ -62,7 +62,7 @@ TEST_CASE("Classes of more than five pooled trials are not warned of") {
 
 TEST_CASE("The headline is repeated without invalid trials") {
   FakeStudy study(study::identification::classification());
-  study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});
+  study.add({.participant = "P01", .enrolment = 1});
   study.add({.participant = "P02", .enrolment = 2, .answers = swapping, .valid = false});
   const StudyReport report = report_of(study);
   CHECK(warnings_with(report,
@@ -79,7 +79,7 @@ TEST_CASE("A Monte Carlo p that cannot be smaller is reported") {
 }
 
 TEST_CASE("One who swaps labels among many is suspected, and guessers are not") {
-  FakeStudy study(study::identification::classification(), {.trials = R"({"repeats": 8})"});
+  FakeStudy study({.trials = R"({"repeats": 8})"});
   study.add({.participant = "P01", .enrolment = 1, .answers = swapping});
   for (int i = 2; i <= 12; ++i) {
     // Answers that have nothing to do with what is presented.

@@ -24,9 +24,9 @@ const Figure& figure_of(const std::vector<Figure>& figures, const std::string& i
   return *found;
 }
 
-std::vector<std::string> ids_of(const std::vector<Figure>& figures) {
-  std::vector<std::string> ids;
-  for (const Figure& figure : figures) ids.push_back(figure.id);
+std::string ids_of(const std::vector<Figure>& figures) {
+  std::string ids;
+  for (const Figure& figure : figures) ids += figure.id + ' ';
   return ids;
 }
 
@@ -86,14 +86,12 @@ class EmptyPath {
 }  // namespace
 
 TEST_CASE("figures of one method are those of a classification study") {
-  FakeReportOptions options;
-  options.servo_trials = 50;
+  FakeReportOptions options{.servo_trials = 50};
   const CueReport cues = fake_cues(options);
   const std::vector<Figure> figures = report_figures(fake_report(options), {.cues = &cues});
-  CHECK(ids_of(figures) == std::vector<std::string>{"participant-flow", "accuracy-by-class",
-                                                    "participants", "confusion-1",
-                                                    "accuracy-over-trials", "reaction-times",
-                                                    "ideal-observers", "servo-lateness"});
+  CHECK(ids_of(figures) ==
+        "participant-flow accuracy-by-class participants confusion-1 accuracy-over-trials "
+        "reaction-times ideal-observers servo-lateness ");
   for (const Figure& figure : figures) {
     CHECK(contains(figure.script, "'SIMULATED'"));
     CHECK(figure.caption.starts_with("SIMULATED participants: "));
@@ -102,13 +100,12 @@ TEST_CASE("figures of one method are those of a classification study") {
 }
 
 TEST_CASE("figures of several methods hold them side by side, with participants' differences") {
-  FakeReportOptions options;
-  options.methods = {"adaptive", "tv-gabor", "fixed"};
+  FakeReportOptions options{.methods = {"adaptive", "tv-gabor", "fixed"}};
   const StudyReport report = fake_report(options);
   const std::vector<Figure> figures = report_figures(report);
-  CHECK(ids_of(figures) == std::vector<std::string>{"participant-flow", "methods", "participants",
-                                                    "confusion-1", "confusion-2", "confusion-3",
-                                                    "accuracy-over-trials", "reaction-times"});
+  CHECK(ids_of(figures) ==
+        "participant-flow methods participants confusion-1 confusion-2 confusion-3 "
+        "accuracy-over-trials reaction-times ");
   const Figure& methods = figure_of(figures, "methods");
   CHECK(contains(methods.script, "$pair2 << EOD"));
   CHECK(contains(methods.alt, "adaptive − tv-gabor"));
@@ -157,8 +154,7 @@ TEST_CASE("figures show the paper's values only on request, and only beside a cl
       figure_of(report_figures(report, {.paper_values = true}), "accuracy-by-class");
   CHECK(contains(apart.script, "other images, other device"));
   CHECK(contains(apart.script, "$paper << EOD\n5.7 87\n"));
-  FakeReportOptions named;
-  named.classes = {"Image-2", "image_1", "x"};
+  FakeReportOptions named{.classes = {"Image-2", "image_1", "x"}};
   const Figure beside =
       figure_of(report_figures(fake_report(named), {.paper_values = true}), "accuracy-by-class");
   CHECK(contains(beside.script, "$paper << EOD\n2.25 87\n1.25 72\n"));
@@ -166,10 +162,8 @@ TEST_CASE("figures show the paper's values only on request, and only beside a cl
 
 TEST_CASE(
     "a study in virtual time has no figure of the servo, and one without participants has none") {
-  const std::vector<std::string> ids = ids_of(report_figures(fake_report()));
-  CHECK(std::find(ids.begin(), ids.end(), "servo-lateness") == ids.end());
-  FakeReportOptions nobody;
-  nobody.participants = 0;
+  CHECK_FALSE(contains(ids_of(report_figures(fake_report())), "servo-lateness"));
+  FakeReportOptions nobody{.participants = 0};
   CHECK(report_figures(fake_report(nobody)).empty());
   CHECK(report_figures(StudyReport{}).empty());
 }
@@ -184,9 +178,7 @@ TEST_CASE("figures leave out values that are not finite") {
 }
 
 TEST_CASE("figures of one participant give no interval over participants") {
-  FakeReportOptions options;
-  options.methods = {"adaptive", "tv-gabor"};
-  options.participants = 1;
+  FakeReportOptions options{.methods = {"adaptive", "tv-gabor"}, .participants = 1};
   const CueReport cues = fake_cues(options);
   for (const Figure& figure : report_figures(fake_report(options), {.cues = &cues})) {
     CHECK_FALSE(contains(figure.alt, "0.0 to 100.0 %"));
@@ -195,10 +187,8 @@ TEST_CASE("figures of one participant give no interval over participants") {
 }
 
 TEST_CASE("labels cannot break out of figures") {
-  FakeReportOptions options;
-  options.classes = hostile_labels();
-  options.methods = {"it's", "</svg>\nEOD"};
-  options.participants = 2;
+  FakeReportOptions options{
+      .classes = hostile_labels(), .methods = {"it's", "</svg>\nEOD"}, .participants = 2};
   const CueReport cues = fake_cues(options);
   StudyReport report = fake_report(options);
   report.collection.flow.enrolled = 3;
@@ -224,7 +214,7 @@ TEST_CASE("figures of an exploration show the path in contact, in newtons, over 
                  {{1.5, 2.5}, {}, 0.25, 1.0, true},
                  {{2.0, 3.0}, {}, 0.5, 1.0, true}};
   const std::vector<Figure> figures = report_figures(StudyReport{}, {.explorations = {&path, 1}});
-  REQUIRE(ids_of(figures) == std::vector<std::string>{"exploration-3-7"});
+  REQUIRE(ids_of(figures) == "exploration-3-7 ");
   CHECK(contains(figures[0].script, "$path << EOD\n1.5 2.5 0.25\n2 3 0.5\nEOD\n"));
   CHECK(contains(figures[0].script, "tangential force, N"));
   CHECK(contains(figures[0].script, "'SIMULATED'"));
@@ -238,8 +228,7 @@ TEST_CASE("figures of an exploration show the path in contact, in newtons, over 
 }
 
 TEST_CASE("figures as SVG are described, stand alone, and share a page without sharing ids") {
-  FakeReportOptions options;
-  options.servo_trials = 30;
+  FakeReportOptions options{.servo_trials = 30};
   const CueReport cues = fake_cues(options);
   const std::vector<Figure> figures = report_figures(fake_report(options), {.cues = &cues});
   const std::vector<std::string> files = all_drawn(figures, FigureFormat::svg);
@@ -285,9 +274,7 @@ TEST_CASE("figures as PDF are PDF, without the time at which they were drawn") {
 }
 
 TEST_CASE("figures of a large study stay small") {
-  FakeReportOptions options;
-  options.participants = 1000;
-  options.servo_trials = 25000;
+  FakeReportOptions options{.participants = 1000, .servo_trials = 25000};
   const CueReport cues = fake_cues(options);
   const std::vector<Figure> figures = report_figures(fake_report(options), {.cues = &cues});
   for (const std::string& svg : all_drawn(figures, FigureFormat::svg)) CHECK(svg.size() < 300'000);

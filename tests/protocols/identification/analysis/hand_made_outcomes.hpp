@@ -19,7 +19,7 @@ struct HandMadeTrial {
   int method = 0;
   int answered_after_s = 1;  ///< from plane-on; first contact after 0.5 s
   bool within_limits = true;
-  study::PresentationKind kind = study::PresentationKind::scored;
+  study::Role role = study::Role::scored;
 };
 
 /// Classes bark and cloth, methods as named; sessions are of P1, P2 and so on, enrolled in order.
@@ -63,11 +63,11 @@ class HandMadeOutcomes {
     }
     trial.row.valid = of.within_limits;
     trial.stimulus = {of.felt, 0, of.method};
-    trial.kind = of.kind;
-    trial.scored = of.kind == study::PresentationKind::scored;
+    trial.role = of.role;
+    trial.scored = of.role == study::Role::scored;
     trial.counted = trial.scored && outcomes.sessions.at(of.session - 1).counted;
     trial.response = of.answered;
-    if (of.kind != study::PresentationKind::catch_trial) trial.right = of.felt;
+    if (of.role != study::Role::catch_trial) trial.right = of.felt;
     outcomes.trials.push_back(trial);
   }
 

@@ -15,10 +15,8 @@ analysis::ConfusionMatrix confusion_of(const std::vector<std::vector<int>>& coun
 }
 
 ReactionTimes times_of(double median) {
-  ReactionTimes times;
-  times.from_plane_on = {12, median - 1.0, median, median + 2.0};
-  times.from_contact = {12, median - 1.5, median - 0.5, median + 1.5};
-  return times;
+  return {.from_plane_on = {12, median - 1.0, median, median + 2.0},
+          .from_contact = {12, median - 1.5, median - 0.5, median + 1.5}};
 }
 
 void add_participants(MethodReport& method) {
@@ -120,18 +118,17 @@ CueReport cues_of(const std::vector<std::string>& classes) {
 }
 
 analysis::PrimaryResult primary_of() {
-  analysis::PrimaryResult primary;
-  primary.estimand = study::Estimand::difference;
-  primary.words = "mean over participants of the accuracy with adaptive less that with tv-gabor";
-  primary.test = "sign flips over participants, two-sided";
-  primary.sides = analysis::Sides::two;
-  primary.p = 0.125;
-  primary.choices = {
-      {"registered", "as registered", 6, 150, -0.083, analysis::Interval{-0.2, 0.034}},
-      {"all", "all excluded sessions put back", 7, 175, -0.06, analysis::Interval{-0.17, 0.05}}};
-  primary.verdict = analysis::Verdict::undecided;
-  primary.because = "Collecting ended with 7 of 20 planned participants.";
-  return primary;
+  return {
+      .estimand = study::Estimand::difference,
+      .words = "mean over participants of the accuracy with adaptive less that with tv-gabor",
+      .test = "sign flips over participants, two-sided",
+      .sides = analysis::Sides::two,
+      .p = 0.125,
+      .choices = {{"registered", "as registered", 6, 150, -0.083, analysis::Interval{-0.2, 0.034}},
+                  {"all", "all excluded sessions put back", 7, 175, -0.06,
+                   analysis::Interval{-0.17, 0.05}}},
+      .verdict = analysis::Verdict::undecided,
+      .because = "Collecting ended with 7 of 20 planned participants."};
 }
 
 analysis::Collection collection_of() {

@@ -118,7 +118,7 @@ StudyReport looked_at(FakeStudy& study) {
 }  // namespace
 
 TEST_CASE("a study with looks, late exclusions and too few participants says all of it") {
-  FakeStudy study(study::identification::classification(), {.registration = kRegistered});
+  FakeStudy study({.registration = kRegistered});
   const StudyReport report = looked_at(study);
   REQUIRE(report.primary.has_value());
   CHECK(report.primary->verdict == Verdict::undecided);
@@ -142,7 +142,7 @@ TEST_CASE("a study with looks, late exclusions and too few participants says all
 }
 
 TEST_CASE("report --json holds what was registered, the answer, looks and departures") {
-  FakeStudy study(study::identification::classification(), {.registration = kRegistered});
+  FakeStudy study({.registration = kRegistered});
   const nlohmann::json json = json_of(looked_at(study));
   CHECK(json["registered"]["estimand"] == "mean-accuracy");
   CHECK(json["registered"]["test"] == "t");
@@ -164,8 +164,7 @@ TEST_CASE("report --json holds what was registered, the answer, looks and depart
 }
 
 TEST_CASE("the primary result is the t test of participants' accuracies against chance") {
-  FakeStudy study(study::identification::classification(),
-                  {.registration = R"({"participants": 6, "estimand": "mean-accuracy"})"});
+  FakeStudy study({.registration = R"({"participants": 6, "estimand": "mean-accuracy"})"});
   add_people(study, 1, {8, 7, 6, 9, 5, 4});
   const StudyReport report = final_report_of(study);
   const analysis::PrimaryResult& primary = *report.primary;
@@ -190,8 +189,7 @@ TEST_CASE("a study file without the fields registers nothing") {
 }
 
 TEST_CASE("exclusions are held against the registered rules") {
-  FakeStudy study(study::identification::classification(),
-                  {.registration = R"({"participants": 5, "estimand": "mean-accuracy",
+  FakeStudy study({.registration = R"({"participants": 5, "estimand": "mean-accuracy",
                                        "exclusion_rules": {"own_deviations": ["asleep"]}})"});
   add_people(study, 1, {8, 7, 6, 9, 5});
   study.store().note(1, seconds(5), "asleep", "snored");
@@ -242,8 +240,7 @@ TEST_CASE("an interval without width, or cut where possible values end, is said 
     static_cast<void>(judged.verdict(estimate, interval, p));
     return result.because;
   };
-  CHECK_THAT(because(0.7, {0.0, 1.0}, 0.2),
-             holds_text("holds every possible value: it says nothing"));
+  CHECK_THAT(because(0.7, {0.0, 1.0}, 0.2), holds_text("holds every possible value"));
   CHECK_THAT(because(0.9, {0.1, 1.0}, 0.03), !holds_text("two-sided"));
   result.bound = 0.48;
   CHECK_THAT(because(0.9, {0.1, 1.0}, 0.03),
@@ -263,17 +260,16 @@ TEST_CASE("more participants than planned are said, and decide nothing after a l
   CHECK_THAT(judged.result.because, holds_text("25 participants completed, 5 more than planned"));
   judged.course.registered_looks = {10};
   CHECK(judged.verdict() == Verdict::undecided);
-  CHECK_THAT(judged.result.because,
-             holds_text("5 participants more than the 20 planned were collected"));
+  CHECK_THAT(judged.result.because, holds_text("5 participants more than the 20"));
   judged.result.p = 0.3;
   CHECK(judged.verdict() == Verdict::not_supported);
 }
 
 TEST_CASE("the first row speaks of late exclusions if there were any") {
-  FakeStudy study(study::identification::classification(), {.registration = kRegistered});
+  FakeStudy study({.registration = kRegistered});
   CHECK(choice_of(looked_at(study), "registered").words ==
         "as registered; no exclusion that was made after outcomes were seen");
-  FakeStudy plain(study::identification::classification(), {.registration = kRegistered});
+  FakeStudy plain({.registration = kRegistered});
   add_people(plain, 1, {8, 7, 9});
   plain.store().exclude(3, seconds(6), "ill");
   CHECK(choice_of(final_report_of(plain), "registered").words == "as registered");
@@ -281,7 +277,6 @@ TEST_CASE("the first row speaks of late exclusions if there were any") {
 
 TEST_CASE("a look far too early has a level, and an interval of it") {
   FakeStudy study(
-      study::identification::classification(),
       {.registration = R"({"participants": 100, "estimand": "mean-accuracy", "looks": [2]})"});
   add_people(study, 1, {11, 12});
   study.store().look_at_question(seconds(10), "as registered");
@@ -309,7 +304,6 @@ TEST_CASE("p within its level decides nothing after an unregistered look or befo
 
 TEST_CASE("a registered look has Lan and DeMets's level, and so has the end after it") {
   FakeStudy study(
-      study::identification::classification(),
       {.registration = R"({"participants": 8, "estimand": "mean-accuracy", "looks": [4]})"});
   add_people(study, 1, {5, 4, 6, 5});
   study.store().look_at_question(seconds(10), "as registered");
@@ -322,7 +316,6 @@ TEST_CASE("a registered look has Lan and DeMets's level, and so has the end afte
 
 TEST_CASE("a registered look may end collecting, and its interval has the level of its test") {
   FakeStudy study(
-      study::identification::classification(),
       {.registration = R"({"participants": 8, "estimand": "mean-accuracy", "looks": [4]})"});
   add_people(study, 1, {11, 12, 11, 12});
   study.store().look_at_question(seconds(10), "as registered");
@@ -341,8 +334,7 @@ TEST_CASE("a registered look may end collecting, and its interval has the level 
 }
 
 TEST_CASE("without a registered number of participants a p within its level decides nothing") {
-  FakeStudy study(study::identification::classification(),
-                  {.registration = R"({"estimand": "mean-accuracy"})"});
+  FakeStudy study({.registration = R"({"estimand": "mean-accuracy"})"});
   add_people(study, 1, {11, 12, 11, 12});
   const StudyReport report = final_report_of(study);
   CHECK(report.primary->p.value() < 0.001);
@@ -435,8 +427,7 @@ TEST_CASE("with one order of methods alone nothing tells the method from the per
   CHECK(report.primary->verdict == Verdict::undecided);
   CHECK_FALSE(report.primary->p);
   CHECK_FALSE(report.primary->registered().estimate);
-  CHECK_THAT(report.primary->because,
-             holds_text("an effect of the method and one of the period cannot be told apart"));
+  CHECK_THAT(report.primary->because, holds_text("cannot be told apart"));
 }
 
 TEST_CASE("a study of mixed blocks, and a registered test, have no period-adjusted one") {
@@ -448,9 +439,7 @@ TEST_CASE("a study of mixed blocks, and a registered test, have no period-adjust
                                        "test": "sign-flip"})"});
   for (FakeStudy* study : {&mixed, &flips}) {
     for (int i = 1; i <= 4; ++i) {
-      study->add({.participant = "P" + std::to_string(i),
-                  .enrolment = i,
-                  .answers = FakeStudy::always_right()});
+      study->add({.participant = "P" + std::to_string(i), .enrolment = i});
     }
     CHECK_FALSE(final_report_of(*study).primary->crossover);
     CHECK(report_of(*study).primary->test == "sign flips over participants, two-sided");

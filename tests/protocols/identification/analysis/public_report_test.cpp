@@ -80,7 +80,7 @@ std::size_t found_in(const std::string& text) {
 }  // namespace
 
 TEST_CASE("a public report names nobody and holds nothing that a person wrote") {
-  FakeStudy study(study::identification::classification(), {.simulated = false});
+  FakeStudy study({.simulated = false});
   add_people_and_texts(study);
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   analysis::Provenance provenance = analysis::provenance_of(study.store(), "study.db");

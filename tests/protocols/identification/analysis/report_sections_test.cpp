@@ -7,7 +7,6 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
-#include <map>
 
 #include <nlohmann/json.hpp>
 
@@ -77,9 +76,9 @@ TEST_CASE("Accuracy is broken down by a trial's place") {
 TEST_CASE("A catch trial and a lead-in come before, but have no accuracy") {
   HandMadeOutcomes made;
   made.session();
-  made.trial({.felt = kCloth, .answered = kCloth, .kind = study::PresentationKind::lead_in});
+  made.trial({.felt = kCloth, .answered = kCloth, .role = study::Role::lead_in});
   made.trial({.felt = kBark, .answered = kBark});
-  made.trial({.answered = kBark, .kind = study::PresentationKind::catch_trial});
+  made.trial({.answered = kBark, .role = study::Role::catch_trial});
   made.trial({.felt = kCloth, .answered = kBark});
   made.trial({.felt = kCloth, .answered = kBark});
   // The last of four trials alone is wrong after a texture, and after an answer: it names neither
@@ -168,7 +167,7 @@ TEST_CASE("Stations are strata of the deciding question in a collected study") {
   CHECK(json["primary"]["stations"]["stations"] == 2);
   CHECK(json["primary"]["stations"]["random"].is_null());
   CHECK(contains(analysis::tables_markdown(study_document(report, {})),
-                 "first row, 2 stations as fixed strata"));
+                 "2 stations as fixed strata"));
   for (analysis::SessionOutcome& one : made.outcomes.sessions) one.row.station = 0;
   CHECK_FALSE(make_report(made.outcomes).primary->stations.has_value());
 }

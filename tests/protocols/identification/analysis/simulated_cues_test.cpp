@@ -12,11 +12,7 @@ using namespace analysis::identification;
 
 /// Quick explorations: 2 s, with the training that they need.
 simulation::SubjectModel quick_subject(double feature_noise) {
-  simulation::SubjectModel subject;
-  subject.explore_s = 2.0;
-  subject.training_passes = 6;
-  subject.feature_noise = feature_noise;
-  return subject;
+  return {.feature_noise = feature_noise, .explore_s = 2.0, .training_passes = 6};
 }
 
 MethodCues simulated_cues(TinyStudy& study, const simulation::SubjectModel& subject) {

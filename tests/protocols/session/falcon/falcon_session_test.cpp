@@ -49,9 +49,8 @@ struct EmulatedFalcon {
 
 std::unique_ptr<FalconDevice> open_in_lockstep(const device::FalconSettings& settings,
                                                Lockstep& lockstep) {
-  FalconOptions options;
-  options.pace = lockstep.pace();
-  options.scheduling = {device::SchedulingPolicy::other, 0, false};
+  FalconOptions options{.pace = lockstep.pace(),
+                        .scheduling = {device::SchedulingPolicy::other, 0, false}};
   return std::make_unique<FalconDevice>(open_usb_falcon(settings.serial), settings,
                                         std::move(options));
 }

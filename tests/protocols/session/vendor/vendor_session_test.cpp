@@ -28,8 +28,7 @@ struct DhdOnCable {
 
   [[nodiscard]] static Vec3 to_dhd_frame(Vec3 device) { return {device.z, device.x, device.y}; }
   [[nodiscard]] std::unique_ptr<device::HapticDevice> open() const {
-    device::DhdSettings settings;
-    settings.library = TOUCHTRIAL_FAKE_DHD;
+    device::DhdSettings settings{.library = TOUCHTRIAL_FAKE_DHD};
     return std::make_unique<device::DhdDevice>(settings, std::numeric_limits<double>::infinity(),
                                                fake.exports().now);
   }
@@ -59,8 +58,7 @@ struct TouchOnCable {
   static constexpr const char* kCalibrationNeed = "put the stylus into its inkwell";
 
   [[nodiscard]] static std::unique_ptr<device::HapticDevice> open() {
-    device::OpenHapticsSettings settings;
-    settings.library = TOUCHTRIAL_FAKE_HD;
+    device::OpenHapticsSettings settings{.library = TOUCHTRIAL_FAKE_HD};
     return std::make_unique<device::OpenHapticsDevice>(settings);
   }
   void unplug() const {

@@ -3,7 +3,6 @@
 #include "protocols/procedures/procedure.hpp"
 
 #include <chrono>
-#include <cmath>
 #include <utility>
 
 namespace touchtrial {
@@ -98,7 +97,7 @@ void HandMadeTracks::session(bool counted) {
 
 void HandMadeTracks::answer(const HandMadeAnswer& of) {
   const auto place = static_cast<int>(outcomes.trials.size()) + 1;
-  const bool is_control = of.kind == study::PresentationKind::lead_in;
+  const bool is_control = of.role == study::Role::control;
   analysis::TrialOutcome& trial = outcomes.trials.emplace_back();
   trial.participant = "P" + std::to_string(of.session);
   trial.row.session = of.session;
@@ -107,9 +106,9 @@ void HandMadeTracks::answer(const HandMadeAnswer& of) {
   trial.row.state = record::TrialState::answered;
   trial.row.presented_at = std::chrono::seconds(20 * place);
   trial.row.answered_at = trial.row.presented_at + std::chrono::seconds(8);
-  trial.kind = of.kind;
+  trial.role = of.role;
   trial.chosen = {of.track, of.level, of.target};
-  trial.scored = of.kind == study::PresentationKind::scored;
+  trial.scored = of.role == study::Role::scored;
   trial.counted =
       trial.scored && outcomes.sessions.at(static_cast<std::size_t>(of.session - 1)).counted;
   trial.response = of.response;
@@ -140,11 +139,11 @@ void HandMadeTracks::track(int session, int number, const procedures::Observer& 
   }
 }
 
-void HandMadeTracks::outside(int session, study::PresentationKind kind, int right, int wrong) {
+void HandMadeTracks::outside(int session, study::Role role, int right, int wrong) {
   const auto top = static_cast<int>(options().track.levels.size()) - 1;
   for (int i = 0; i < right + wrong; ++i) {
     const int target = i % 2;
-    answer({session, 0, top, target, i < right ? target : 1 - target, kind});
+    answer({session, 0, top, target, i < right ? target : 1 - target, role});
   }
 }
 

@@ -8,7 +8,6 @@
 #include "protocols/threshold/study/threshold.hpp"
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,7 +30,7 @@ struct HandMadeAnswer {
   int level = 0;
   int target = 0;
   int response = 0;
-  study::PresentationKind kind = study::PresentationKind::scored;
+  study::Role role = study::Role::scored;
 };
 
 /// Sessions are of P1, P2 and so on.
@@ -47,7 +46,7 @@ class HandMadeTracks {
   /// The whole track of an observer, whose answers `random` draws.
   void track(int session, int number, const procedures::Observer& observer, RandomStream& random);
   /// Trials outside the tracks, at the highest level; targets alternate.
-  void outside(int session, study::PresentationKind kind, int right, int wrong);
+  void outside(int session, study::Role role, int right, int wrong);
 
   analysis::Outcomes outcomes;
 

@@ -32,8 +32,8 @@ HandMadeTracks small_study(const study::threshold::ThresholdOptions& options) {
       made.track(person, track,
                  {procedures::Shape::weibull, thresholds[person - 1], 3.0, 0.5, 0.02}, random);
     }
-    made.outside(person, study::PresentationKind::catch_trial, 3, 1);
-    made.outside(person, study::PresentationKind::lead_in, 6, 4);
+    made.outside(person, study::Role::catch_trial, 3, 1);
+    made.outside(person, study::Role::control, 6, 4);
   }
   return made;
 }

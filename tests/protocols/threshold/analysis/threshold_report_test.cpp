@@ -16,7 +16,7 @@ namespace own = analysis::threshold;
 using procedures::Censored;
 using procedures::Observer;
 using procedures::Shape;
-using study::PresentationKind;
+using study::Role;
 
 Observer observer_at(double threshold) {
   return {Shape::weibull, threshold, 3.5, 0.5, 0.01};
@@ -161,8 +161,8 @@ TEST_CASE("the control block's p is the exact tail of guessing") {
   HandMadeTracks made(detection_options());
   made.session();
   made.session();
-  made.outside(1, PresentationKind::lead_in, 9, 1);
-  made.outside(2, PresentationKind::lead_in, 5, 5);
+  made.outside(1, Role::control, 9, 1);
+  made.outside(2, Role::control, 5, 5);
   const own::ThresholdReport report = own::make_report(made.outcomes);
   REQUIRE(report.control);
   CHECK(report.control->pooled.answers == analysis::Proportion{20, 14});
@@ -177,7 +177,7 @@ TEST_CASE("the control block's p is the exact tail of guessing") {
 
 TEST_CASE("sound that is heard stands beside the thresholds, in the result") {
   HandMadeTracks made = tracks_of(detection_options(), 1, {-20.0});
-  made.outside(1, PresentationKind::lead_in, 20, 0);
+  made.outside(1, Role::control, 20, 0);
   const analysis::Document page =
       own::threshold_analysis().results(made.outcomes, {})->document({}, {});
   REQUIRE(page.sections.front().id == "result");
@@ -190,8 +190,8 @@ TEST_CASE("sound that is heard stands beside the thresholds, in the result") {
 
 TEST_CASE("catch trials are counted by participant, and poor ones are warned of") {
   HandMadeTracks made = tracks_of(detection_options(), 1, {-20.0, -20.0});
-  made.outside(1, PresentationKind::catch_trial, 4, 0);
-  made.outside(2, PresentationKind::catch_trial, 2, 2);
+  made.outside(1, Role::catch_trial, 4, 0);
+  made.outside(2, Role::catch_trial, 2, 2);
   const own::ThresholdReport report = own::make_report(made.outcomes);
   REQUIRE(report.catches);
   CHECK(report.catches->pooled.answers == analysis::Proportion{8, 6});
@@ -308,8 +308,8 @@ TEST_CASE("sessions that do not count are left out of everything") {
   HandMadeTracks made(detection_options());
   made.session(false);
   made.answer({1, 1, 20, 0, 0});
-  made.outside(1, PresentationKind::lead_in, 3, 3);
-  made.outside(1, PresentationKind::catch_trial, 3, 3);
+  made.outside(1, Role::control, 3, 3);
+  made.outside(1, Role::catch_trial, 3, 3);
   const auto json = json_of(made);
   CHECK(json.at("tracks").empty());
   CHECK(json.at("control").is_null());

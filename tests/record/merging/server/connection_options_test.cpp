@@ -1,6 +1,7 @@
 #include "core/errors.hpp"
 #include "record/merging/postgres/server_connection.hpp"
 #include "support/catch.hpp"
+#include "support/environment.hpp"
 
 #include <cstdlib>
 
@@ -17,19 +18,6 @@ std::string refusal_of(const std::string& where) {
   }
   return "";
 }
-
-/// A variable of the environment as long as it lives.
-struct Variable {
-  Variable(const char* name, const std::string& value) : name_(name) {
-    ::setenv(name, value.c_str(), 1);
-  }
-  ~Variable() { ::unsetenv(name_); }
-  Variable(const Variable&) = delete;
-  Variable& operator=(const Variable&) = delete;
-
- private:
-  const char* name_;
-};
 
 bool verifies(const std::string& where) {
   ConnectionOptions options = connection_options(where);
@@ -73,13 +61,13 @@ TEST_CASE("less than verify-full to another machine is refused with the remedy")
 
 TEST_CASE("neither environment nor service file says where the server is") {
   {
-    const Variable mode("PGSSLMODE", "disable");
-    const Variable gss("PGGSSENCMODE", "prefer");
+    const EnvironmentVariable mode("PGSSLMODE", "disable");
+    const EnvironmentVariable gss("PGGSSENCMODE", "prefer");
     CHECK(verifies("postgresql://lab/study"));
   }
-  const Variable host("PGHOST", "lab");
-  const Variable number("PGHOSTADDR", "10.0.0.7");
-  const Variable service("PGSERVICE", "lab");
+  const EnvironmentVariable host("PGHOST", "lab");
+  const EnvironmentVariable number("PGHOSTADDR", "10.0.0.7");
+  const EnvironmentVariable service("PGSERVICE", "lab");
   CHECK_FALSE(verifies("postgresql:///study"));
   for (const char* const name : {"PGHOST", "PGHOSTADDR", "PGSERVICE"}) {
     CHECK(std::getenv(name) == nullptr);
@@ -88,7 +76,7 @@ TEST_CASE("neither environment nor service file says where the server is") {
 }
 
 TEST_CASE("a connection is waited for a bounded time, whatever address and environment say") {
-  const Variable unbounded("PGCONNECT_TIMEOUT", "0");
+  const EnvironmentVariable unbounded("PGCONNECT_TIMEOUT", "0");
   const auto waits = [](const std::string& where) {
     return connection_options(where)["connect_timeout"];
   };

@@ -99,15 +99,14 @@ TEST_CASE("of several programs that send the same rows at once, one adds each") 
 
 TEST_CASE("a collecting role only adds, a reading role only reads, and a row names who sent it") {
   const ServerFixture there;
-  Lab lab;
-  const auto [a, b] = lab.two_stations();
-  there.send(a, *there.table());
+  TwoStations lab;
+  there.send(lab.a, *there.table());
   there.make_roles();
   there.ask("TRUNCATE touchtrial_bundles RESTART IDENTITY");
-  there.send(a, *there.table("lab_a"));
-  there.send(b, *there.table("lab_b"));
+  there.send(lab.a, *there.table("lab_a"));
+  there.send(lab.b, *there.table("lab_b"));
   collect_into_file(stations_of_table(there.table("reader")), lab.file("fetched.db"));
-  merge({a, b}, lab.file("merged.db"));
+  merge({lab.a, lab.b}, lab.file("merged.db"));
   CHECK((read_file(lab.file("fetched.db")) == read_file(lab.file("merged.db"))));
   CHECK(there.table("reader")->rows().front().sent_by == "lab_a");
 
@@ -149,13 +148,13 @@ TEST_CASE("the server refuses a row that did not arrive whole") {
 
 TEST_CASE("rows of another program and absurdly large ones are refused in one line") {
   const ServerFixture there;
-  Lab lab;
+  TwoStations lab;
   const auto table = there.table();
   const auto refusal = [&] {
     return refusal_of([&] { collect_into_file(stations_of_table(table), lab.file("refused.db")); });
   };
   CHECK_THAT(refusal(), holds_text("holds no study"));
-  there.send(lab.two_stations().first, *table);
+  there.send(lab.a, *table);
   there.ask(
       "ALTER TABLE touchtrial_bundles DROP CONSTRAINT arrived_whole; "
       "UPDATE touchtrial_bundles SET session = convert_to(repeat('x', 140000000), 'UTF8') "

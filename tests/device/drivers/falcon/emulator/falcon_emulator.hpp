@@ -14,6 +14,7 @@
 #include "device/drivers/falcon/emulator/running_falcon.hpp"
 
 #include <mutex>
+#include <optional>
 #include <type_traits>
 
 namespace touchtrial::device::falcon {

@@ -39,9 +39,8 @@ struct PluggedFalcon {
 
 std::unique_ptr<FalconDevice> open_in_lockstep(Lockstep& lockstep,
                                                const device::FalconSettings& settings = {}) {
-  FalconOptions options;
-  options.pace = lockstep.pace();
-  options.scheduling = {device::SchedulingPolicy::other, 0, false};
+  FalconOptions options{.pace = lockstep.pace(),
+                        .scheduling = {device::SchedulingPolicy::other, 0, false}};
   return std::make_unique<FalconDevice>(open_usb_falcon(settings.serial), settings,
                                         std::move(options));
 }
@@ -59,8 +58,7 @@ bool wait_until(Condition holds) {
 TEST_CASE("through libusb a Falcon is loaded, homed and pushes as requested") {
   const TempFolder folder;
   PluggedFalcon falcon(EmulatorOptions{});
-  device::FalconSettings settings;
-  settings.firmware = write_dummy_firmware(folder.path());
+  device::FalconSettings settings{.firmware = write_dummy_firmware(folder.path())};
   Lockstep lockstep;
   const auto device = open_in_lockstep(lockstep, settings);
   CHECK(falcon.emulator.image() == dummy_firmware());
@@ -212,8 +210,7 @@ TEST_CASE("a Falcon that is unplugged during a push is lost, and opens again whe
 TEST_CASE("a Falcon that is unplugged while it is opened is reported as gone") {
   const TempFolder folder;
   PluggedFalcon falcon(EmulatorOptions{});
-  device::FalconSettings settings;
-  settings.firmware = write_dummy_firmware(folder.path());
+  device::FalconSettings settings{.firmware = write_dummy_firmware(folder.path())};
   auto transport = open_usb_falcon("");
   falcon.unplug();
   CHECK_THROWS_WITH(FalconDevice(std::move(transport), settings), holds_text("unplugged"));

@@ -2,7 +2,6 @@
 // library's, so libusb finds these; calls for other files go to the kernel.
 #include "device/drivers/falcon/usbfs_shim/usbfs_bus.hpp"
 
-#include <atomic>
 #include <cstdarg>
 
 #include <fcntl.h>

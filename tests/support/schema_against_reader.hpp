@@ -67,6 +67,7 @@ class SchemaAgainstReader {
     for (const json& example : schema_.at("examples")) CHECK(refusal_(example).empty());
   }
 
+  /// A refusal names the place.
   /// \return how many bounds there are
   int check_bounds() const {
     int bounds = 0;
@@ -74,22 +75,27 @@ class SchemaAgainstReader {
       bounds += holds_bound(leaf, "minimum", -1.0, true) ? 1 : 0;
       bounds += holds_bound(leaf, "maximum", 1.0, true) ? 1 : 0;
       bounds += holds_bound(leaf, "exclusiveMinimum", -1.0, false) ? 1 : 0;
+      bounds += holds_bound(leaf, "exclusiveMaximum", 1.0, false) ? 1 : 0;
     }
     return bounds;
   }
 
-  /// Types, words, texts, lengths of lists, and that defaults are accepted.
+  /// Types, words, texts, lengths of lists, and that defaults are accepted. A refusal of another
+  /// type names the place, and that of a word the possible ones.
   void check_values() const {
     for (const Place& leaf : leaves_) {
       INFO(leaf.pointer.to_string());
       const auto takes = [&](const json& value) { return refusal(leaf.pointer, value).empty(); };
-      const std::string type = leaf.rule.at("type");
+      const std::string type = leaf.rule.value("type", "string");
       for (const json& value : {json("diagonal"), json(3.5), json(true), json::array({0, 1, 2}),
                                 json::object(), json()}) {
         const bool fits = type == value.type_name() && !leaf.rule.contains("enum");
-        if (!fits && !leaf.is_one_of) CHECK_FALSE(takes(value));
+        if (!fits && !leaf.is_one_of) check_refused(leaf.pointer, value);
       }
-      for (const json& word : leaf.rule.value("enum", json::array())) CHECK(takes(word));
+      for (const json& word : leaf.rule.value("enum", json::array())) {
+        CHECK(takes(word));
+        CHECK_THAT(refusal(leaf.pointer, "diagonal"), holds_text(word.get<std::string>()));
+      }
       if (type == "string" && !leaf.rule.contains("enum")) {
         CHECK(takes("a b"));
         CHECK(takes("") == !leaf.rule.contains("minLength"));
@@ -128,7 +134,7 @@ class SchemaAgainstReader {
       return;
     }
     // Of an object that may have any key, the reader knows none.
-    if (rule.at("type") != "object" || rule.at("additionalProperties") == true) {
+    if (rule.value("type", "") != "object" || rule.at("additionalProperties") == true) {
       leaves_.push_back({place, rule});
       return;
     }
@@ -174,6 +180,10 @@ class SchemaAgainstReader {
     return list;
   }
 
+  void check_refused(const Pointer& place, const json& value) const {
+    CHECK_THAT(refusal(place, value), holds_text(place.to_string()));
+  }
+
   /// Tries one bound, and the nearest numbers to either side of it.
   /// \return whether the schema has the bound
   bool holds_bound(const Place& leaf, const char* word, double outwards, bool belongs) const {
@@ -186,7 +196,11 @@ class SchemaAgainstReader {
     const auto expect = [&](double number, bool taken) {
       if (taken && is_other_(leaf.pointer, number)) return;
       const json value = listed ? in_list(leaf.rule, number) : json(number);
-      CHECK(refusal(leaf.pointer, value).empty() == taken);
+      if (taken) {
+        CHECK(refusal(leaf.pointer, value).empty());
+      } else {
+        check_refused(leaf.pointer, value);
+      }
     };
     expect(bound, belongs);
     expect(bound - outwards * step, true);
