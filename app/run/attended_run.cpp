@@ -26,7 +26,7 @@ constexpr std::chrono::nanoseconds kOnTerminal = 250ms;
 constexpr std::chrono::nanoseconds kOnPipe = 1s;
 
 /// Time between two looks at keys, signals and the servo.
-constexpr auto kBetweenLooks = 16ms;
+constexpr auto kBetweenFrames = 16ms;
 
 /// How long a signal waits at most for an answer that is being typed.
 constexpr int kAnswerPollMs = 100;
@@ -123,7 +123,7 @@ std::optional<device::ServoReport> AttendedRun::run(const PhaseName& phase,
     report = device::run_servo(device_, force, sink, options_, clock, hooks);
   });
   while (running.runs()) {
-    std::this_thread::sleep_for(kBetweenLooks);
+    std::this_thread::sleep_for(kBetweenFrames);
     take_keys();
     if (is_done && is_done()) control_.finish();
     show(phase);
