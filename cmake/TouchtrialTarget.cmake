@@ -46,6 +46,16 @@ function(touchtrial_library name)
   endif()
 endfunction()
 
+# touchtrial_built_in_text(TARGET FILE HEADER NAMESPACE FUNCTION)
+# Defines a function that returns the text of a file, as its header declares it; a change of the file
+# reconfigures the build.
+function(touchtrial_built_in_text target file header name_space function)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/${file}")
+  file(READ "${CMAKE_CURRENT_SOURCE_DIR}/${file}" text)
+  configure_file("${CMAKE_SOURCE_DIR}/cmake/built_in_text.cpp.in" ${function}.cpp @ONLY)
+  target_sources(${target} PRIVATE "${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp")
+endfunction()
+
 # Compiles the files of a folder TOUCHTRIAL_BATCH at a time. Files that Highway compiles once for
 # every SIMD target include themselves, and so stay alone.
 function(touchtrial_compile_together target)

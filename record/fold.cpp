@@ -100,8 +100,7 @@ void answer_trial(DerivedRows& rows, const Event& event, const AnswerBody& body)
   TrialRow& row = waiting_row(rows, event, body.trial);
   row.state = TrialState::answered;
   row.answered_at = event.time();
-  row.position = body.position;
-  row.first_position = body.first_position;
+  row.answer = body.answer;
   row.confidence = body.confidence;
   row.track = body.track;
   row.level = body.level;

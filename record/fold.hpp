@@ -76,8 +76,7 @@ struct TrialRow {
   std::chrono::nanoseconds presented_at{};
   std::optional<std::chrono::nanoseconds> contact_at;
   std::optional<std::chrono::nanoseconds> answered_at;
-  std::optional<int> position;  ///< in the participant's layout; empty: no response
-  std::optional<int> first_position;
+  std::optional<Answer> answer;  ///< empty: no response
   std::optional<int> confidence;
   std::optional<int> track;   ///< that an adaptive order chose, from 1; 0: none of its tracks
   std::optional<int> level;   ///< index into the track's levels

@@ -2,6 +2,7 @@
 /// docs/data-dictionary.md.
 #pragma once
 
+#include "core/answer.hpp"
 #include "core/hash.hpp"
 #include "core/public_keys.hpp"
 
@@ -181,13 +182,11 @@ struct SessionOpening {
 // Of some bodies only a part is in clear (split_body). What their members are in an event that is
 // not opened is said with each.
 
-/// `answered`: positions are indices into the participant's layout of pictures, from 0. Only the
-/// trial is in clear; the other members are then empty.
+/// `answered`. Only the trial is in clear; the other members are then empty.
 struct AnswerBody {
   int trial = 0;
-  std::optional<int> position;
-  std::optional<int> first_position;  ///< the answer before a change, if it was changed
-  std::optional<int> confidence;
+  std::optional<Answer> answer{};
+  std::optional<int> confidence{};
   /// \name What an adaptive order chose (study::ChosenLevel); sealed like all of an answer
   ///@{
   std::optional<int> track{};
@@ -198,10 +197,10 @@ struct AnswerBody {
 
 /// `practised`: one presentation of a practice round, of a texture that is not in the study.
 struct PracticeBody {
-  int round = 0;                ///< from 1
-  int presentation = 0;         ///< in the round, from 1
-  std::optional<int> position;  ///< answered, in the practice's own layout; sealed
-  std::optional<bool> correct;  ///< sealed
+  int round = 0;                   ///< from 1
+  int presentation = 0;            ///< in the round, from 1
+  std::optional<Answer> answer{};  ///< in the practice's own layout; sealed
+  std::optional<bool> correct{};   ///< sealed; empty too if no answer is right
 };
 
 /// `stopped`: why a session ended early.

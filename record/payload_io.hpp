@@ -87,6 +87,14 @@ class BodyReader {
       value[i] = found[i].get<double>();
     }
   }
+  void operator()(std::string_view key, std::vector<double>& value) const {
+    const Json& found = at(key);
+    if (!found.is_array()) refuse(key, "is not a list");
+    for (const Json& number : found) {
+      if (!number.is_number()) refuse(key, "holds what is no number");
+      value.push_back(number.get<double>());
+    }
+  }
   /// Whole numbers from 0.
   void operator()(std::string_view key, std::vector<std::int64_t>& value) const {
     const Json& found = at(key);

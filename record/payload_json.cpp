@@ -43,6 +43,23 @@ void visit_member(Io& io, In<Io, int>& visit) {
   io.if_any("visit", visit, 2);
 }
 
+/// A choice or a rating, whose members lie beside the body's others.
+template <typename Io>
+void answer_members(Io& io, In<Io, std::optional<Answer>>& answer) {
+  std::optional<int> position = position_of(answer);
+  std::optional<int> first_position = first_position_of(answer);
+  std::optional<std::vector<double>> ratings;
+  if (answer && !position) ratings = ratings_of(answer);
+  io("position", position);
+  io("first_position", first_position);
+  io("ratings", ratings);
+  if constexpr (!std::is_same_v<Io, BodyWriter>) {
+    if (position && ratings) throw StoreError("/ratings stands beside a position");
+    if (position) answer = Chosen{*position, first_position};
+    if (ratings) answer = Rated{std::move(*ratings)};
+  }
+}
+
 // What each body holds: key, member, and the least value of a whole number unless it is 0.
 
 template <typename Io>
@@ -109,8 +126,7 @@ void members(Io& io, In<Io, SessionOpening>& body) {
 template <typename Io>
 void members(Io& io, In<Io, AnswerBody>& body) {
   io("trial", body.trial, 1);
-  io("position", body.position);
-  io("first_position", body.first_position);
+  answer_members(io, body.answer);
   io("confidence", body.confidence);
   io("track", body.track);
   io("level", body.level);
@@ -131,7 +147,7 @@ template <typename Io>
 void members(Io& io, In<Io, PracticeBody>& body) {
   io("round", body.round, 1);
   io("presentation", body.presentation, 1);
-  io("position", body.position);
+  answer_members(io, body.answer);
   io("correct", body.correct);
 }
 

@@ -1,15 +1,12 @@
 /// \file A session's course through its schedule, which decides what is presented next, given how
-/// the earlier presentations ended. The runner and `verify` follow the same course over the same
-/// events.
+/// the earlier trials ended. The runner and `verify` follow the same course over the same events.
 #pragma once
 
-#include "study/adaptive_order.hpp"
-#include "study/schedule.hpp"
+#include "study/order.hpp"
 #include "study/study.hpp"
 
 #include <cstddef>
 #include <deque>
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -21,46 +18,34 @@ namespace touchtrial::study {
 /// clear links two presentations of one stimulus.
 struct BlockRestart {
   int block = 0;
-  std::vector<Presentation> presentations;
+  std::vector<Trial> trials;
 
-  [[nodiscard]] int first_trial() const { return presentations.front().trial; }
+  [[nodiscard]] int first_trial() const { return trials.front().place.trial; }
 };
 
-/// A queue of presentations. Not thread-safe.
+/// A queue of trials. Not thread-safe.
 class Course {
  public:
-  /// Draws a block's presentations again, as restarted_block does for a study and an enrolment.
-  using DrawBlock =
-      std::function<std::vector<Presentation>(int block, int restarts_before, int first_trial)>;
-
-  /// \param policy  what follows an interrupted presentation
-  /// \param draw  needed only if the policy restarts blocks
-  /// \param order  chooses each presentation when it becomes the current one; null: the schedule
-  ///   says all
-  /// \throws std::invalid_argument if `draw` is needed and missing, or the policy restarts blocks
-  ///   whose presentations an order chooses
-  Course(Schedule schedule, OnInterruption policy, DrawBlock draw = {},
-         std::unique_ptr<AdaptiveOrder> order = nullptr);
+  /// \param policy  what follows an interrupted trial
+  /// \throws std::invalid_argument if the policy restarts blocks and the order is adaptive
+  Course(std::unique_ptr<Order> order, OnInterruption policy);
 
   /// The schedule with which the session began, followed by the restarted blocks.
   [[nodiscard]] const Schedule& schedule() const noexcept { return schedule_; }
-  /// The presentation that is under way or is next; null when all are done.
-  [[nodiscard]] const Presentation* current() const noexcept;
-  /// The number of remaining presentations, including the current one.
+  /// The trial that is under way or is next; null when all are done.
+  [[nodiscard]] const Trial* current() const noexcept { return current_ ? &*current_ : nullptr; }
+  /// The number of remaining trials, including the current one.
   [[nodiscard]] int left() const noexcept { return static_cast<int>(queue_.size()); }
   [[nodiscard]] bool is_over() const noexcept { return queue_.empty(); }
-  /// Whether the answers decide what comes next.
-  [[nodiscard]] bool is_adaptive() const noexcept { return order_ != nullptr; }
+  [[nodiscard]] bool is_adaptive() const noexcept { return order_->is_adaptive(); }
 
-  /// Marks the current presentation as done.
-  /// \param position  of the answer, in the schedule's layout; nothing: it ended without one, and
-  ///   an adaptive order hears nothing of it
-  /// \pre there is a current presentation; the layout has the position
-  void finish(std::optional<int> position);
-  /// Marks the current presentation as interrupted. Depending on the policy, it is repeated at the
-  /// end (if an order chooses, at the end of its block), is left out, or waits for its block's
-  /// restart.
-  /// \pre there is a current presentation
+  /// Marks the current trial as done.
+  /// \param answer  nothing: it ended without one, of which an order is not notified
+  /// \pre there is a current trial
+  void finish(const std::optional<Answer>& answer);
+  /// Marks the current trial as interrupted. Depending on the policy, it is repeated at the end (of
+  /// an adaptive order, at the end of its block), is left out, or waits for its block's restart.
+  /// \pre there is a current trial
   void spoil();
 
   /// The block that must be restarted before anything else is presented.
@@ -76,16 +61,16 @@ class Course {
   [[nodiscard]] bool has(int trial) const;
 
  private:
-  /// Lets the order choose the current presentation.
+  /// Asks the order what the next place presents.
   void choose();
-  /// How many of the queue come before an interrupted presentation of this block is repeated.
+  /// How many of the queue come before an interrupted trial of this block is repeated.
   [[nodiscard]] std::ptrdiff_t places_before_repeats(int block) const;
 
+  std::unique_ptr<Order> order_;
   Schedule schedule_;
   OnInterruption policy_;
-  DrawBlock draw_;
-  std::unique_ptr<AdaptiveOrder> order_;
-  std::deque<std::size_t> queue_;    ///< indices into the schedule, current one first
+  std::deque<std::size_t> queue_;  ///< indices into the schedule, current one first
+  std::optional<Trial> current_;
   std::map<int, int> restarts_;      ///< number of restarts, by block
   std::map<int, int> first_trials_;  ///< first trial of the last restart, by block
   std::optional<int> to_restart_;

@@ -4,6 +4,7 @@
 #include "core/random.hpp"
 #include "engine/image_file.hpp"
 #include "engine/rendering/gains.hpp"
+#include "study/protocol.hpp"
 #include "study/stimulus_field.hpp"
 
 #include <algorithm>
@@ -126,8 +127,15 @@ engine::Gains weakest_gains(const engine::PackManifest& manifest) {
   return weakest;
 }
 
-std::vector<int> practice_round(const Study& study, const ScheduleDraw& draw, int round) {
-  if (study.practice.classes.empty()) return {};
+Practice Task::practice(const Study& study, const ScheduleDraw& draw, int round) const {
+  const PracticePlan& plan = study.practice;
+  Practice practice{.labels = {}, .trials = {}, .criterion = plan.criterion, .rounds = plan.rounds};
+  if (plan.classes.empty()) return practice;
+  RandomStream layout_random = stream_of(draw, "layout", round);
+  const std::vector<int> layout = shuffled_classes(study, layout_random);
+  for (const int shown : layout) {
+    practice.labels.push_back(plan.classes[static_cast<std::size_t>(shown)].label);
+  }
   RandomStream random = stream_of(draw, "order", round);
   const std::vector<int> classes = shuffled_classes(study, random);
   std::vector<int> order;
@@ -135,12 +143,14 @@ std::vector<int> practice_round(const Study& study, const ScheduleDraw& draw, in
     order.push_back(classes[i % classes.size()]);
   }
   shuffle(std::span<int>(order), random);
-  return order;
-}
-
-std::vector<int> practice_layout(const Study& study, const ScheduleDraw& draw, int round) {
-  RandomStream random = stream_of(draw, "layout", round);
-  return shuffled_classes(study, random);
+  for (const int shown : order) {
+    Trial& trial = practice.trials.emplace_back();
+    trial.place.trial = static_cast<int>(practice.trials.size());
+    trial.role = Role::practice;
+    trial.planes.push_back({.field = {static_cast<int>(study.classes.size()) + shown, 0, 0}});
+    trial.right = static_cast<int>(std::ranges::find(layout, shown) - layout.begin());
+  }
+  return practice;
 }
 
 }  // namespace touchtrial::study

@@ -1,11 +1,10 @@
-/// \file Practice: textures that are not in the study, built in memory, and their order.
+/// \file The textures that participants practise with, which are not in the study, built in memory.
 #pragma once
 
 #include "core/plane_geometry.hpp"
 #include "engine/pack/pack.hpp"
 #include "engine/rendering/rendering_model.hpp"
 #include "engine/rendering/texture_field.hpp"
-#include "study/schedule.hpp"
 #include "study/study.hpp"
 
 #include <vector>
@@ -49,18 +48,5 @@ class PracticeSet {
 
 /// The lowest value of each gain in the pack.
 [[nodiscard]] engine::Gains weakest_gains(const engine::PackManifest& manifest);
-
-/// The textures of a practice round, one for each of its `trials.practice` presentations, as
-/// indices into the practice classes in random order. The numbers of presentations of any two
-/// classes differ by at most one. The result depends only on the study's practice and trials and on
-/// the other arguments.
-/// \param round  from 1
-[[nodiscard]] std::vector<int> practice_round(const Study& study, const ScheduleDraw& draw,
-                                              int round);
-
-/// The practice class shown at each position of the answer screen, random for each participant and
-/// round.
-[[nodiscard]] std::vector<int> practice_layout(const Study& study, const ScheduleDraw& draw,
-                                               int round);
 
 }  // namespace touchtrial::study

@@ -1,11 +1,9 @@
 #include "study/protocol.hpp"
 
 #include "core/errors.hpp"
-#include "core/random.hpp"
 #include "study/study.hpp"
 
 #include <algorithm>
-#include <span>
 #include <stdexcept>
 
 namespace touchtrial::study {
@@ -18,36 +16,15 @@ std::vector<const Protocol*>& known_protocols() {
 
 }  // namespace
 
-std::shared_ptr<const ProtocolOptions> Protocol::read(const std::optional<JsonValue>&) const {
-  return nullptr;
-}
-
-std::string Protocol::options_in_clear(const Study&) const {
-  return {};
-}
-
-std::vector<Presentation> Protocol::restarted_block(const Study& study, const ScheduleDraw& draw,
-                                                    int block, int restarts_before,
-                                                    int first_trial) const {
-  std::vector<Presentation> again;
-  for (const Presentation& shown : schedule(study, draw).presentations) {
-    if (shown.block == block) again.push_back(shown);
-  }
-  if (again.empty() || restarts_before < 0) {
-    throw std::invalid_argument("restarted_block: the study has no such block or restart");
-  }
-  RandomStream random(draw.secret, "schedule: block " + std::to_string(block) + ", restart " +
-                                       std::to_string(restarts_before + 1));
-  shuffle(std::span<Presentation>(again), random);
-  for (Presentation& shown : again) shown.trial = first_trial++;
-  return again;
+Fields Task::fields(const Study& study) const {
+  return {.methods = study.methods};
 }
 
 void add_protocol(const Protocol& protocol) {
   auto& all = known_protocols();
-  if (find_protocol(protocol.name()) != nullptr) {
+  if (find_protocol(protocol.name) != nullptr) {
     throw std::invalid_argument("add_protocol: there are two protocols " +
-                                std::string(protocol.name()));
+                                std::string(protocol.name));
   }
   all.push_back(&protocol);
 }
@@ -62,8 +39,16 @@ const Protocol* find_protocol(std::string_view name) {
   return found == all.end() ? nullptr : *found;
 }
 
+std::string picture_of(const Study& study, const Trial& trial) {
+  if (!trial.picture) return "";
+  const auto shown = static_cast<std::size_t>(*trial.picture);
+  const std::size_t of_study = study.classes.size();
+  return shown < of_study ? study.classes[shown].label
+                          : study.practice.classes.at(shown - of_study).label;
+}
+
 bool chooses_classes(const Study& study) {
-  const std::vector<Choice> choices = study.protocol->choices(study);
+  const std::vector<Choice> choices = choices_of(study);
   if (choices.size() != study.classes.size()) return false;
   for (std::size_t i = 0; i < choices.size(); ++i) {
     if (choices[i].class_index != static_cast<int>(i)) return false;
@@ -79,25 +64,24 @@ void require_choice_of_classes(const Study& study, const std::string& command) {
                             study.protocol_name() + " does not ask; give a study of another"));
 }
 
+std::unique_ptr<Order> make_order(const Study& study, const ScheduleDraw& draw) {
+  return study.task->order(study, draw);
+}
+
 Schedule make_schedule(const Study& study, const ScheduleDraw& draw) {
-  return study.protocol->schedule(study, draw);
+  return make_order(study, draw)->schedule();
 }
 
-std::vector<Presentation> restarted_block(const Study& study, const ScheduleDraw& draw, int block,
-                                          int restarts_before, int first_trial) {
-  return study.protocol->restarted_block(study, draw, block, restarts_before, first_trial);
+Ask ask_of(const Study& study) {
+  return study.task->ask(study, Place{.trial = 1});
 }
 
-double drawn_rove_db(double range_db, RandomStream& random) {
-  return range_db * (random.uniform() - 0.5);
+std::vector<Choice> choices_of(const Study& study) {
+  return ask_of(study).choices();
 }
 
-std::unique_ptr<AdaptiveOrder> adaptive_order(const Study& study, const ScheduleDraw& draw) {
-  return study.protocol->adaptive_order(study, draw);
-}
-
-std::string schedule_rule(const Study& study) {
-  return study.protocol->rule(study);
+Practice practice_of(const Study& study, const ScheduleDraw& draw, int round) {
+  return study.task->practice(study, draw, round);
 }
 
 }  // namespace touchtrial::study

@@ -1,12 +1,12 @@
 /// \file The interface of a protocol, which decides its part of the study file, what is presented,
-/// and what counts as an answer. The runner, the store, the window and the exports know a protocol
-/// only by this interface. How to write one: docs/add-a-protocol.md.
+/// and what is asked. The runner, the store, the window and the exports know a protocol only by
+/// this interface. How to write one: docs/add-a-protocol.md.
 #pragma once
 
 #include "core/strict_json.hpp"
-#include "study/adaptive_order.hpp"
-#include "study/interval_plan.hpp"
-#include "study/schedule.hpp"
+#include "study/ask.hpp"
+#include "study/order.hpp"
+#include "study/study.hpp"
 
 #include <memory>
 #include <optional>
@@ -16,112 +16,71 @@
 
 namespace touchtrial::study {
 
-struct Study;
-
-/// One of the alternatives that a participant chooses between.
-struct Choice {
-  std::string label;
-  std::optional<int> class_index{};  ///< the class whose picture is shown; empty: the label alone
+/// One round of practice.
+struct Practice {
+  std::vector<std::string> labels;  ///< of the alternatives, by position
+  std::vector<Trial> trials;        ///< their `right` is a position; empty: no practice
+  int criterion = 0;                ///< right answers that end practice; 0: a whole round does
+  int rounds = 0;                   ///< maximum
 };
 
-/// The options that a protocol reads from its own section of the study file. Immutable once read.
-class ProtocolOptions {
- public:
-  virtual ~ProtocolOptions() = default;
+/// The fields that trials may present beside those of each image with each method of the study
+/// file.
+struct Fields {
+  std::vector<StudyMethod> methods;  ///< in place of the study file's
+  std::vector<Plane> mixtures{};     ///< every mix of two fields
+  /// Planes are compared with each other and with blank ones: their walls all lie at one height,
+  /// and their gains are applied to forces.
+  bool levelled = false;
 };
 
-/// The interface of a protocol. Stateless and thread-safe: every function depends only on its
-/// arguments.
-class Protocol {
+/// What the participants of a study do. A protocol makes it from its own section of the study file,
+/// and it owns the options that it read there. Immutable and thread-safe: every function depends
+/// only on these options and its arguments, of which `study` is the study that owns the task.
+class Task {
  public:
-  virtual ~Protocol() = default;
+  virtual ~Task() = default;
 
-  /// The protocol's name, as in the study file's "protocol".
-  [[nodiscard]] virtual std::string_view name() const noexcept = 0;
-
-  /// The key of the protocol's own object in the study file; empty if it has none.
-  [[nodiscard]] virtual std::string_view section() const noexcept { return {}; }
-  /// Reads that object, or makes the defaults if the file omits it.
-  /// \throws StudyError with the place of a value that is not accepted
-  [[nodiscard]] virtual std::shared_ptr<const ProtocolOptions> read(
-      const std::optional<JsonValue>& section) const;
-  /// The options as a database stores them in clear: compact JSON that reveals nothing about a
-  /// stimulus. The seal commits to it. Empty: the database stores nothing.
-  [[nodiscard]] virtual std::string options_in_clear(const Study& study) const;
   /// Checks a study after its other sections have been read.
   /// \param file  the whole study file, used to locate errors
   /// \throws StudyError with the place of the error and the remedy
   virtual void check(const JsonValue& file, const Study& study) const = 0;
-
-  /// Whether each participant gets all of the study's methods; if not, only the first.
-  [[nodiscard]] virtual bool presents_all_methods() const noexcept { return true; }
-  /// The number of scored presentations of one participant.
-  [[nodiscard]] virtual int scored_trials(const Study& study) const = 0;
-
-  /// The functions of study/schedule.hpp call these, with the same arguments, results
-  /// and errors.
-  [[nodiscard]] virtual Schedule schedule(const Study& study, const ScheduleDraw& draw) const = 0;
+  /// The options as a database stores them in clear: compact JSON that reveals nothing about a
+  /// stimulus. The seal commits to it. Empty: the database stores nothing.
+  [[nodiscard]] virtual std::string in_clear() const { return {}; }
+  /// The name and version of the rule that makes orders; the seal commits to it.
   [[nodiscard]] virtual std::string rule(const Study& study) const = 0;
-  /// By default, shuffles the block's presentations again.
-  [[nodiscard]] virtual std::vector<Presentation> restarted_block(const Study& study,
-                                                                  const ScheduleDraw& draw,
-                                                                  int block, int restarts_before,
-                                                                  int first_trial) const;
+  /// The number of scored trials of one participant at one visit, or of all visits that divide the
+  /// methods.
+  [[nodiscard]] virtual int scored_trials(const Study& study) const = 0;
+  [[nodiscard]] virtual Fields fields(const Study& study) const;
 
-  /// The order of a participant whose answers decide what comes next. The schedule then has a place
-  /// for each presentation, and the order fills them one by one; blocks cannot be restarted.
-  /// \return null: the schedule says all
-  [[nodiscard]] virtual std::unique_ptr<AdaptiveOrder> adaptive_order(
-      const Study& /*study*/, const ScheduleDraw& /*draw*/) const {
-    return nullptr;
-  }
-
-  /// The stimulus that a choice of the adaptive order was about, for tables and exports.
-  [[nodiscard]] virtual StimulusIndex stimulus_of(const Study& /*study*/,
-                                                  const ChosenLevel& /*chosen*/) const {
+  /// How the trial at a place goes. All trials of a study ask the same question.
+  [[nodiscard]] virtual Ask ask(const Study& study, const Place& place) const = 0;
+  /// \param study  must outlive the order
+  /// \throws StudyError if the order is impossible for the study
+  [[nodiscard]] virtual std::unique_ptr<Order> order(const Study& study,
+                                                     const ScheduleDraw& draw) const = 0;
+  /// \param round  from 1; each has the same number of trials
+  [[nodiscard]] virtual Practice practice(const Study& study, const ScheduleDraw& draw,
+                                          int round) const;
+  /// The field that a step of a track is about, for tables and exports.
+  [[nodiscard]] virtual StimulusIndex about(const Study& /*study*/, const Level& /*level*/) const {
     return {};
   }
+};
 
-  /// The alternatives that a participant chooses between, at least two. An answer is an index into
-  /// them.
-  [[nodiscard]] virtual std::vector<Choice> choices(const Study& study) const = 0;
-  /// The index of the right choice for a scored presentation; empty if no choice is right.
-  [[nodiscard]] virtual std::optional<int> right_choice(const Study& study,
-                                                        const Presentation& shown) const = 0;
-
-  /// Whether a session's end may say in clear that nearly all answers came from one key. Not where
-  /// a key means something by itself, as "same" does, and not where people who feel nothing keep to
-  /// one key, as between intervals: there it is the outcome.
-  [[nodiscard]] virtual bool may_name_one_key(const Study& /*study*/) const { return false; }
-
-  /// The page of the instructions that tells participants what to do, in English. Needed only by a
-  /// protocol for which the files in config/texts have no page of its name; otherwise empty.
-  [[nodiscard]] virtual std::string instruction() const { return {}; }
-  /// The minimum numbers of methods and classes in a study of this protocol.
-  [[nodiscard]] virtual int least_methods() const noexcept { return 1; }
-  [[nodiscard]] virtual int least_classes() const noexcept { return 2; }
-
-  /// Adds to a study what follows from the protocol's section, such as a method for each level.
-  /// Called before `check`.
-  /// \throws StudyError with the place of what makes that impossible
-  virtual void complete(const JsonValue& /*file*/, Study& /*study*/) const {}
-
-  /// How trials of several intervals go. The schedule's presentations, or those of the adaptive
-  /// order, then have intervals.
-  /// \return nothing: a trial presents one plane
-  [[nodiscard]] virtual std::optional<IntervalPlan> interval_plan(const Study& /*study*/) const {
-    return std::nullopt;
-  }
-  /// What its intervals mix, of two stimuli: every pair and share.
-  [[nodiscard]] virtual std::vector<Interval> mixtures(const Study& /*study*/) const { return {}; }
-  /// The presentations of a practice round of such trials, each with its target; empty: no
-  /// practice.
-  /// \param round  from 1
-  [[nodiscard]] virtual std::vector<Presentation> practice_trials(const Study& /*study*/,
-                                                                  const ScheduleDraw& /*draw*/,
-                                                                  int /*round*/) const {
-    return {};
-  }
+/// A protocol, as registered.
+struct Protocol {
+  std::string_view name;     ///< as in the study file's "protocol"
+  std::string_view section;  ///< key of its own object in the study file; empty: it has none
+  /// Reads that object.
+  /// \param section  nothing: the file omits it
+  /// \throws StudyError with the place of a value that is not accepted
+  std::shared_ptr<const Task> (*read)(const std::optional<JsonValue>& section);
+  int min_classes = 2;
+  int min_methods = 1;
+  bool all_methods = true;  ///< participants get all of the study's methods; if not, only the first
 };
 
 /// Registers a protocol under its name. Call before the first study is read. Not thread-safe.
@@ -134,6 +93,26 @@ void add_protocol(const Protocol& protocol);
 
 /// All registered protocols, in the order in which they were added.
 [[nodiscard]] const std::vector<const Protocol*>& protocols();
+
+/// The order of one participant. It depends only on the study's classes, methods and trial options
+/// and on the draw, and is the same on every platform.
+/// \param study  must outlive the order
+/// \throws StudyError if the order is impossible for the study
+[[nodiscard]] std::unique_ptr<Order> make_order(const Study& study, const ScheduleDraw& draw);
+/// The schedule of that order.
+/// \throws StudyError if the order is impossible for the study
+[[nodiscard]] Schedule make_schedule(const Study& study, const ScheduleDraw& draw);
+
+/// What the trials of a study ask, but for controls.
+[[nodiscard]] Ask ask_of(const Study& study);
+/// The alternatives of the question; empty where none are asked for.
+[[nodiscard]] std::vector<Choice> choices_of(const Study& study);
+/// A round of the study's practice.
+[[nodiscard]] Practice practice_of(const Study& study, const ScheduleDraw& draw = {},
+                                   int round = 1);
+
+/// The label of the picture that is shown with a trial's question; empty: none.
+[[nodiscard]] std::string picture_of(const Study& study, const Trial& trial);
 
 /// Whether the choices of a study are its classes in the same order, as a confusion matrix
 /// requires.

@@ -16,7 +16,8 @@ using nlohmann::json;
 constexpr auto kRoles = std::to_array<Named<Role>>({{"scored", Role::scored},
                                                     {"lead-in", Role::lead_in},
                                                     {"catch", Role::catch_trial},
-                                                    {"control", Role::control}});
+                                                    {"control", Role::control},
+                                                    {"practice", Role::practice}});
 
 [[noreturn]] void refuse(const std::string& what) {
   throw StoreError("session schedule: " + what + "; use the key that the session was run with");
@@ -33,38 +34,76 @@ Role role_of(const std::string& word) {
   refuse("has a presentation of an unknown kind");
 }
 
-Presentation presentation_from(const json& object, const StudyCodes& codes) {
-  Presentation shown{.trial = object.at("trial").get<int>(),
-                     .block = object.at("block").get<int>(),
-                     .role = role_of(object.at("kind").get_ref<const std::string&>()),
-                     .stimulus = {}};
-  shown.hand_off = shown.role == Role::control;
-  if (shown.role != Role::catch_trial) {
-    shown.stimulus = meaning_of(object.at("code"), codes);
-    shown.gain_db = object.value("gain_db", 0.0);
-  } else if (object.at("code") != codes.catch_code) {
-    refuse("names a code that this key does not have");
+/// The wall of a field says nothing, and so blank planes share one code.
+json json_of(const Plane& plane, const StudyCodes& codes) {
+  const bool is_anywhere = plane == Plane{.field = {}, .blank = true};
+  json object = {{"code", is_anywhere ? codes.catch_code : codes.code_of(plane.field)}};
+  // Left out where they say nothing.
+  if (plane.blank && !is_anywhere) object["blank"] = true;
+  if (plane.gain_db != 0.0) object["gain_db"] = plane.gain_db;
+  if (plane.pitch != 1.0) object["pitch"] = plane.pitch;
+  if (plane.mix) object["mix"] = {codes.code_of(plane.mix->other), plane.mix->share};
+  return object;
+}
+
+Plane plane_from(const json& object, const StudyCodes& codes) {
+  Plane plane;
+  if (object.at("code") == codes.catch_code) {
+    plane.blank = true;
+    return plane;
   }
-  return shown;
+  plane.field = meaning_of(object.at("code"), codes);
+  plane.blank = object.value("blank", false);
+  plane.gain_db = object.value("gain_db", 0.0);
+  plane.pitch = object.value("pitch", 1.0);
+  if (const auto mix = object.find("mix"); mix != object.end()) {
+    plane.mix = Mix{meaning_of(mix->at(0), codes), mix->at(1).get<double>()};
+  }
+  return plane;
 }
 
-std::vector<Presentation> presentations_from(const json& list, const StudyCodes& codes) {
-  std::vector<Presentation> presentations;
-  for (const json& object : list) presentations.push_back(presentation_from(object, codes));
-  return presentations;
+json json_of(const Trial& trial, const StudyCodes& codes) {
+  json object = json::object();
+  if (trial.planes.size() == 1) object = json_of(trial.planes.front(), codes);
+  object["trial"] = trial.place.trial;
+  object["block"] = trial.place.block;
+  object["kind"] = name_of(trial.role);
+  if (trial.place.hand_off) object["hand_off"] = true;
+  if (trial.right) object["right"] = *trial.right;
+  if (trial.picture) object["picture"] = codes.code_of({*trial.picture, 0, 0});
+  if (trial.planes.size() > 1) {
+    for (const Plane& plane : trial.planes) object["planes"].push_back(json_of(plane, codes));
+  }
+  return object;
 }
 
-json json_of(const std::vector<Presentation>& presentations, const StudyCodes& codes) {
+Trial trial_from(const json& object, const StudyCodes& codes) {
+  Trial trial;
+  trial.place = {object.at("trial").get<int>(), object.at("block").get<int>(),
+                 object.value("hand_off", false)};
+  trial.role = role_of(object.at("kind").get_ref<const std::string&>());
+  if (const auto right = object.find("right"); right != object.end()) {
+    trial.right = right->get<int>();
+  }
+  if (const auto picture = object.find("picture"); picture != object.end()) {
+    trial.picture = meaning_of(*picture, codes).class_index;
+  }
+  if (object.contains("code")) trial.planes.push_back(plane_from(object, codes));
+  if (const auto planes = object.find("planes"); planes != object.end()) {
+    for (const json& plane : *planes) trial.planes.push_back(plane_from(plane, codes));
+  }
+  return trial;
+}
+
+std::vector<Trial> trials_from(const json& list, const StudyCodes& codes) {
+  std::vector<Trial> trials;
+  for (const json& object : list) trials.push_back(trial_from(object, codes));
+  return trials;
+}
+
+json json_of(const std::vector<Trial>& trials, const StudyCodes& codes) {
   json list = json::array();
-  for (const Presentation& shown : presentations) {
-    const bool is_catch = shown.role == Role::catch_trial;
-    list.push_back({{"trial", shown.trial},
-                    {"block", shown.block},
-                    {"kind", name_of(shown.role)},
-                    {"code", is_catch ? codes.catch_code : codes.code_of(shown.stimulus)}});
-    // Left out where there is none, so that sessions without it keep their bytes.
-    if (shown.gain_db != 0.0) list.back()["gain_db"] = shown.gain_db;
-  }
+  for (const Trial& trial : trials) list.push_back(json_of(trial, codes));
   return list;
 }
 
@@ -86,12 +125,12 @@ void check_layout(const std::vector<int>& layout, std::size_t choices) {
 
 Schedule schedule_of(const json& document, const StudyCodes& codes) {
   Schedule schedule;
-  schedule.presentations = presentations_from(document.at("presentations"), codes);
+  schedule.trials = trials_from(document.at("presentations"), codes);
   for (const json& choice : document.at("layout")) {
     schedule.layout.push_back(choice.is_number() ? choice.get<int>()
                                                  : meaning_of(choice, codes).class_index);
   }
-  check_layout(schedule.layout, codes.study.protocol->choices(codes.study).size());
+  check_layout(schedule.layout, choices_of(codes.study).size());
   return schedule;
 }
 
@@ -104,13 +143,13 @@ std::string_view name_of(Role role) {
 std::string schedule_to_json(const Schedule& schedule, const StudyCodes& codes) {
   // The layout names a class's picture by the code of its first stimulus, any other choice by
   // index.
-  const std::vector<Choice> choices = codes.study.protocol->choices(codes.study);
+  const std::vector<Choice> choices = choices_of(codes.study);
   json layout = json::array();
   for (const int choice : schedule.layout) {
     const std::optional<int> class_index = choices[static_cast<std::size_t>(choice)].class_index;
     layout.push_back(class_index ? json(codes.code_of({*class_index, 0, 0})) : json(choice));
   }
-  return json{{"presentations", json_of(schedule.presentations, codes)}, {"layout", layout}}.dump();
+  return json{{"presentations", json_of(schedule.trials, codes)}, {"layout", layout}}.dump();
 }
 
 Schedule schedule_from_json(const std::string& text, const StudyCodes& codes) {
@@ -122,14 +161,14 @@ Schedule schedule_from_json(const std::string& text, const StudyCodes& codes) {
   }
 }
 
-std::string block_to_json(const std::vector<Presentation>& block, const StudyCodes& codes) {
+std::string block_to_json(const std::vector<Trial>& block, const StudyCodes& codes) {
   return json_of(block, codes).dump();
 }
 
-std::vector<Presentation> block_from_json(const std::string& text, const StudyCodes& codes) {
+std::vector<Trial> block_from_json(const std::string& text, const StudyCodes& codes) {
   const json document = parsed_json(text);
   try {
-    return presentations_from(document, codes);
+    return trials_from(document, codes);
   } catch (const json::exception&) {
     refuse("does not have the form of a block");
   }

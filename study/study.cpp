@@ -42,7 +42,7 @@ namespace {
 /// The protocol that the file names.
 const Protocol& read_protocol(const JsonValue& place) {
   std::vector<std::string_view> names;
-  for (const Protocol* one : protocols()) names.push_back(one->name());
+  for (const Protocol* one : protocols()) names.push_back(one->name);
   return *protocols()[place.choice(names)];
 }
 
@@ -53,22 +53,29 @@ std::vector<std::string_view> keys_of_studies() {
       "study",   "protocol",     "classes",  "methods", "rendering", "trials", "practice",
       "session", "registration", "blinding", "seed",    "visits",    "groups"};
   for (const Protocol* one : protocols()) {
-    if (!one->section().empty()) keys.push_back(one->section());
+    if (!one->section.empty()) keys.push_back(one->section);
   }
   return keys;
 }
 
-std::shared_ptr<const ProtocolOptions> read_options(const JsonObject& root,
-                                                    const Protocol& protocol) {
+std::shared_ptr<const Task> read_task(const JsonObject& root, const Protocol& protocol) {
   for (const Protocol* other : protocols()) {
-    if (other->section().empty() || other->section() == protocol.section()) continue;
-    if (const auto member = root.find(other->section())) {
-      member->refuse("belongs to the protocol " + std::string(other->name()) +
+    if (other->section.empty() || other->section == protocol.section) continue;
+    if (const auto member = root.find(other->section)) {
+      member->refuse("belongs to the protocol " + std::string(other->name) +
                      "; remove it, or choose that protocol");
     }
   }
-  if (protocol.section().empty()) return protocol.read(std::nullopt);
-  return protocol.read(root.find(protocol.section()));
+  if (protocol.section.empty()) return protocol.read(std::nullopt);
+  return protocol.read(root.find(protocol.section));
+}
+
+void check_trials(const JsonValue& place, const Study& study) {
+  if (study.scored_trials() <= kMaxScoredTrials) return;
+  place.refuse_below("/trials/repeats", "makes " + std::to_string(study.scored_trials()) +
+                                            " trials for a participant, more than " +
+                                            std::to_string(kMaxScoredTrials) +
+                                            "; give fewer repeats");
 }
 
 void check_size(const JsonValue& place, const Study& study) {
@@ -79,12 +86,6 @@ void check_size(const JsonValue& place, const Study& study) {
                                        std::to_string(study.methods.size()) +
                                        " methods, more than " + std::to_string(kMaxStimuli) +
                                        " stimuli; list fewer");
-  }
-  if (study.scored_trials() > kMaxScoredTrials) {
-    place.refuse_below("/trials/repeats", "makes " + std::to_string(study.scored_trials()) +
-                                              " trials for a participant, more than " +
-                                              std::to_string(kMaxScoredTrials) +
-                                              "; give fewer repeats");
   }
 }
 
@@ -160,8 +161,8 @@ Study read_study(const JsonValue& place) {
   Study study;
   study.name = read_plain_name(root.at("study"));
   study.protocol = &read_protocol(root.at("protocol"));
-  study.options = read_options(root, *study.protocol);
-  study.classes = read_classes(root.at("classes"), study.protocol->least_classes());
+  study.task = read_task(root, *study.protocol);
+  study.classes = read_classes(root.at("classes"), study.protocol->min_classes);
   study.methods = read_methods(root.at("methods"));
   if (const auto member = root.find("rendering")) {
     ReadRendering read = read_rendering(*member);
@@ -183,9 +184,10 @@ Study read_study(const JsonValue& place) {
   if (const auto member = root.find("seed")) {
     study.seed = static_cast<std::uint64_t>(member->integer(0, kMaxSeed));
   }
-  study.protocol->complete(place, study);
+  check_trials(place, study);
+  study.task->check(place, study);
+  study.methods = study.task->fields(study).methods;
   check_size(place, study);
-  study.protocol->check(place, study);
   check_practice(place, study);
   check_visits(place, study);
   check_registration(place, study);
@@ -207,11 +209,11 @@ std::string_view name_of(engine::ModelKind model) {
 }
 
 std::string Study::protocol_name() const {
-  return std::string(protocol->name());
+  return std::string(protocol->name);
 }
 
 int Study::presented_methods() const {
-  return protocol->presents_all_methods() ? static_cast<int>(methods.size()) : 1;
+  return protocol->all_methods ? static_cast<int>(methods.size()) : 1;
 }
 
 std::string Study::presented_labels() const {
@@ -220,7 +222,7 @@ std::string Study::presented_labels() const {
 }
 
 int Study::scored_trials() const {
-  return protocol->scored_trials(*this) * (visits.methods == VisitMethods::all ? visits.count : 1);
+  return task->scored_trials(*this) * (visits.methods == VisitMethods::all ? visits.count : 1);
 }
 
 int Study::visits_needed() const {

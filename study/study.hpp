@@ -15,8 +15,8 @@
 
 namespace touchtrial::study {
 
-class Protocol;
-class ProtocolOptions;
+struct Protocol;
+class Task;
 
 /// An extraction method, and its label in tables and files.
 struct StudyMethod : engine::ExtractionOptions {
@@ -109,10 +109,10 @@ struct WantedLevel {
 /// A study as read from its file.
 struct Study {
   std::string name;
-  const Protocol* protocol = nullptr;              ///< never null in a study read from a file
-  std::shared_ptr<const ProtocolOptions> options;  ///< from the protocol's own section; may be null
-  std::vector<StudyClass> classes;                 ///< >= 1, labels unique
-  std::vector<StudyMethod> methods;                ///< >= 1, labels unique
+  const Protocol* protocol = nullptr;  ///< never null in a study read from a file
+  std::shared_ptr<const Task> task;    ///< likewise
+  std::vector<StudyClass> classes;     ///< >= 1, labels unique
+  std::vector<StudyMethod> methods;    ///< >= 1, labels unique
   engine::RenderingOptions rendering;
   std::string device;  ///< model of the device that the forces are for, or its file; may be empty
   std::optional<WantedLevel> level;  ///< from which the gains follow; nothing: from `rendering`

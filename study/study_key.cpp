@@ -208,17 +208,15 @@ std::string blinded_configuration(const StudyKey& key) {
   nlohmann::json configuration = {{"study", study.name},
                                   {"protocol", study.protocol_name()},
                                   {"stimuli", codes},
-                                  {"positions", study.protocol->choices(study).size()},
+                                  {"positions", choices_of(study).size()},
                                   {"methods", methods},
                                   {"rendering", to_json(study.rendering)},
                                   {"trials", to_json(study.trials)},
                                   {"blinding", study.double_blind ? "double" : "participant"}};
-  if (const auto plan = study.protocol->interval_plan(study)) {
-    configuration["intervals"] = plan->count;
-  }
-  const std::string options = study.protocol->options_in_clear(study);
+  if (const int planes = ask_of(study).planes; planes > 1) configuration["intervals"] = planes;
+  const std::string options = study.task->in_clear();
   if (!options.empty()) {
-    configuration[std::string(study.protocol->section())] = nlohmann::json::parse(options);
+    configuration[std::string(study.protocol->section)] = nlohmann::json::parse(options);
   }
   add_plans(configuration, key);
   return configuration.dump();
@@ -237,7 +235,7 @@ nlohmann::json parts_of(const Study& study) {
   nlohmann::json methods = nlohmann::json::array();
   for (const StudyMethod& method : study.methods) methods.push_back(to_json(method));
   return {{"study", study.name},
-          {"protocol", {study.protocol_name(), study.protocol->options_in_clear(study)}},
+          {"protocol", {study.protocol_name(), study.task->in_clear()}},
           {"classes", classes},
           {"methods", methods},
           {"rendering", to_json(study.rendering)},
@@ -250,7 +248,7 @@ nlohmann::json parts_of(const Study& study) {
           {"groups", to_json(study.groups)},
           {"registration", to_json(study.registration)},
           {"blinding", study.double_blind},
-          {"protocol's own section", study.protocol->options_in_clear(study)},
+          {"protocol's own section", study.task->in_clear()},
           {"seed", study.seed}};
 }
 
@@ -293,7 +291,7 @@ Digest study_seal(const StudyKey& key) {
     hasher.add(shown.images[static_cast<std::size_t>(stimulus.exemplar)].string());
     hasher.add(method.label);
   }
-  hasher.add(schedule_rule(key.study)).add(static_cast<std::int64_t>(key.study.seed));
+  hasher.add(key.study.task->rule(key.study)).add(static_cast<std::int64_t>(key.study.seed));
   hasher.add(blinded_configuration(key));
   return hasher.finish();
 }

@@ -106,12 +106,10 @@ void save_station_key(const std::filesystem::path& path, const StationKey& key);
 /// \throws StoreError if the text is not a schedule, or names a code that the key does not have
 [[nodiscard]] Schedule schedule_from_json(const std::string& text, const StudyCodes& codes);
 
-/// A restarted block as the secret part of its event, in the form of a schedule's presentations.
-[[nodiscard]] std::string block_to_json(const std::vector<Presentation>& block,
-                                        const StudyCodes& codes);
+/// A restarted block as the secret part of its event, in the form of a schedule's trials.
+[[nodiscard]] std::string block_to_json(const std::vector<Trial>& block, const StudyCodes& codes);
 /// \throws StoreError if the text is not a block, or names a code that the key does not have
-[[nodiscard]] std::vector<Presentation> block_from_json(const std::string& text,
-                                                        const StudyCodes& codes);
+[[nodiscard]] std::vector<Trial> block_from_json(const std::string& text, const StudyCodes& codes);
 
 /// The study as a database stores it in clear: with codes instead of labels and image names, sorted
 /// by code, and without the seed. It has the settings of

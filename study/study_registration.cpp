@@ -229,7 +229,7 @@ void check_estimand(const JsonValue& file, const Study& study) {
                       "is about differences, but the study compares no methods; use "
                       "\"t\"");
   }
-  const double chance = 1.0 / static_cast<double>(study.protocol->choices(study).size());
+  const double chance = 1.0 / static_cast<double>(choices_of(study).size());
   if (analysis.smallest_effect && *analysis.smallest_effect <= chance) {
     file.refuse_below("/registration/smallest_effect",
                       "is " + number_text(*analysis.smallest_effect) +

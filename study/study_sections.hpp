@@ -82,6 +82,8 @@ inline constexpr auto kSpendingNames = std::to_array<Named<Spending>>(
 /// Reads a line in one or more of the program's languages.
 /// \throws StudyError if the study's language is missing
 [[nodiscard]] Translated read_translated(const JsonValue& place, const std::string& language);
+/// The same in any languages.
+[[nodiscard]] Translated read_translated(const JsonValue& place);
 
 /// Upper limits of a study. They keep schedules, packs and pictures small enough for one
 /// participant, one disk and one screen.

@@ -162,7 +162,7 @@ std::string read_paragraphs(const JsonValue& place, std::size_t longest) {
   return text;
 }
 
-Translated read_translated(const JsonValue& place, const std::string& language) {
+Translated read_translated(const JsonValue& place) {
   const JsonObject object = place.object(language_codes());
   Translated text;
   for (const std::string_view code : language_codes()) {
@@ -170,6 +170,11 @@ Translated read_translated(const JsonValue& place, const std::string& language) 
       text[std::string(code)] = read_line(*member, kLongestQuestion);
     }
   }
+  return text;
+}
+
+Translated read_translated(const JsonValue& place, const std::string& language) {
+  Translated text = read_translated(place);
   if (!text.contains(language)) {
     place.refuse_below("/" + language, "is missing, the study's language; add it");
   }

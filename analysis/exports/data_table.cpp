@@ -91,6 +91,15 @@ std::string harmless_cell(const std::string& text) {
   return begins_like_formula(text) && !number_in<double>(text) ? "'" + shown : shown;
 }
 
+std::string r_text(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + "\"";
+}
+
 std::string csv_text(const DataTable& table) {
   return table_text(table, ',', {csv_field, ""});
 }

@@ -3,7 +3,9 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -15,6 +17,17 @@ using DataCell =
 
 /// 1 or 0.
 [[nodiscard]] DataCell flag(bool value);
+
+/// The value, or a missing one.
+template <typename Value>
+[[nodiscard]] DataCell or_nothing(const std::optional<Value>& value) {
+  if (!value) return std::monostate{};
+  if constexpr (std::is_integral_v<Value>) {
+    return std::int64_t{*value};
+  } else {
+    return *value;
+  }
+}
 
 /// A time in UTC as ISO 8601; empty if participants are simulated, whose wall clock means nothing.
 [[nodiscard]] DataCell utc_cell(std::chrono::nanoseconds at, bool simulated);
@@ -31,6 +44,9 @@ struct DataTable {
 /// \return `text` as core/printable.hpp shows it; with an apostrophe before it if it begins with =,
 ///   +, -, @, a tab or a carriage return, which would make it a formula, and is not a number
 [[nodiscard]] std::string harmless_cell(const std::string& text);
+
+/// The text as a quoted string of R.
+[[nodiscard]] std::string r_text(const std::string& text);
 
 /// CSV as in RFC 4180, except that each line ends with a single line feed. The text is UTF-8
 /// without a byte order mark and begins with a header. Texts are harmless cells. A text that

@@ -111,6 +111,9 @@ Meanings of_trials() {
        {"Level of the comparison: of detection its gain, of discrimination 20 log10 of the "
         "difference over the standard",
         "dB"}},
+      {"picture", {"Texture whose picture was shown with the question"}},
+      {"scale", {"Id of the scale that the rating is on"}},
+      {"rating", {"Rating: 0 to 1 on a line, from 1 on points"}},
   };
 }
 
@@ -272,6 +275,7 @@ std::string about_study(const DatasetSource& study) {
   const auto counts =
       std::count_if(sessions.begin(), sessions.end(),
                     [&](const record::SessionRow& row) { return session_counts(row, commitment); });
+  const bool has_choices = commitment.positions > 0;
   std::string text;
   if (commitment.simulated) {
     text +=
@@ -281,15 +285,17 @@ std::string about_study(const DatasetSource& study) {
   if (commitment.pilot) text += "A pilot: not to be pooled with the study's data.\n\n";
   text += fmt::format(
       "A psychophysical study of textures that are felt through a force-feedback device, recorded "
-      "with Touchtrial {}. Protocol: {}; {} textures to choose from; {} scored trials a "
-      "participant; {} that count{}.\n\n",
-      commitment.program_version, commitment.protocol, commitment.positions,
+      "with Touchtrial {}. Protocol: {}; {}{} scored trials a participant; {} that count{}.\n\n",
+      commitment.program_version, commitment.protocol,
+      has_choices ? fmt::format("{} textures to choose from; ", commitment.positions) : "",
       commitment.scored_trials, counted(counts, "completed session"), counts == 1 ? "s" : "");
   text +=
       study.outcomes != nullptr
           ? "Participants who had their data erased are not in it. A trial enters the report where "
             "`counted` is 1: its session was completed and not excluded, it is scored, and it "
-            "ended. A trial without a response counts as wrong.\n\n"
+            "ended. " +
+                std::string(has_choices ? "A trial without a response counts as wrong.\n\n"
+                                        : "A trial without an answer has no rating.\n\n")
           : "Exported before unblinding: what was presented and answered, and when, is "
             "sealed, and practice, lead-ins and catch trials cannot be told from scored "
             "trials.\n\n";
@@ -305,8 +311,11 @@ std::string report_in_dataset(const DatasetSource& study, Typed typed) {
   return analysis_of(outcomes.design).results(outcomes, {})->json();
 }
 
-const ColumnMeaning& meaning_of(const std::string& column) {
+ColumnMeaning meaning_of(const std::string& column) {
   static const Meanings kMeanings = all_meanings();
+  if (column.starts_with(kRatingColumn)) {
+    return {"Rating on the scale " + column.substr(kRatingColumn.size())};
+  }
   return kMeanings.at(column);
 }
 

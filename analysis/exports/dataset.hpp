@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -55,8 +56,11 @@ struct ColumnMeaning {
   std::vector<std::pair<std::string, std::string>> levels{};  ///< values and what they mean
 };
 
+/// The beginning of the columns of ratings, which the id of their scale follows.
+inline constexpr std::string_view kRatingColumn = "rating_";
+
 /// \param column  its name in the CSV files or in BIDS
 /// \throws std::out_of_range if no export has such a column
-[[nodiscard]] const ColumnMeaning& meaning_of(const std::string& column);
+[[nodiscard]] ColumnMeaning meaning_of(const std::string& column);
 
 }  // namespace touchtrial::analysis

@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json variable_json(const std::string& column) {
-  const ColumnMeaning& meaning = meaning_of(column);
+  const ColumnMeaning meaning = meaning_of(column);
   std::string description = meaning.description;
   const char* separator = " (";
   for (const auto& [value, means] : meaning.levels) {
@@ -32,11 +32,11 @@ Json variable_json(const std::string& column) {
 
 std::string description_of(const record::StudyCommitment& commitment) {
   return fmt::format(
-      "{}{}Textures felt through a force-feedback device, one of {} named in each trial. "
-      "Protocol: {}.",
+      "{}{}Textures felt through a force-feedback device, {} in each trial. Protocol: {}.",
       commitment.simulated ? "SIMULATED: every participant is a program. " : "",
       commitment.pilot ? "A pilot, not to be pooled with the study's data. " : "",
-      commitment.positions, commitment.protocol);
+      commitment.positions > 0 ? fmt::format("one of {} named", commitment.positions) : "one rated",
+      commitment.protocol);
 }
 
 /// \param columns  of all data files; each is described once

@@ -4,14 +4,14 @@
 #include "analysis/report/results.hpp"
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 #include <map>
 
 namespace touchtrial::analysis {
 namespace {
 
 bool has_stimulus(const TrialView& trial) {
-  return trial.outcome->has_stimulus();
+  return trial.outcome->has_stimulus;
 }
 
 DataCell response_of(const TrialView& trial) {
@@ -19,8 +19,10 @@ DataCell response_of(const TrialView& trial) {
   return trial.study->choices[*trial.outcome->response];
 }
 
-/// Empty for a trial that did not end, so that the mean of the column is an accuracy.
+/// Empty for a trial that did not end, so that the mean of the column is an accuracy, and where no
+/// response is right.
 DataCell correctness_of(const TrialView& trial) {
+  if (!trial.outcome->right) return std::monostate{};
   if (!has_stimulus(trial) && !trial.outcome->chosen) return std::monostate{};
   const record::TrialState state = trial.row.state;
   if (state != record::TrialState::answered && state != record::TrialState::timed_out)
@@ -61,12 +63,6 @@ DataCell state_of(const TrialView& trial) {
   return std::string(name_of(trial.row.state));
 }
 
-template <std::optional<int> record::TrialRow::*kNumber>
-DataCell number_of(const TrialView& trial) {
-  if (!(trial.row.*kNumber)) return std::monostate{};
-  return std::int64_t{*(trial.row.*kNumber)};
-}
-
 template <double record::TrialMeasures::*kMeasure>
 DataCell measured(const TrialView& trial) {
   if (trial.outcome == nullptr || !trial.outcome->measures) return std::monostate{};
@@ -97,52 +93,56 @@ DataCell validity_of(const TrialView& trial) {
   return flag(trial.outcome != nullptr ? trial.outcome->valid() : trial.row.valid);
 }
 
-constexpr std::array<TrialColumn, 37> kTrialColumns{{
-    {"participant", false, [](const TrialView& t) -> DataCell { return t.participant; }},
-    {"session", false, [](const TrialView& t) -> DataCell { return std::int64_t{t.row.session}; }},
-    {"trial", false, [](const TrialView& t) -> DataCell { return std::int64_t{t.row.trial}; }},
-    {"block", false, [](const TrialView& t) -> DataCell { return std::int64_t{t.row.block}; }},
-    {"method", true, method_of},
-    {"class", true, class_of},
-    {"exemplar", true, exemplar_of},
-    {"response", true, response_of},
-    {"correct", true, correctness_of},
-    {"confidence", true, number_of<&record::TrialRow::confidence>},
-    {"reaction_time_s", true,
-     [](const TrialView& t) { return time_or_nothing(t.row.reaction_time()); }},
-    {"from_contact_s", true,
-     [](const TrialView& t) { return time_or_nothing(t.row.from_contact()); }},
-    {"contact_s", false, measured<&record::TrialMeasures::contact_s>},
-    {"path_mm", false, measured<&record::TrialMeasures::path_mm>},
-    {"force_rms_n", false, measured<&record::TrialMeasures::force_rms_n>},
-    {"saturated_share", false, measured<&record::TrialMeasures::saturated_share>},
-    {"valid", false, validity_of},
-    {"presented_at_s", true, [](const TrialView& t) -> DataCell { return t.row.presented_at; }},
-    {"simulated", false, [](const TrialView& t) { return flag(t.simulated); }},
-    {"counted", true, [](const TrialView& t) { return flag(t.outcome->counted); }},
-    {"kind", true, kind_of},
-    {"state", false, state_of},
-    {"explorations", false,
-     [](const TrialView& t) -> DataCell { return std::int64_t{t.row.explorations}; }},
-    {"first_contact_s", true,
-     [](const TrialView& t) -> DataCell {
-       if (!t.row.contact_at) return std::monostate{};
-       return *t.row.contact_at - t.row.presented_at;
-     }},
-    {"position", true, number_of<&record::TrialRow::position>},
-    {"first_position", true, number_of<&record::TrialRow::first_position>},
-    {"valid_in_clear", false, [](const TrialView& t) { return flag(t.row.valid); }},
-    {"contact_ok", false, within<&record::HandWindows::contact>},
-    {"path_ok", false, within<&record::HandWindows::path>},
-    {"force_ok", false, within<&record::HandWindows::force>},
-    {"speed_ok", false, within<&record::HandWindows::speed>},
-    {"within_limits", true, limits_of},
-    {"limited_ticks", true, limited_ticks_of},
-    {"samples", true, [](const TrialView& t) -> DataCell { return t.row.samples; }},
-    {"sampling_hz", false, [](const TrialView& t) -> DataCell { return t.row.rate_hz; }},
-    {"overruns", false, [](const TrialView& t) -> DataCell { return t.row.overruns; }},
-    {"paused", false, [](const TrialView& t) { return flag(t.row.paused); }},
-}};
+const std::vector<TrialColumn>& columns_of_every_protocol() {
+  static const std::vector<TrialColumn> columns{
+      {"participant", false, [](const TrialView& t) -> DataCell { return t.participant; }},
+      {"session", false,
+       [](const TrialView& t) -> DataCell { return std::int64_t{t.row.session}; }},
+      {"trial", false, [](const TrialView& t) -> DataCell { return std::int64_t{t.row.trial}; }},
+      {"block", false, [](const TrialView& t) -> DataCell { return std::int64_t{t.row.block}; }},
+      {"method", true, method_of},
+      {"class", true, class_of},
+      {"exemplar", true, exemplar_of},
+      {"response", true, response_of},
+      {"correct", true, correctness_of},
+      {"confidence", true, [](const TrialView& t) { return or_nothing(t.row.confidence); }},
+      {"reaction_time_s", true,
+       [](const TrialView& t) { return or_nothing(t.row.reaction_time()); }},
+      {"from_contact_s", true, [](const TrialView& t) { return or_nothing(t.row.from_contact()); }},
+      {"contact_s", false, measured<&record::TrialMeasures::contact_s>},
+      {"path_mm", false, measured<&record::TrialMeasures::path_mm>},
+      {"force_rms_n", false, measured<&record::TrialMeasures::force_rms_n>},
+      {"saturated_share", false, measured<&record::TrialMeasures::saturated_share>},
+      {"valid", false, validity_of},
+      {"presented_at_s", true, [](const TrialView& t) -> DataCell { return t.row.presented_at; }},
+      {"simulated", false, [](const TrialView& t) { return flag(t.simulated); }},
+      {"counted", true, [](const TrialView& t) { return flag(t.outcome->counted); }},
+      {"kind", true, kind_of},
+      {"state", false, state_of},
+      {"explorations", false,
+       [](const TrialView& t) -> DataCell { return std::int64_t{t.row.explorations}; }},
+      {"first_contact_s", true,
+       [](const TrialView& t) -> DataCell {
+         if (!t.row.contact_at) return std::monostate{};
+         return *t.row.contact_at - t.row.presented_at;
+       }},
+      {"position", true, [](const TrialView& t) { return or_nothing(position_of(t.row.answer)); }},
+      {"first_position", true,
+       [](const TrialView& t) { return or_nothing(first_position_of(t.row.answer)); }},
+      {"valid_in_clear", false, [](const TrialView& t) { return flag(t.row.valid); }},
+      {"contact_ok", false, within<&record::HandWindows::contact>},
+      {"path_ok", false, within<&record::HandWindows::path>},
+      {"force_ok", false, within<&record::HandWindows::force>},
+      {"speed_ok", false, within<&record::HandWindows::speed>},
+      {"within_limits", true, limits_of},
+      {"limited_ticks", true, limited_ticks_of},
+      {"samples", true, [](const TrialView& t) -> DataCell { return t.row.samples; }},
+      {"sampling_hz", false, [](const TrialView& t) -> DataCell { return t.row.rate_hz; }},
+      {"overruns", false, [](const TrialView& t) -> DataCell { return t.row.overruns; }},
+      {"paused", false, [](const TrialView& t) { return flag(t.row.paused); }},
+  };
+  return columns;
+}
 
 void add_trial(DataTable& table, const std::vector<TrialColumn>& columns, const TrialView& trial) {
   std::vector<DataCell>& row = table.rows.emplace_back();
@@ -155,7 +155,7 @@ void add_trial(DataTable& table, const std::vector<TrialColumn>& columns, const 
 DataTable trials_header(const std::vector<TrialColumn>& columns, bool unblinded) {
   DataTable table;
   for (const TrialColumn& column : columns) {
-    if (unblinded || !column.after_unblinding) table.columns.emplace_back(column.name);
+    if (unblinded || !column.after_unblinding) table.columns.push_back(column.name);
   }
   return table;
 }
@@ -189,23 +189,16 @@ DataTable trials_that_are(bool scored, const Outcomes& outcomes) {
 
 }  // namespace
 
-DataCell time_or_nothing(const std::optional<std::chrono::nanoseconds>& time) {
-  return time ? DataCell(*time) : DataCell();
-}
-
 std::span<const TrialColumn> trial_columns() {
-  return kTrialColumns;
+  return columns_of_every_protocol();
 }
 
 std::vector<TrialColumn> trial_columns_of(const Outcomes* outcomes) {
-  std::vector<TrialColumn> columns(kTrialColumns.begin(), kTrialColumns.end());
+  std::vector<TrialColumn> columns = columns_of_every_protocol();
   if (outcomes == nullptr) return columns;
   if (outcomes->design.trials.rove_db > 0.0) columns.push_back({"gain_db", true, gain_of});
-  const bool chosen = std::ranges::any_of(
-      outcomes->trials, [](const TrialOutcome& trial) { return trial.chosen.has_value(); });
-  if (!chosen) return columns;
-  const std::vector<TrialColumn> own = analysis_of(outcomes->design).trial_columns();
-  columns.insert(columns.end(), own.begin(), own.end());
+  std::ranges::move(analysis_of(outcomes->design).trial_columns(*outcomes),
+                    std::back_inserter(columns));
   return columns;
 }
 

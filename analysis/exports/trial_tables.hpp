@@ -5,6 +5,7 @@
 #include "analysis/exports/data_table.hpp"
 #include "analysis/outcomes/outcomes.hpp"
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -22,21 +23,18 @@ struct TrialView {
 };
 
 struct TrialColumn {
-  const char* name;
-  bool after_unblinding;  ///< the column exists only after unblinding
-  DataCell (*value)(const TrialView&);
+  std::string name;
+  bool after_unblinding = false;  ///< the column exists only after unblinding
+  std::function<DataCell(const TrialView&)> value;
 };
 
 /// The columns that every protocol has, in the order of trials.csv.
 [[nodiscard]] std::span<const TrialColumn> trial_columns();
 
-/// These; where gains are roved, "gain_db"; and if an adaptive order chose what was presented, the
-/// columns of the protocol's analysis.
+/// These; where gains are roved, "gain_db"; and the columns of the protocol's analysis.
 /// \param outcomes  null before unblinding
+/// \throws StudyError if the study's protocol has no analysis
 [[nodiscard]] std::vector<TrialColumn> trial_columns_of(const Outcomes* outcomes);
-
-/// The time between two moments of a trial; missing unless both occurred.
-[[nodiscard]] DataCell time_or_nothing(const std::optional<std::chrono::nanoseconds>& time);
 
 /// The file name of a trial's image, as the study gives it.
 [[nodiscard]] const std::string& image_of(const Outcomes& study, const TrialOutcome& trial);

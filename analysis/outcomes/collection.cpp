@@ -65,7 +65,7 @@ std::optional<double> median_in_tenths(std::vector<double> times_s) {
 }  // namespace
 
 std::optional<AnswerSpread> spread_of(std::vector<record::TrialRow> trials) {
-  std::erase_if(trials, [](const record::TrialRow& trial) { return !trial.position; });
+  std::erase_if(trials, [](const record::TrialRow& trial) { return !position_of(trial.answer); });
   if (trials.empty()) return std::nullopt;
   std::ranges::sort(trials, {}, &record::TrialRow::answered_at);
   AnswerSpread spread;
@@ -74,8 +74,8 @@ std::optional<AnswerSpread> spread_of(std::vector<record::TrialRow> trials) {
   int run = 0;
   std::vector<double> times_s;
   for (std::size_t i = 0; i < trials.size(); ++i) {
-    most = std::max(most, ++counts[*trials[i].position]);
-    run = i > 0 && trials[i].position == trials[i - 1].position ? run + 1 : 1;
+    most = std::max(most, ++counts[*position_of(trials[i].answer)]);
+    run = i > 0 && position_of(trials[i].answer) == position_of(trials[i - 1].answer) ? run + 1 : 1;
     spread.longest_run = std::max(spread.longest_run, run);
     const auto took = trials[i].reaction_time();
     if (took) times_s.push_back(std::chrono::duration<double>(*took).count());

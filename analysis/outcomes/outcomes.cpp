@@ -44,7 +44,7 @@ Outcomes labelled(const record::StudyStore& store, const study::Study& study) {
     outcomes.classes.push_back(one.label);
     outcomes.exemplars.push_back(exemplar_names(one));
   }
-  for (const study::Choice& one : study.protocol->choices(study)) {
+  for (const study::Choice& one : study::choices_of(study)) {
     outcomes.choices.push_back(one.label);
   }
   for (int i = 0; i < study.presented_methods(); ++i) {
@@ -53,30 +53,26 @@ Outcomes labelled(const record::StudyStore& store, const study::Study& study) {
   return outcomes;
 }
 
-const study::Presentation& presentation_of(const record::TrialRow& row,
-                                           const study::Schedule& schedule) {
-  const auto found =
-      std::find_if(schedule.presentations.begin(), schedule.presentations.end(),
-                   [&](const study::Presentation& one) { return one.trial == row.trial; });
-  if (found == schedule.presentations.end()) {
+const study::Trial& trial_of(const record::TrialRow& row, const study::Schedule& schedule) {
+  const auto found = std::ranges::find_if(
+      schedule.trials, [&](const study::Trial& one) { return one.place.trial == row.trial; });
+  if (found == schedule.trials.end()) {
     throw VerificationError(shown(row) +
                             ": is not in the session's schedule; run `touchtrial verify`");
   }
   return *found;
 }
 
-std::optional<int> response_of(const record::TrialRow& row, const study::Schedule& schedule) {
-  if (!row.position) return std::nullopt;
-  if (*row.position < 0 || *row.position >= static_cast<int>(schedule.layout.size())) {
-    throw VerificationError(fmt::format("{}: answers position {} of {}; run `touchtrial verify`",
-                                        shown(row), *row.position, schedule.layout.size()));
-  }
-  return schedule.layout[*row.position];
+void require_fit(const record::TrialRow& row, const study::Ask& ask) {
+  if (!row.answer) return;
+  const std::string misfit = study::misfit_of(*row.answer, ask);
+  if (misfit.empty()) return;
+  throw VerificationError(shown(row) + ": " + misfit + "; run `touchtrial verify`");
 }
 
 TrialOutcome outcome_of(const record::TrialRow& row, const SessionOutcome& session,
                         const study::Schedule& schedule, const study::Study& study) {
-  const study::Presentation& presentation = presentation_of(row, schedule);
+  const study::Trial& scheduled = trial_of(row, schedule);
   const bool ended =
       row.state == record::TrialState::answered || row.state == record::TrialState::timed_out;
   TrialOutcome trial;
@@ -84,24 +80,25 @@ TrialOutcome outcome_of(const record::TrialRow& row, const SessionOutcome& sessi
   trial.visit = session.row.visit;
   trial.group = session.group;
   trial.row = row;
-  trial.stimulus = presentation.stimulus;
-  trial.gain_db = presentation.gain_db;
-  trial.role = presentation.role;
-  trial.has_planes = study.protocol->interval_plan(study).has_value();
+  trial.role = scheduled.role;
+  trial.right = scheduled.right;
+  trial.picture = scheduled.picture;
+  if (scheduled.planes.size() == 1) {
+    trial.stimulus = scheduled.field();
+    trial.gain_db = scheduled.planes.front().gain_db;
+  }
+  trial.has_stimulus = scheduled.planes.size() == 1 && !scheduled.planes.front().blank;
   if (row.track && row.level && row.target) {
     trial.chosen = {*row.track, *row.level, *row.target};
-    trial.stimulus = study.protocol->stimulus_of(study, *trial.chosen);
+    trial.stimulus = study.task->about(study, {*row.track, *row.level});
+    trial.right = *row.target;
     const bool in_track = trial.role == study::Role::scored;
     if (in_track && *row.track == 0) trial.role = study::Role::catch_trial;
   }
   trial.scored = trial.role == study::Role::scored;
   trial.counted = session.counted && trial.scored && ended;
-  trial.response = response_of(row, schedule);
-  if (trial.chosen) {
-    trial.right = trial.chosen->target;
-  } else if (trial.role != study::Role::catch_trial) {
-    trial.right = study.protocol->right_choice(study, presentation);
-  }
+  require_fit(row, study.task->ask(study, scheduled.place));
+  if (row.answer) trial.response = schedule.choice_of(*row.answer);
   return trial;
 }
 

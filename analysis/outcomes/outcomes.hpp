@@ -23,28 +23,33 @@ struct SessionOutcome {
   std::optional<int> group{};  ///< index into the study's groups
 };
 
+/// What an adaptive order chose for a trial.
+struct ChosenLevel {
+  int track = 0;   ///< from 1; 0: a catch trial, which belongs to no track
+  int level = 0;   ///< index into the track's levels
+  int target = 0;  ///< index of the right choice
+
+  friend bool operator==(const ChosenLevel&, const ChosenLevel&) = default;
+};
+
 /// One trial with its stimulus and answer.
 struct TrialOutcome {
   std::string participant;
   record::TrialRow row;
-  study::StimulusIndex stimulus;  ///< without meaning for a catch trial
-  double gain_db = 0.0;           ///< study::Presentation::gain_db
+  study::StimulusIndex stimulus;  ///< of a track: what its step is about
+  double gain_db = 0.0;           ///< study::Plane::gain_db
   study::Role role = study::Role::scored;
-  std::optional<study::ChosenLevel> chosen{};  ///< by an adaptive order
-  bool has_planes = false;                     ///< several, one after the other
-  bool scored = false;                         ///< by the schedule; not a lead-in or catch trial
-  bool counted = false;                        ///< counts towards accuracy
-  std::optional<int> response;  ///< index of the chosen alternative; empty: no response
-  std::optional<int> right;     ///< index of the right choice; empty: there is none
+  std::optional<ChosenLevel> chosen{};
+  std::optional<int> picture{};  ///< class whose picture was shown with the question
+  bool has_stimulus = false;     ///< the schedule has one textured plane for it
+  bool scored = false;           ///< by the schedule; not a lead-in or catch trial
+  bool counted = false;          ///< counts towards accuracy
+  std::optional<int> response;   ///< index of the chosen alternative; empty: no response
+  std::optional<int> right;      ///< index of the right choice; empty: there is none
   std::optional<record::TrialMeasures> measures;
   int visit = 1;
   std::optional<int> group{};  ///< index into the study's groups
 
-  /// Whether one stimulus was presented. Of a trial with several planes it is not known before the
-  /// order chose.
-  [[nodiscard]] bool has_stimulus() const noexcept {
-    return role != study::Role::catch_trial && !has_planes && !chosen;
-  }
   /// Whether the response is right. A trial without a response is wrong.
   [[nodiscard]] bool correct() const noexcept { return response && response == right; }
   /// Whether the trial is valid by the whole validity rule: its part in clear and its sealed part.

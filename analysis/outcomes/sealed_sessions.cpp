@@ -307,8 +307,8 @@ std::map<int, study::Schedule> open_schedules(const StudyEvents& events, const s
     if (opened[i]) schedules.insert_or_assign(openings[i].session, *std::move(opened[i]));
   }
   const auto add_block = [&](const record::Event& event, const std::string& text) {
-    std::vector<study::Presentation>& all = schedules[event.session].presentations;
-    const std::vector<study::Presentation> block = block_from_json(text, key);
+    std::vector<study::Trial>& all = schedules[event.session].trials;
+    const std::vector<study::Trial> block = block_from_json(text, key);
     all.insert(all.end(), block.begin(), block.end());
   };
   for_each_secret(events, keys, record::EventKind::block_restarted, add_block);

@@ -45,7 +45,7 @@ std::vector<Explorations> explorations_of(const Outcomes& outcomes) {
     const auto method = static_cast<std::size_t>(trial.stimulus.method);
     if (!trial.counted || method >= all.size()) continue;
     ++all[method].trials;
-    if (!trial.response) ++all[method].without_response;
+    if (!trial.response && !trial.row.answer) ++all[method].without_response;
     add(trial, samples[method]);
   }
   for (std::size_t i = 0; i < all.size(); ++i) {

@@ -6,6 +6,7 @@
 #include "protocols/session/stimulus_source.hpp"
 #include "protocols/simulation/felt_knowledge.hpp"
 #include "protocols/simulation/own_knowledge.hpp"
+#include "study/protocol.hpp"
 
 #include <algorithm>
 #include <cmath>

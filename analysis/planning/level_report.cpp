@@ -249,7 +249,7 @@ struct LevelAlone {
 
 std::vector<LevelAlone> by_level_alone(const study::Study& study, const StimulusLevels& levels) {
   std::vector<LevelAlone> found;
-  if (study.classes.size() < 2 || study.protocol->interval_plan(study)) return found;
+  if (study.classes.size() < 2 || !study::chooses_classes(study)) return found;
   const StrengthSense sense;
   for (std::size_t place = 0; place < levels.blank.size(); ++place) {
     for (int method = 0; method < study.presented_methods(); ++method) {
@@ -436,7 +436,7 @@ std::string all_levels_json(const study::Study& study, const StimulusLevels& lev
 
 std::vector<std::string> level_warnings(const study::Study& study, const StimulusLevels& levels) {
   // A level that the study states is held by its gains, and thresholds are there to be found.
-  if (study.device.empty() || study.level || study.protocol->interval_plan(study)) return {};
+  if (study.device.empty() || study.level || !study::chooses_classes(study)) return {};
   const std::string device = devices_of(levels).front();
   std::size_t weak = 0;
   std::size_t weakest = 0;

@@ -31,6 +31,11 @@ std::optional<Interval> known(const Interval& interval, const Proportion& of) {
   return of.n == 0 ? std::nullopt : std::optional(interval);
 }
 
+void put_mean(nlohmann::ordered_json& object, const MeanEstimate& mean) {
+  object["mean"] = figure_json(mean.mean);
+  object["interval"] = interval_json(mean.known_interval());
+}
+
 void put_proportion(nlohmann::ordered_json& object, const Proportion& proportion) {
   object["n"] = proportion.n;
   object["correct"] = proportion.correct;
@@ -71,6 +76,12 @@ void put_method(nlohmann::ordered_json& object, const std::string& method,
                 const std::vector<std::string>& references) {
   object["method"] = method;
   object["references"] = references;
+}
+
+nlohmann::ordered_json with_method(nlohmann::ordered_json object, const std::string& method,
+                                   const std::vector<std::string>& references) {
+  put_method(object, method, references);
+  return object;
 }
 
 nlohmann::ordered_json references_object() {

@@ -29,6 +29,17 @@ struct StudyHead;
 /// \return the interval around a share of trials, or nothing if there are no trials
 [[nodiscard]] std::optional<Interval> known(const Interval& interval, const Proportion& of);
 
+/// An array of what `one` makes of each element.
+template <typename Range, typename One>
+[[nodiscard]] nlohmann::ordered_json array_json(const Range& range, One one) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const auto& element : range) all.push_back(one(element));
+  return all;
+}
+
+/// Adds mean and interval to an object.
+void put_mean(nlohmann::ordered_json& object, const MeanEstimate& mean);
+
 /// Adds n, correct and p to an object, after the members that it already has.
 void put_proportion(nlohmann::ordered_json& object, const Proportion& proportion);
 
@@ -64,6 +75,10 @@ void put_registered(nlohmann::ordered_json& object, const StudyHead& head);
 /// \param references  keys of references_object for the sources of the method
 void put_method(nlohmann::ordered_json& object, const std::string& method,
                 const std::vector<std::string>& references);
+/// The object with that.
+[[nodiscard]] nlohmann::ordered_json with_method(nlohmann::ordered_json object,
+                                                 const std::string& method,
+                                                 const std::vector<std::string>& references);
 [[nodiscard]] nlohmann::ordered_json quality_object(const QualityReport& report);
 
 }  // namespace touchtrial::analysis

@@ -25,7 +25,7 @@ void read_session(const json& session, Prescription& prescription) {
 /// its own block.
 int method_orders_of(const json& configuration) {
   const study::Protocol* protocol = study::find_protocol(configuration.value("protocol", ""));
-  const bool several = protocol != nullptr && protocol->presents_all_methods();
+  const bool several = protocol != nullptr && protocol->all_methods;
   const json trials = configuration.at("trials");
   if (!several || configuration.contains("intervals") ||
       trials.value("blocks", "by-method") != "by-method")

@@ -65,7 +65,7 @@ std::vector<ResultTable> ProtocolAnalysis::tables(const Outcomes&) const {
   return {};
 }
 
-std::vector<TrialColumn> ProtocolAnalysis::trial_columns() const {
+std::vector<TrialColumn> ProtocolAnalysis::trial_columns(const Outcomes&) const {
   return {};
 }
 
@@ -80,7 +80,7 @@ void add_analysis(std::string_view protocol, const ProtocolAnalysis& analysis) {
 }
 
 const ProtocolAnalysis& analysis_of(const study::Study& study) {
-  const auto found = known_analyses().find(study.protocol->name());
+  const auto found = known_analyses().find(study.protocol->name);
   if (found != known_analyses().end()) return *found->second;
   throw StudyError(one_line("study " + study.name + ": the protocol " + study.protocol_name() +
                             " has no report; export the trials instead"));

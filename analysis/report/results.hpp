@@ -78,9 +78,10 @@ class ProtocolAnalysis {
       const Outcomes& outcomes, const ReportWishes& wishes) const = 0;
   /// Tables that `export --format csv` writes in addition to those of every study.
   [[nodiscard]] virtual std::vector<ResultTable> tables(const Outcomes& outcomes) const;
-  /// Columns about what an adaptive order chose, which tables of trials have in addition. Their
-  /// names are known to meaning_of (exports/dataset.hpp).
-  [[nodiscard]] virtual std::vector<TrialColumn> trial_columns() const;
+  /// Columns that tables of trials have in addition, for instance what an adaptive order chose.
+  /// Their names are known to meaning_of (exports/dataset.hpp).
+  /// \param outcomes  must outlive the columns
+  [[nodiscard]] virtual std::vector<TrialColumn> trial_columns(const Outcomes& outcomes) const;
   /// Writes the files of `export --format r`: a table, a script that fits a model to it, and
   /// instructions.
   /// \return the files, in the order in which they were written

@@ -24,6 +24,16 @@ struct Proportion {
   /// correct / n, or nothing if n is 0.
   [[nodiscard]] std::optional<double> share() const noexcept;
 
+  void add(bool is_correct) noexcept {
+    ++n;
+    correct += is_correct ? 1 : 0;
+  }
+  Proportion& operator+=(const Proportion& other) noexcept {
+    n += other.n;
+    correct += other.correct;
+    return *this;
+  }
+
   friend bool operator==(const Proportion&, const Proportion&) = default;
 };
 

@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "record/payload_json.hpp"
+#include "study/protocol.hpp"
 
 #include <string>
 
@@ -13,14 +14,7 @@ SessionCourse::SessionCourse(const study::Study& study, const study::ScheduleDra
                              bool opened)
     : study_(study),
       opened_(opened),
-      course_(
-          study::make_schedule(study, draw), study.trials.on_interruption,
-          [&study, draw](int block, int restarts_before, int first_trial) {
-            return study::restarted_block(study, draw, block, restarts_before, first_trial);
-          },
-          study::adaptive_order(study, draw)) {
-  if (course_.is_adaptive()) places_ = study::make_schedule(study, draw);
-}
+      course_(study::make_order(study, draw), study.trials.on_interruption) {}
 
 void SessionCourse::fail(const record::Event& event, const std::string& why) const {
   throw VerificationError(
@@ -73,10 +67,10 @@ void SessionCourse::present(const record::Event& event) {
   }
   if (is_under_way_) {
     fail(event, body.trial,
-         fmt::format("was presented while trial {} was under way", course_.current()->trial));
+         fmt::format("was presented while trial {} was under way", course_.current()->place.trial));
   }
   if (course_.is_over()) fail(event, body.trial, "was presented after all that was due");
-  const study::Presentation& next = *course_.current();
+  const study::Place& next = course_.current()->place;
   if (next.trial != body.trial) {
     fail(event, body.trial, fmt::format("was presented where trial {} was due", next.trial));
   }
@@ -90,7 +84,7 @@ void SessionCourse::present(const record::Event& event) {
 
 void SessionCourse::require_under_way(const record::Event& event, int trial) const {
   const std::string name(name_of(event.kind));
-  if (!is_under_way_ || course_.current()->trial != trial) {
+  if (!is_under_way_ || course_.current()->place.trial != trial) {
     fail(event, trial, name + ", but not under way");
   }
   if (event.kind == record::EventKind::interrupted) return;
@@ -118,30 +112,37 @@ void SessionCourse::follow_trial(const record::Event& event) {
 
 void SessionCourse::answer(const record::Event& event) {
   const record::AnswerBody body = record::answer_from_json(event.body);
-  // Blocks follow from the number of answers: in place of one that was erased, any will do.
-  if (!opened_) return course_.finish(0);
+  // An answer that was erased says nothing; where the next trials stand does not follow from it.
+  if (!opened_) return course_.finish(std::nullopt);
   require_chosen(event, body);
-  if (body.position &&
-      (*body.position < 0 || *body.position >= std::ssize(course_.schedule().layout))) {
-    fail(event, body.trial,
-         fmt::format("answered at position {}, which there is not", *body.position));
+  if (body.answer) {
+    const study::Ask ask = study_.task->ask(study_, course_.current()->place);
+    const std::string misfit = study::misfit_of(*body.answer, ask);
+    if (!misfit.empty()) fail(event, body.trial, misfit);
   }
-  course_.finish(body.position);
+  course_.finish(body.answer);
 }
 
 void SessionCourse::require_chosen(const record::Event& event,
                                    const record::AnswerBody& body) const {
-  const std::optional<study::ChosenLevel>& due = course_.current()->chosen;
-  std::optional<study::ChosenLevel> shown;
-  if (body.track && body.level && body.target) shown = {*body.track, *body.level, *body.target};
-  if (shown == due) return;
-  const auto words = [](const std::optional<study::ChosenLevel>& chosen) {
-    return chosen ? fmt::format("track {}, level {}, target {}", chosen->track, chosen->level,
-                                chosen->target)
-                  : std::string("no level");
+  const study::Trial& due = *course_.current();
+  const auto words = [](const auto& track, const auto& level, const auto& target) {
+    return track && level && target
+               ? fmt::format("track {}, level {}, target {}", *track, *level, *target)
+               : std::string("no level");
   };
+  std::optional<int> track;
+  std::optional<int> level;
+  if (due.level) {
+    track = due.level->track;
+    level = due.level->level;
+  }
+  const std::optional<int> target = due.level ? due.right : std::nullopt;
+  const std::string shown = words(body.track, body.level, body.target);
+  const std::string chosen = words(track, level, target);
+  if (shown == chosen) return;
   fail(event, body.trial,
-       fmt::format("presented {} where the procedure chooses {}", words(shown), words(due)));
+       fmt::format("presented {} where the procedure chooses {}", shown, chosen));
 }
 
 void SessionCourse::restart_block(const record::Event& event) {
@@ -181,10 +182,12 @@ void SessionCourse::close(const record::Event& event) const {
                             *course_.block_to_restart()));
   }
   if (is_under_way_) {
-    fail(event, course_.current()->trial, "the session is complete, but this trial has no answer");
+    fail(event, course_.current()->place.trial,
+         "the session is complete, but this trial has no answer");
   }
   if (!course_.is_over()) {
-    fail(event, course_.current()->trial, "the session is complete, but this trial was still due");
+    fail(event, course_.current()->place.trial,
+         "the session is complete, but this trial was still due");
   }
 }
 

@@ -26,13 +26,10 @@ class SessionCourse {
   ///   follow the earlier ones
   void follow(const record::Event& event);
 
-  /// The schedule with which the session began, followed by the restarted blocks. Of an adaptive
-  /// order, its places.
-  [[nodiscard]] const study::Schedule& scheduled() const noexcept {
-    return places_ ? *places_ : course_.schedule();
-  }
+  /// The schedule with which the session began, followed by the restarted blocks.
+  [[nodiscard]] const study::Schedule& scheduled() const noexcept { return course_.schedule(); }
   /// Whether the answers decide what comes next.
-  [[nodiscard]] bool is_adaptive() const noexcept { return places_.has_value(); }
+  [[nodiscard]] bool is_adaptive() const noexcept { return course_.is_adaptive(); }
   [[nodiscard]] int presentations() const noexcept { return presentations_; }
 
  private:
@@ -50,7 +47,6 @@ class SessionCourse {
   const study::Study& study_;
   bool opened_;
   study::Course course_;
-  std::optional<study::Schedule> places_;  ///< of an adaptive order, as sealed at the opening
   bool is_under_way_ = false;  ///< the course's current presentation waits for its answer
   bool is_spoilt_ = false;     ///< the program ended during the current presentation
   bool is_paused_ = false;

@@ -67,7 +67,7 @@ std::string check_configuration(const record::StudyStore& store, const study::St
   require(key.study.scored_trials() == commitment.scored_trials, "the number of scored trials");
   require(key.study.registration.safety_record_years == commitment.safety_record_years,
           "how long safety records are kept");
-  require(static_cast<int>(key.study.protocol->choices(key.study).size()) == commitment.positions,
+  require(static_cast<int>(study::choices_of(key.study).size()) == commitment.positions,
           "the number of pictures");
   // A prepared study may be rehearsed with simulated participants in a separate database. A
   // simulated study must not be run with people.
@@ -188,17 +188,19 @@ std::string check_schedule(const record::StudyStore& store, const study::StudyKe
 }
 
 std::string check_responses(const record::StudyStore& store, const study::StudyKey& key) {
-  const int positions = store.commitment().positions;
+  const study::Ask ask = study::ask_of(key.study);
   int responses = 0;
   for (const record::TrialRow& row : open_trials(store, person_keys(store, key))) {
-    for (const std::optional<int>& position : {row.position, row.first_position}) {
-      if (!position || (*position >= 0 && *position < positions)) continue;
-      throw VerificationError(fmt::format("session {}, trial {}: answers position {} of {}",
-                                          row.session, row.trial, *position, positions));
+    if (!row.answer) continue;
+    const std::string misfit = study::misfit_of(*row.answer, ask);
+    if (!misfit.empty()) {
+      throw VerificationError(
+          fmt::format("session {}, trial {}: {}", row.session, row.trial, misfit));
     }
-    if (row.position) ++responses;
+    ++responses;
   }
-  return fmt::format("{} answers within the {} choices", responses, positions);
+  if (ask.choices().empty()) return fmt::format("{} answers on the scales", responses);
+  return fmt::format("{} answers within the {} choices", responses, ask.choices().size());
 }
 
 /// Opens what is left of erased sessions, and the texts about people on the file's chain.

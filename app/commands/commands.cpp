@@ -103,7 +103,7 @@ int run_command(const std::vector<std::string>& words) {
 std::vector<std::string> protocols_of_new_studies() {
   std::vector<std::string> names;
   for (const study::Protocol* one : study::protocols()) {
-    if (one->section().empty()) names.emplace_back(one->name());
+    if (one->section.empty()) names.emplace_back(one->name);
   }
   return names;
 }

@@ -1,5 +1,6 @@
 // fit: estimates a subject model from answers.
 #include "analysis/outcomes/outcomes.hpp"
+#include "analysis/outcomes/recorded_pack.hpp"
 #include "analysis/outcomes/sealed_sessions.hpp"
 #include "analysis/planning/answer_model.hpp"
 #include "analysis/planning/fit_report.hpp"
@@ -12,7 +13,6 @@
 #include "core/outputs.hpp"
 #include "core/strict_json.hpp"
 #include "core/text.hpp"
-#include "protocols/identification/analysis/cues/study_plane.hpp"
 #include "protocols/simulation/subject_model.hpp"
 #include "record/study_store.hpp"
 #include "study/protocol.hpp"
@@ -58,10 +58,10 @@ planning::FreeParameters free_of(const FitArguments& arguments) {
 
 engine::Pack pack_for(const record::StudyStore& store, const study::StudyKey& key,
                       const FitArguments& arguments) {
-  std::optional<engine::Pack> pack = analysis::identification::pack_of(store, key, arguments.pack);
+  std::optional<engine::Pack> pack = analysis::pack_of(store, key, arguments.pack);
   if (!pack && key.simulated && arguments.pack.empty()) {
     prepare_simulated_pack(key);
-    pack = analysis::identification::pack_of(store, key, {});
+    pack = analysis::pack_of(store, key, {});
   }
   if (pack) return std::move(*pack);
   const fs::path place = arguments.pack.empty() ? key.pack_folder : arguments.pack;

@@ -98,7 +98,7 @@ CLI::Validator number_within(Number low, Number high) {
 }
 
 int methods_of(const Answers& answers) {
-  return study::find_protocol(answers.at("--protocol"))->least_methods();
+  return study::find_protocol(answers.at("--protocol"))->min_methods;
 }
 
 int visits_of(const Answers& answers) {

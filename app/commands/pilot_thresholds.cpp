@@ -1,6 +1,6 @@
 #include "app/commands/pilot_thresholds.hpp"
 
-#include "analysis/report/results.hpp"
+#include "analysis/planning/planner.hpp"
 #include "app/commands/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "device/drivers/registry.hpp"
@@ -11,79 +11,33 @@
 #include "record/study_store.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace touchtrial::app {
 namespace {
 
-using nlohmann::json;
-
-constexpr std::size_t kMinPilots = 3;
-/// Right answers at the threshold that levels count from (d' = 1.62) among two and three intervals.
-constexpr double kRightOfTwo = 0.8744;
-constexpr double kRightOfThree = 0.794;
+/// Where the study file names its pilots.
+std::string place_of(const study::Study& study) {
+  return study.source + ": /rendering/gains/curve: " + study.level->curve;
+}
 
 [[noreturn]] void refuse(const study::Study& study, const std::string& what) {
-  throw StudyError(
-      one_line(study.source + ": /rendering/gains/curve: " + study.level->curve + ": " + what));
+  throw StudyError(one_line(place_of(study) + ": " + what));
 }
 
-/// The report of the pilots' study, as `report --json` prints it.
-json report_of(const study::Study& study, const record::StudyStore& store,
-               const study::StudyKey& key) {
+/// The mean threshold of each stimulus that has one, dB.
+std::vector<std::pair<std::string, double>> means_of(const study::Study& study,
+                                                     const record::StudyStore& store,
+                                                     const study::StudyKey& key) {
   if (!store.state().unblinded) refuse(study, "is not unblinded; close and unblind it");
-  const analysis::Outcomes outcomes = outcomes_of(store, key);
-  json report = json::parse(analysis::analysis_of(outcomes.design).results(outcomes, {})->json());
-  if (report.value("task", "") != "detection" || report.value("along", "") != "gain" ||
-      report.value("question", "") != "which-interval") {
-    refuse(study, "is no detection study along gain that asks which interval");
-  }
-  return report;
-}
-
-/// The threshold of a track, at the share of right answers that levels count from, dB.
-double threshold_db(const json& track, double guess) {
-  const json& found = track.at("posterior");
-  const double right = guess > 0.4 ? kRightOfTwo : kRightOfThree;
-  // Along the track's Weibull function.
-  const double more = std::log10(-std::log((1.0 - right) / (1.0 - guess)));
-  return found.at("threshold").get<double>() + 20.0 * more / found.at("slope").get<double>();
-}
-
-/// The mean threshold of each stimulus that has one.
-std::vector<std::pair<std::string, double>> means_by_standard(const study::Study& study,
-                                                              const json& report) {
-  std::vector<std::pair<std::string, double>> means;
-  for (const json& standard : report.at("standards")) {
-    double sum = 0.0;
-    std::size_t found = 0;
-    std::size_t censored = 0;
-    for (const json& track : report.at("tracks")) {
-      if (track.at("standard") != standard.at("standard")) continue;
-      if (track.at("posterior").at("threshold").is_null()) {
-        ++censored;
-        continue;
-      }
-      sum += threshold_db(track, report.at("guess").get<double>());
-      ++found;
-    }
-    if (found < kMinPilots || censored > found) {
-      refuse(study,
-             fmt::format("has {} thresholds of {} and {} that lie beyond its levels; it "
-                         "needs {} or more, and fewer beyond",
-                         found, standard.at("standard").get<std::string>(), censored, kMinPilots));
-    }
-    means.emplace_back(standard.at("class").get<std::string>(), sum / static_cast<double>(found));
-  }
-  if (means.empty()) refuse(study, "has no threshold yet");
-  return means;
+  const planning::Planner& planner = planning::planner_of(key.study, "thresholds of pilots");
+  return planner.pilot_thresholds(outcomes_of(store, key), place_of(study));
 }
 
 /// Thresholds hold for the device on which they were measured.
@@ -120,7 +74,7 @@ simulation::LevelCurve pilots_curve(const study::Study& study, const device::Dev
   }
   const study::StudyKey key = key_of_database(store, database, {});
   require_device(study, store, key.study, device);
-  const auto means = means_by_standard(study, report_of(study, store, key));
+  const auto means = means_of(study, store, key);
   const engine::Pack pack(key.pack_folder);
   const session::StimulusSource source(pack, key.study.rendering);
   const simulation::StimulusLevels levels = simulation::levels_of(key, source, {device}, cores());

@@ -1,5 +1,5 @@
-// procedure: what a track of a threshold study would present after a list of answers.
-#include "analysis/planning/track_walk.hpp"
+// procedure: what an adaptive track of a study would present after a list of answers.
+#include "analysis/planning/planner.hpp"
 #include "app/commands/commands.hpp"
 #include "app/terminal/console.hpp"
 #include "core/errors.hpp"
@@ -41,7 +41,7 @@ std::vector<bool> answers_named(std::string_view text) {
 int show_procedure(const ProcedureArguments& arguments) {
   const std::vector<bool> answers = answers_named(arguments.answers);
   const study::Study study = study::load_study(arguments.study);
-  print(planning::track_walk_json(planning::walked(study, arguments.track, answers)));
+  print(planning::planner_of(study, "`procedure`").procedure(study, arguments.track, answers));
   return 0;
 }
 

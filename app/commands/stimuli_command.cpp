@@ -49,7 +49,7 @@ struct ImportArguments {
   stimuli::ImportOptions options;
   std::string pixels_per_mm;
   std::string equalise = "none";
-  std::string protocol{study::protocols().front()->name()};
+  std::string protocol{study::protocols().front()->name};
   bool json = false;
 };
 
@@ -109,7 +109,7 @@ int import_with(ImportArguments arguments) {
   take_resolution(arguments.pixels_per_mm, arguments.options);
   arguments.options.equalise = kEqualisings.at(arguments.equalise);
   arguments.options.protocol = arguments.protocol;
-  arguments.options.methods = study::find_protocol(arguments.protocol)->least_methods();
+  arguments.options.methods = study::find_protocol(arguments.protocol)->min_methods;
   const stimuli::ImportReport report = naming_faults(
       [&] { return stimuli::import_photographs(arguments.options, progress_bar("importing")); });
   if (!arguments.json) {

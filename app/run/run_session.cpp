@@ -81,7 +81,7 @@ ParticipantWindowOptions window_options(const RunOptions& options, const study::
   window.pitch_mm = study.rendering.pitch_mm;
   window.has_several_methods = study.presented_methods() > 1;
   window.least_touch = study.trials.answer_after;
-  window.intervals = study.protocol->interval_plan(study);
+  window.ask = study::ask_of(study);
   window.stiffness_n_per_mm = study.rendering.stiffness_n_per_mm;
   return window;
 }
@@ -151,64 +151,6 @@ class FocusWatch {
   bool has_paused_ = false;
 };
 
-/// The practice textures of one participant.
-class ParticipantPractice {
- public:
-  /// \throws StudyError as PracticeSet
-  ParticipantPractice(const RunStudy& study, const PlaneGeometry& plane) : study_(study.key.study) {
-    if (const auto intervals = study_.protocol->interval_plan(study_)) {
-      study::PracticePlan plan;
-      plan.criterion = intervals->practice_criterion;
-      plan.rounds = intervals->practice_rounds;
-      const auto trials = study_.protocol->practice_trials(study_, {}, 1);
-      if (trials.empty()) return;
-      textures_ = session::PracticeTextures{plane, static_cast<int>(trials.size()), plan,
-                                            [this](int number) { return interval_round(number); }};
-      return;
-    }
-    if (study_.trials.practice == 0 || study_.practice.classes.empty()) return;
-    set_.emplace(study_, study::weakest_gains(study.pack.manifest()), plane);
-    textures_ = session::PracticeTextures{set_->plane(), study_.trials.practice, study_.practice,
-                                          [this](int number) { return round(number); }};
-  }
-
-  /// \param draw  the participant's
-  /// \return null if the study has no practice; valid as long as this object
-  [[nodiscard]] const session::PracticeTextures* textures_for(const study::ScheduleDraw& draw) {
-    draw_ = draw;
-    return textures_ ? &*textures_ : nullptr;
-  }
-
- private:
-  [[nodiscard]] session::PracticeRound round(int number) const {
-    const std::vector<int> layout = study::practice_layout(study_, draw_, number);
-    session::PracticeRound round;
-    for (const int class_index : layout) {
-      round.labels.push_back(study_.practice.classes[static_cast<std::size_t>(class_index)].label);
-      round.models.push_back(&set_->model(class_index));
-    }
-    for (const int class_index : study::practice_round(study_, draw_, number)) {
-      const auto place = std::ranges::find(layout, class_index);
-      round.order.push_back(static_cast<int>(place - layout.begin()));
-    }
-    return round;
-  }
-
-  [[nodiscard]] session::PracticeRound interval_round(int number) const {
-    session::PracticeRound round;
-    for (const study::Choice& choice : study_.protocol->choices(study_)) {
-      round.labels.push_back(choice.label);
-    }
-    round.trials = study_.protocol->practice_trials(study_, draw_, number);
-    return round;
-  }
-
-  const study::Study& study_;
-  study::ScheduleDraw draw_;
-  std::optional<study::PracticeSet> set_;
-  std::optional<session::PracticeTextures> textures_;
-};
-
 /// A visual device makes no sound that would need masking.
 study::MaskingPlan masking_of(const study::Study& study, const device::DeviceInfo& device) {
   study::MaskingPlan plan = study.session.masking;
@@ -272,12 +214,12 @@ void require_blind(const RunOptions& options, const device::DeviceInfo& device) 
                    "pilot's database, or choose a device that is felt");
 }
 
-/// Without a known size, nobody can tell whether pictures have their true size. Trials with several
-/// planes show none.
+/// Without a known size, nobody can tell whether pictures have their true size.
 void warn_of_unknown_size(const RunOptions& options, const study::Study& study,
                           const ParticipantWindow& window) {
   if (study.session.sight == study::Sight::blindfold || window.screen().is_known) return;
-  if (study.protocol->interval_plan(study)) return;
+  const study::Ask ask = study::ask_of(study);
+  if (!ask.has_pictures() && ask.scales().empty()) return;
   spdlog::warn(
       "window: the size of this screen is not known, and so that of the pictures; measure it once "
       "with `touchtrial screen calibrate{}`",
@@ -321,8 +263,7 @@ class PersonsSession {
         desk_(is_attended(options)),
         terminal_(desk_, standard_terminal()),
         device_(options, source_.plane(), desk_),
-        instruments_(session_instruments(device_.instruments(), device::kServoRateHz)),
-        practice_(study, source_.plane()) {
+        instruments_(session_instruments(device_.instruments(), device::kServoRateHz)) {
     require_blind(options, device_.info());
     require_consent(options, device_.info());
     device_.require_stable_wall(study.key.study.rendering.stiffness_n_per_mm);
@@ -382,20 +323,22 @@ class PersonsSession {
       return waits(why, [&] { static_cast<void>(spoken.attend(session::PauseStep{})); });
     });
     const session::SessionTexts texts = texts_for(study_.key.study, device_.info());
-    const session::SessionTally tally =
-        session::run_session(*entered.session, {.key = study_.key,
-                                                .source = source_,
-                                                .participant = spoken,
-                                                .clock = clock,
-                                                .explorer = explorer,
-                                                .devices = device_.station(),
-                                                .experimenter = experimenter,
-                                                .texts = texts,
-                                                .practice = practice_.textures_for(entered.draw),
-                                                .participant_name = options_.participant,
-                                                .device_name = device_.shown_name(),
-                                                .limits = device_.limits(),
-                                                .instruments = instruments_.get()});
+    const session::SessionTally tally = session::run_session(
+        *entered.session,
+        {.key = study_.key,
+         .source = source_,
+         .participant = spoken,
+         .clock = clock,
+         .explorer = explorer,
+         .devices = device_.station(),
+         .experimenter = experimenter,
+         .texts = texts,
+         .practice =
+             [&](int round) { return study::practice_of(study_.key.study, entered.draw, round); },
+         .participant_name = options_.participant,
+         .device_name = device_.shown_name(),
+         .limits = device_.limits(),
+         .instruments = instruments_.get()});
     terminal_.end_line();
     return conclude_session(options_, entered.number, tally, database_.made(), watch.trouble());
   }
@@ -416,7 +359,6 @@ class PersonsSession {
   TerminalFace terminal_;
   SessionDevice device_;
   std::unique_ptr<session::Instruments> instruments_;
-  ParticipantPractice practice_;
   record::ScreenRecord screen_;
   std::optional<SessionSound> sound_;  ///< nothing with --no-sound: no sound card is opened
 };
@@ -511,6 +453,15 @@ class SimulatedSession {
   std::unique_ptr<const simulation::Population> population_;
 };
 
+/// Reads and extracts the textures that people practise with.
+/// \throws StudyError as study::PracticeSet
+void add_practice(RunStudy& study) {
+  const study::Study& plan = study.key.study;
+  if (plan.trials.practice == 0 || plan.practice.classes.empty()) return;
+  const engine::Gains weakest = study::weakest_gains(study.pack.manifest());
+  study.source.practise_with(study::PracticeSet(plan, weakest, study.source.plane()));
+}
+
 }  // namespace
 
 int run_study_session(const RunOptions& given) {
@@ -518,10 +469,11 @@ int run_study_session(const RunOptions& given) {
     confirm_id("run", given.database, given.participant, given.yes);
   }
   const EndingSignals signals;
-  const RunStudy study = run_study_for(given);
+  RunStudy study = run_study_for(given);
   confirm_enrolment(given, study.key);
   const RunOptions options = given.participant.empty() ? with_participant(given, study.key) : given;
   if (options.is_simulated()) return SimulatedSession(options, study).run();
+  add_practice(study);
   return PersonsSession(options, study).run();
 }
 

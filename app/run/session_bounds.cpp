@@ -75,17 +75,6 @@ int enrolment_of(const RunOptions& options, const study::Station& station,
   return study::next_enrolment_of(station, taken);
 }
 
-/// How blocks of this participant's session are restarted.
-session::BlockDrawing block_restart_of(const study::StationKey& key,
-                                       const study::ScheduleDraw& draw) {
-  return {[&key, draw](int block, int restarts_before, int first_trial) {
-            return study::restarted_block(key.study, draw, block, restarts_before, first_trial);
-          },
-          [&key](const std::vector<study::Presentation>& presentations) {
-            return block_to_json(presentations, key);
-          }};
-}
-
 /// The participant's group, if the study's groups are open; else empty.
 std::string open_group(const study::StationKey& key, int enrolment, study::Draws draws) {
   const study::GroupPlan& groups = key.study.groups;
@@ -106,7 +95,8 @@ EnteredSession new_session(const RunOptions& options, const RunStudy& study, Run
   describe(opening);
   const study::Draws draws = draws_of(options.pilot, opening.simulated);
   entered.draw = study.key.draw_of(enrolment, draws, options.visit);
-  const study::Schedule schedule = study::make_schedule(study.key.study, entered.draw);
+  auto order = study::make_order(study.key.study, entered.draw);
+  const std::string schedule = study::schedule_to_json(order->schedule(), study.key);
   record::StudyStore& store = database.made();
   entered.number = store.next_session();
   SystemEntropy entropy;
@@ -115,9 +105,8 @@ EnteredSession new_session(const RunOptions& options, const RunStudy& study, Run
       entered.number, record::wrap_participant_key(study.key.investigator_box, entered.number, key),
       {}, record::keep_participant_key(study.key.station.secret, entered.number, key)));
   entered.session = std::make_unique<session::Session>(
-      schedule, study.key.study.trials, record::SessionRecorder(entered.number, key, *entered.sink),
-      block_restart_of(study.key, entered.draw),
-      study::adaptive_order(study.key.study, entered.draw));
+      std::move(order), study.key.study.trials,
+      record::SessionRecorder(entered.number, key, *entered.sink), session::seal_with(study.key));
   opening.participant = options.participant;
   opening.enrolment = enrolment;
   opening.visit = options.visit;
@@ -126,7 +115,7 @@ EnteredSession new_session(const RunOptions& options, const RunStudy& study, Run
   opening.seal = study.key.seal;
   opening.pilot = options.pilot;
   if (!opening.simulated) opening.opened_utc = utc_text(utc_now());
-  entered.session->open({}, opening, study::schedule_to_json(schedule, study.key));
+  entered.session->open({}, opening, schedule);
   if (!opening.group.empty()) {
     print("participant " + options.participant + " is in group " + opening.group + "\n");
   }
@@ -248,10 +237,16 @@ session::Session restored(const RunStudy& study, const KeptSession& kept,
                           const record::SessionRow& row, record::EventSink& sink) {
   const study::ScheduleDraw draw =
       study.key.draw_of(row.enrolment, draws_of(row.pilot, row.simulated), row.visit);
-  session::Session session(
-      study::schedule_from_json(kept.schedule, study.key), study.key.study.trials,
-      record::SessionRecorder(row.session, kept.key, sink), block_restart_of(study.key, draw),
-      study::adaptive_order(study.key.study, draw));
+  auto order = study::make_order(study.key.study, draw);
+  if (study::schedule_from_json(kept.schedule, study.key) != order->schedule()) {
+    throw StoreError(
+        one_line(fmt::format("session {} was begun with another order than the study "
+                             "draws now; run `touchtrial verify`",
+                             row.session)));
+  }
+  session::Session session(std::move(order), study.key.study.trials,
+                           record::SessionRecorder(row.session, kept.key, sink),
+                           session::seal_with(study.key));
   session.restore(kept.events);
   return session;
 }
@@ -345,7 +340,7 @@ void give_up(const RunOptions& options, const RunStudy& study, record::StudyStor
         one_line(options.database.string()), row.session, row.participant));
   }
   if (session.accepts(session::SessionInput::stop)) session.stop(session.last(), "", "restarted");
-  session.close(session.last(), study.key.study.protocol->may_name_one_key(study.key.study));
+  session.close(session.last(), study::ask_of(study.key.study).has_pictures());
 }
 
 /// Opens a new session with the enrolment number of the previous one, which has ended.

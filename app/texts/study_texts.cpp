@@ -1,6 +1,7 @@
 #include "app/texts/study_texts.hpp"
 
 #include "app/windows/participant/words.hpp"
+#include "core/errors.hpp"
 #include "study/languages.hpp"
 #include "study/protocol.hpp"
 
@@ -10,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -25,8 +27,10 @@ std::string seconds_text(double seconds, const std::string& language) {
   return text;
 }
 
-std::optional<study::IntervalPlan> intervals_of(const study::Study& study) {
-  return study.protocol->interval_plan(study);
+/// The texts of planes that have a clock, and those of ratings, have this at the end of their keys.
+std::string suffix_of(const study::Ask& ask) {
+  if (std::holds_alternative<study::InContact>(ask.exploring)) return "_intervals";
+  return std::holds_alternative<study::Rate>(ask.question) ? "_rating" : "";
 }
 
 Values values_for(const study::Study& study) {
@@ -35,34 +39,46 @@ Values values_for(const study::Study& study) {
                    {"limit", seconds_text(study.trials.explore_limit_s, language)},
                    {"confidence", std::to_string(study.session.confidence_levels)},
                    {"consent", study.session.consent_version}};
-  if (const auto intervals = intervals_of(study)) {
-    const Words words = words_of(study::texts_of(study.session));
-    values.emplace_back("planes", std::to_string(intervals->count));
-    values.emplace_back("seconds", seconds_text(intervals->seconds, language));
-    values.emplace_back("question", title_of(words, intervals->question));
+  const study::Ask ask = study::ask_of(study);
+  const Words words = words_of(study::texts_of(study.session));
+  values.emplace_back("planes", std::to_string(ask.planes));
+  values.emplace_back("question", title_of(words, ask.title()));
+  if (const auto* const clocked = std::get_if<study::InContact>(&ask.exploring)) {
+    values.emplace_back("seconds", seconds_text(clocked->seconds, language));
   }
   return values;
 }
 
-/// The part about practice: what is practised, and whether answers are told afterwards too.
+/// The parts about practice: what is practised, and whether answers are told afterwards too.
 /// \return empty if the study has no practice
-std::string practice_part(const study::Study& study) {
-  const auto intervals = intervals_of(study);
-  if (!intervals) return study.trials.practice > 0 ? "practice" : "";
-  if (intervals->practice_rounds == 0 || study.protocol->practice_trials(study, {}, 1).empty()) {
-    return "";
+std::vector<std::string> practice_parts(const study::Study& study) {
+  const study::Ask ask = study::ask_of(study);
+  const study::Practice practice = study::practice_of(study);
+  if (practice.trials.empty() || practice.rounds == 0) return {};
+  std::vector<std::string> parts;
+  const study::Trial& first = practice.trials.front();
+  if (first.right) {
+    parts.push_back("practice" + suffix_of(ask) + (ask.feedback ? "_feedback" : ""));
+  } else {
+    parts.emplace_back("practice_rating");
+    const bool shows_ends = std::ranges::any_of(first.planes, &study::Plane::blank);
+    if (shows_ends) parts.emplace_back("practice_ends");
   }
-  return intervals->feedback ? "practice_intervals_feedback" : "practice_intervals";
+  if (study.session.sight != study::Sight::blindfold) parts.emplace_back("practice_bars");
+  return parts;
 }
 
 std::string sight_part(const study::Study& study) {
   const std::string part = study.session.sight == study::Sight::blindfold ? "blindfold" : "curtain";
-  return intervals_of(study) ? part + "_intervals" : part;
+  return part + suffix_of(study::ask_of(study));
 }
 
 std::string time_part(const study::Study& study) {
-  if (intervals_of(study)) return "time_intervals";
-  return study.trials.on_timeout == study::OnTimeout::fade ? "time_fade" : "time_no_response";
+  const study::Ask ask = study::ask_of(study);
+  const std::string suffix = suffix_of(ask);
+  if (std::holds_alternative<study::InContact>(ask.exploring)) return "time" + suffix;
+  const bool fades = study.trials.on_timeout == study::OnTimeout::fade;
+  return (fades ? "time_fade" : "time_no_response") + suffix;
 }
 
 /// The parts of the instructions on each page.
@@ -72,21 +88,22 @@ std::vector<std::vector<std::string>> pages_for(const study::Study& study) {
   if (study.session.masking.wanted) rules.push_back("masking");
   std::vector<std::vector<std::string>> pages{
       {"welcome"}, {study.protocol_name()}, {"hand"}, {sight_part(study)}, rules};
-  if (const std::string practice = practice_part(study); !practice.empty()) {
-    pages.push_back({practice});
-    if (study.session.sight != study::Sight::blindfold) pages.back().push_back("practice_bars");
-  }
+  if (const auto practice = practice_parts(study); !practice.empty()) pages.push_back(practice);
   pages.push_back({"comfort"});
   return pages;
 }
 
-/// A part of the texts, for whoever wears a blindfold if that differs, or what the protocol says
-/// itself.
+/// A part of the texts, for whoever wears a blindfold if that differs.
+/// \throws StudyError if the language has none
 std::string part_of(const study::Study& study, const Section& texts, const std::string& part) {
   const bool is_blindfold = study.session.sight == study::Sight::blindfold;
   auto found = is_blindfold ? texts.find(part + "_blindfold") : texts.end();
   if (found == texts.end()) found = texts.find(part);
-  return found == texts.end() ? study.protocol->instruction() : found->second;
+  if (found != texts.end()) return found->second;
+  throw StudyError(one_line(fmt::format(
+      "study {}: the texts of language {} have no instructions {}; write them in the study file's "
+      "/session/instructions",
+      study.name, study.session.language, part)));
 }
 
 std::vector<std::string> instructions(const study::Study& study, const Section& texts) {
@@ -196,7 +213,7 @@ std::vector<std::pair<std::string, std::string>> items_for(const study::SessionP
 std::vector<session::DaySheetItem> day_sheet(const study::Study& study, const Section& texts) {
   const Values values = values_for(study);
   std::vector<session::DaySheetItem> sheet;
-  for (const auto& [code, key] : items_for(study.session, !intervals_of(study))) {
+  for (const auto& [code, key] : items_for(study.session, study::ask_of(study).has_pictures())) {
     sheet.push_back({"no-" + code, filled(texts.at(key), values)});
   }
   int number = 0;

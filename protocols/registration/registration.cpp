@@ -1,9 +1,11 @@
 #include "protocols/registration/registration.hpp"
 
 #include "protocols/identification/analysis/identification_analysis.hpp"
+#include "protocols/identification/planning/planner.hpp"
 #include "protocols/identification/simulation/identifying_participant.hpp"
 #include "protocols/identification/study/identification.hpp"
 #include "protocols/threshold/analysis/threshold_analysis.hpp"
+#include "protocols/threshold/planning/planner.hpp"
 #include "protocols/threshold/simulation/comparing_participant.hpp"
 #include "protocols/threshold/study/threshold.hpp"
 
@@ -15,13 +17,15 @@ void register_protocols() {
     study::add_protocol(study::identification::comparison());
     for (const study::Protocol* protocol :
          {&study::identification::classification(), &study::identification::comparison()}) {
-      simulation::add_population(protocol->name(), simulation::identification::make_population);
-      analysis::add_analysis(protocol->name(), analysis::identification::identification_analysis());
+      simulation::add_population(protocol->name, simulation::identification::make_population);
+      analysis::add_analysis(protocol->name, analysis::identification::identification_analysis());
+      planning::add_planner(protocol->name, planning::identification::identification_planner());
     }
     const study::Protocol& threshold = study::threshold::protocol();
     study::add_protocol(threshold);
-    simulation::add_population(threshold.name(), simulation::threshold::make_population);
-    analysis::add_analysis(threshold.name(), analysis::threshold::threshold_analysis());
+    simulation::add_population(threshold.name, simulation::threshold::make_population);
+    analysis::add_analysis(threshold.name, analysis::threshold::threshold_analysis());
+    planning::add_planner(threshold.name, planning::threshold::threshold_planner());
     return true;
   }();
   static_cast<void>(done);

@@ -34,7 +34,7 @@ std::string participants_of(const study::Registration& registration) {
   return counted(registration.participants, "participant") + ".";
 }
 
-std::string practice_of(const study::Study& study) {
+std::string practice_words(const study::Study& study) {
   if (study.trials.practice == 0) return "none";
   const study::PracticePlan& practice = study.practice;
   return counted(study.trials.practice, "presentation") + " a round of " +
@@ -65,32 +65,37 @@ std::string touch_of(const study::LeastTouch& touch) {
          number_text(touch.path_mm) + " mm along it, unless time is up";
 }
 
-/// What a trial with several planes asks for; the numbers of its trials are in the rule of orders.
-std::string intervals_of(const study::Study& study, const study::IntervalPlan& plan) {
-  const study::IntervalWindows& windows = plan.windows;
-  const std::size_t practice = study.protocol->practice_trials(study, {}, 1).size();
-  return line("planes a trial", std::to_string(plan.count)) +
+/// What a trial asks for whose planes have a clock; the numbers of its trials are in the rule of
+/// orders.
+std::string clocked(const study::Study& study, const study::Ask& ask,
+                    const study::InContact& exploring) {
+  const study::HandRange& range = exploring.range;
+  const study::Practice practice = study::practice_of(study);
+  return line("planes a trial", std::to_string(ask.planes)) +
          line("exploration of each",
-              number_text(plan.seconds) + " s in contact, at " + number_text(windows.slowest_mm_s) +
-                  " to " + number_text(windows.fastest_mm_s) + " mm/s and " +
-                  number_text(windows.lightest_n) + " to " + number_text(windows.strongest_n) +
-                  " N, within " + number_text(study.trials.explore_limit_s) +
-                  " s; else the trial comes again") +
-         line("practice", practice == 0
+              number_text(exploring.seconds) + " s in contact, at " +
+                  number_text(range.slowest_mm_s) + " to " + number_text(range.fastest_mm_s) +
+                  " mm/s and " + number_text(range.lightest_n) + " to " +
+                  number_text(range.strongest_n) + " N, within " +
+                  number_text(study.trials.explore_limit_s) + " s; else the trial comes again") +
+         line("practice", practice.trials.empty()
                               ? std::string("none")
-                              : counted(static_cast<int>(practice), "trial") +
+                              : counted(static_cast<int>(practice.trials.size()), "trial") +
                                     " a round at the highest level; criterion " +
-                                    std::to_string(plan.practice_criterion) + " correct, " +
-                                    counted(plan.practice_rounds, "round") + " at most") +
-         line("feedback in trials", plan.feedback ? "yes" : "no");
+                                    std::to_string(practice.criterion) + " correct, " +
+                                    counted(practice.rounds, "round") + " at most") +
+         line("feedback in trials", ask.feedback ? "yes" : "no");
 }
 
 std::string exploring_of(const study::Study& study) {
-  if (const auto plan = study.protocol->interval_plan(study)) return intervals_of(study, *plan);
+  const study::Ask ask = study::ask_of(study);
+  if (const auto* const exploring = std::get_if<study::InContact>(&ask.exploring)) {
+    return clocked(study, ask, *exploring);
+  }
   const study::TrialOptions& trials = study.trials;
   return line("time to explore", number_text(trials.explore_limit_s) + " s") +
          line("before an answer", touch_of(trials.answer_after)) +
-         line("practice", practice_of(study)) +
+         line("practice", practice_words(study)) +
          line("catch trials (not scored)", std::to_string(trials.catch_trials));
 }
 
@@ -105,7 +110,7 @@ std::string design_of(const study::Study& study) {
               : line("groups", listed(study.groups.labels) +
                                    (study.groups.open ? ", open to the experimenter" : ""))) +
          exploring_of(study) + line("language", language_of(study)) +
-         line("orders", study::schedule_rule(study));
+         line("orders", study.task->rule(study));
 }
 
 std::string validity_of(const study::ValidityRule& rule) {
@@ -152,7 +157,7 @@ record::StudyCommitment commitment_of(const study::StationKey& key, const engine
   commitment.pack = pack.digest();
   commitment.configuration = key.configuration;
   commitment.scored_trials = key.study.scored_trials();
-  commitment.positions = static_cast<int>(key.study.protocol->choices(key.study).size());
+  commitment.positions = static_cast<int>(study::choices_of(key.study).size());
   commitment.simulated = simulated;
   commitment.pilot = pilot;
   commitment.safety_record_years = key.study.registration.safety_record_years;

@@ -5,6 +5,7 @@
 #include "core/public_keys.hpp"
 #include "protocols/session/session.hpp"
 #include "record/sealing.hpp"
+#include "study/protocol.hpp"
 #include "study/signed_pack.hpp"
 
 #include <algorithm>
@@ -84,16 +85,17 @@ TestRecord test_record(const study::StationKey& station) {
   record.wrapped =
       record::wrap_participant_key(station.investigator_box, kTestSession, key).participant;
   record.kept = record::keep_participant_key(station.station.secret, kTestSession, key);
-  const study::Schedule schedule =
-      study::make_schedule(station.study, station.draw_of(record.enrolment, study::Draws::people));
-  Session session(schedule, station.study.trials,
-                  record::SessionRecorder(kTestSession, key, record.events));
+  auto order =
+      study::make_order(station.study, station.draw_of(record.enrolment, study::Draws::people));
+  const std::string schedule = study::schedule_to_json(order->schedule(), station);
+  Session session(std::move(order), station.study.trials,
+                  record::SessionRecorder(kTestSession, key, record.events), seal_with(station));
   record::SessionOpening opening;
   opening.participant = "test";
   opening.enrolment = record.enrolment;
   opening.study_id = station.study_id;
   opening.seal = station.seal;
-  session.open({}, opening, study::schedule_to_json(schedule, station));
+  session.open({}, opening, schedule);
   return record;
 }
 

@@ -1,4 +1,4 @@
-/// \file The participant, who feels planes and names pictures: the steps that a session shows them,
+/// \file The participant, who feels planes and answers: the steps that a session shows them,
 /// and their replies.
 #pragma once
 
@@ -6,6 +6,7 @@
 #include "device/haptic_device.hpp"
 #include "device/servo/servo.hpp"
 #include "device/servo/servo_control.hpp"
+#include "study/ask.hpp"
 #include "study/session_plan.hpp"
 
 #include <chrono>
@@ -50,7 +51,7 @@ struct IntervalStep {
   bool hand_off = false;
 };
 
-/// Asks for one of the pictures of `Participant::see_pictures`.
+/// Asks for one of the choices of `Participant::see_pictures`, or for numbers on scales.
 struct AnswerStep {
   int trial = 0;
   int of = 0;
@@ -58,9 +59,8 @@ struct AnswerStep {
   bool time_is_up = false;
   bool may_explore_again = false;  ///< the reply may be `explore_again`
   int confidence_levels = 0;       ///< 0: not asked
-  /// Key of the title in the texts' "screens", of trials with intervals; empty: which picture it
-  /// is.
-  std::string question{};
+  study::Asked question{};
+  std::string picture{};  ///< label of the picture that is shown with it; empty: none
   study::Sight sight = study::Sight::curtain;  ///< blindfold: the answer is spoken
 };
 
@@ -106,10 +106,9 @@ struct StepReply {
   std::optional<std::chrono::steady_clock::time_point> at;
   /// Time that the reply takes in virtual time; ignored in real time.
   std::chrono::nanoseconds took{};
-  bool explore_again = false;         ///< AnswerStep: back to the plane; ignore the members below
-  int position = 0;                   ///< AnswerStep
-  std::optional<int> first_position;  ///< AnswerStep: the choice before a change
-  std::optional<int> confidence;      ///< AnswerStep, if asked for: from 1
+  bool explore_again = false;     ///< AnswerStep: back to the plane; ignore the members below
+  Answer answer{};                ///< AnswerStep
+  std::optional<int> confidence;  ///< AnswerStep, if asked for: from 1
   /// QuestionStep, in the questions' order: of a choice the option's index from 0; empty if the
   /// question was left out.
   std::vector<std::string> answers;

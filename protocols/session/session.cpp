@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <stdexcept>
 #include <utility>
@@ -41,15 +42,19 @@ std::string_view name_of(SessionInput input) {
   return kNames[static_cast<std::size_t>(input)];
 }
 
-Session::Session(study::Schedule schedule, const study::TrialOptions& options,
-                 record::SessionRecorder recorder, BlockDrawing blocks,
-                 std::unique_ptr<study::AdaptiveOrder> order)
-    : course_(std::move(schedule), options.on_interruption, std::move(blocks.draw),
-              std::move(order)),
+SealBlock seal_with(const study::StudyCodes& codes) {
+  return [&codes](const std::vector<study::Trial>& trials) {
+    return study::block_to_json(trials, codes);
+  };
+}
+
+Session::Session(std::unique_ptr<study::Order> order, const study::TrialOptions& options,
+                 record::SessionRecorder recorder, SealBlock seal)
+    : course_(std::move(order), options.on_interruption),
       options_(options),
       recorder_(std::move(recorder)),
-      secret_of_block_(std::move(blocks.secret)) {
-  if (options.on_interruption == study::OnInterruption::restart_block && !secret_of_block_) {
+      seal_block_(std::move(seal)) {
+  if (options.on_interruption == study::OnInterruption::restart_block && !seal_block_) {
     throw std::invalid_argument("Session: a study that restarts blocks needs to seal them");
   }
 }
@@ -61,6 +66,11 @@ bool Session::is_under_way() const noexcept {
 bool Session::in_presentation() const noexcept {
   const Phase phase = phase_ == Phase::paused ? before_pause_ : phase_;
   return phase == Phase::exploring || phase == Phase::answering || phase == Phase::chosen;
+}
+
+bool Session::is_changed() const noexcept {
+  const auto* const chosen = answer_ ? std::get_if<Chosen>(&*answer_) : nullptr;
+  return chosen != nullptr && chosen->first_position.has_value();
 }
 
 bool Session::accepts(SessionInput input) const noexcept {
@@ -85,7 +95,7 @@ bool Session::accepts(SessionInput input) const noexcept {
     case Input::explore_again:
       return answering && !was_timed_out_;
     case Input::choose:
-      return answering && !(answer_ && answer_->first_position);
+      return answering && !is_changed();
     case Input::confirm:
       return phase_ == Phase::chosen;
     case Input::practise:
@@ -111,7 +121,7 @@ void Session::require(SessionInput input, Time at) const {
                            std::string(name_of(input)));
   }
   if (at < last_) throw std::logic_error("a session's time went back");
-  if (told_) told_(input, current() == nullptr ? 0 : current()->trial);
+  if (told_) told_(input, current() == nullptr ? 0 : current()->place.trial);
 }
 
 void Session::move_to(SessionPhase phase, Time at) noexcept {
@@ -152,7 +162,7 @@ void Session::instruct(Time at, const std::string& text) {
 
 void Session::present(Time at) {
   require(Input::present, at);
-  recorder_.presented(at, current()->trial, current()->block);
+  recorder_.presented(at, current()->place.trial, current()->place.block);
   begin_presentation(at);
 }
 
@@ -169,7 +179,7 @@ void Session::begin_presentation(Time at) noexcept {
 
 void Session::contact(Time at) {
   require(Input::contact, at);
-  if (!had_contact_) recorder_.first_contact(at, current()->trial);
+  if (!had_contact_) recorder_.first_contact(at, current()->place.trial);
   had_contact_ = true;
   move_to(Phase::exploring, at);
 }
@@ -182,7 +192,7 @@ void Session::end_exploring(Time at) {
 void Session::time_out(Time at) {
   require(Input::time_out, at);
   const bool over = options_.on_timeout == study::OnTimeout::no_response;
-  recorder_.timed_out(at, current()->trial, over ? evidence_ : std::nullopt);
+  recorder_.timed_out(at, current()->place.trial, over ? evidence_ : std::nullopt);
   was_timed_out_ = true;
   if (over) {
     finish_presentation(at, std::nullopt);
@@ -194,7 +204,7 @@ void Session::time_out(Time at) {
 void Session::interrupt(Time at, const std::string& reason,
                         const std::optional<record::InterruptionDetail>& detail) {
   require(Input::interrupt, at);
-  recorder_.interrupted(at, current()->trial, reason, detail);
+  recorder_.interrupted(at, current()->place.trial, reason, detail);
   if (detail) note_force(detail->largest_force_n);
   give_up_presentation(at, reason);
   restart_block(at);
@@ -208,7 +218,7 @@ void Session::keep_evidence(record::TrialEvidence evidence) {
 
 void Session::explore_again(Time at) {
   require(Input::explore_again, at);
-  recorder_.explored_again(at, current()->trial);
+  recorder_.explored_again(at, current()->place.trial);
   answer_.reset();
   move_to(Phase::exploring, at);
 }
@@ -218,35 +228,51 @@ void Session::choose(int position) {
   if (position < 0 || position >= static_cast<int>(layout().size())) {
     throw std::invalid_argument("there is no picture at this position");
   }
-  if (answer_ && answer_->position == position) return;  // no change, and not the one allowed
-  answer_ = answer_ ? Answer{position, answer_->position} : Answer{position, std::nullopt};
+  const auto* const before = answer_ ? std::get_if<Chosen>(&*answer_) : nullptr;
+  if (before != nullptr && before->position == position) return;  // not the one change allowed
+  answer_ = before != nullptr ? Chosen{position, before->position} : Chosen{position};
+  phase_ = Phase::chosen;
+}
+
+void Session::rate(std::vector<double> values) {
+  require(Input::choose, last_);
+  if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
+    throw std::invalid_argument("a rating is no number");
+  }
+  answer_ = Rated{std::move(values)};
   phase_ = Phase::chosen;
 }
 
 void Session::confirm(Time at, std::optional<int> confidence) {
   require(Input::confirm, at);
-  record::AnswerBody body{current()->trial, answer_->position, answer_->first_position, confidence};
-  if (const auto& chosen = current()->chosen) {
-    body.track = chosen->track;
-    body.level = chosen->level;
-    body.target = chosen->target;
+  record::AnswerBody body{
+      .trial = current()->place.trial, .answer = answer_, .confidence = confidence};
+  if (const auto& level = current()->level) {
+    body.track = level->track;
+    body.level = level->level;
+    body.target = current()->right;
   }
   recorder_.answered(at, body, evidence_);
-  ++answers_[answer_->position];
-  finish_presentation(at, answer_->position);
+  count(*answer_);
+  finish_presentation(at, answer_);
+}
+
+void Session::count(const Answer& answer) {
+  ++answered_;
+  if (const auto* const chosen = std::get_if<Chosen>(&answer)) ++choices_[chosen->position];
 }
 
 std::optional<int> Session::trial_under_way() const noexcept {
-  return in_presentation() ? std::optional(current()->trial) : std::nullopt;
+  return in_presentation() ? std::optional(current()->place.trial) : std::nullopt;
 }
 
 void Session::note_force(double largest_n) {
   largest_force_n_ = std::max(largest_force_n_.value_or(0.0), largest_n);
 }
 
-void Session::finish_presentation(Time at, std::optional<int> position) {
+void Session::finish_presentation(Time at, const std::optional<Answer>& answer) {
   if (evidence_) note_force(evidence_->body.largest_force_n);
-  course_.finish(position);
+  course_.finish(answer);
   evidence_.reset();
   ++done_since_break_;
   move_to(between_trials(), at);
@@ -261,8 +287,7 @@ void Session::give_up_presentation(Time at, const std::string& reason) {
 void Session::restart_block(Time at) {
   if (!course_.block_to_restart()) return;
   const study::BlockRestart again = course_.drawn_again(*course_.block_to_restart());
-  recorder_.block_restarted(at, again.block, again.first_trial(),
-                            secret_of_block_(again.presentations));
+  recorder_.block_restarted(at, again.block, again.first_trial(), seal_block_(again.trials));
   course_.restart(again);
   done_since_break_ = 0;
   move_to(phase_, at);
@@ -338,10 +363,8 @@ void Session::stop(Time at, const std::string& reason, const std::string& code) 
 
 void Session::close(Time at, bool may_name_one_key) {
   require(Input::close, at);
-  int n = 0;
-  for (const auto& [position, count] : answers_) n += count;
-  recorder_.closed(at, phase_ == Phase::finished, n, may_name_one_key && is_one_key(answers_, n),
-                   largest_force_n_);
+  recorder_.closed(at, phase_ == Phase::finished, answered_,
+                   may_name_one_key && is_one_key(choices_, answered_), largest_force_n_);
   move_to(Phase::closed, at);
 }
 

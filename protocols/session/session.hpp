@@ -5,6 +5,7 @@
 #include "record/payload.hpp"
 #include "record/session_recorder.hpp"
 #include "study/course.hpp"
+#include "study/study_key.hpp"
 
 #include <chrono>
 #include <functional>
@@ -31,7 +32,7 @@ enum class SessionPhase {
   ready,       ///< between trials
   exploring,   ///< the plane is on
   answering,   ///< the plane is off or fading; no picture chosen yet
-  chosen,      ///< a picture is chosen, waiting for Next
+  chosen,      ///< an answer is given, waiting for Next
   paused,
   finished,  ///< every presentation is done
   stopped,   ///< ended before all presentations were done
@@ -63,12 +64,10 @@ enum class SessionInput {
 };
 [[nodiscard]] std::string_view name_of(SessionInput input);
 
-/// How a block comes again in a fresh order (OnInterruption::restart_block).
-struct BlockDrawing {
-  study::Course::DrawBlock draw;
-  /// What is sealed of a block's new presentations.
-  std::function<std::string(const std::vector<study::Presentation>&)> secret;
-};
+/// What is sealed of a block's new trials (OnInterruption::restart_block).
+using SealBlock = std::function<std::string(const std::vector<study::Trial>&)>;
+/// \param codes  must outlive the session
+[[nodiscard]] SealBlock seal_with(const study::StudyCodes& codes);
 
 /// The remarks so far, so that nobody is asked twice.
 struct SessionRemarks {
@@ -89,11 +88,9 @@ class Session {
  public:
   using Time = std::chrono::nanoseconds;
 
-  /// \param blocks  needed only if the study restarts blocks
-  /// \param order  needed only if the protocol has one: study::adaptive_order
-  Session(study::Schedule schedule, const study::TrialOptions& options,
-          record::SessionRecorder recorder, BlockDrawing blocks = {},
-          std::unique_ptr<study::AdaptiveOrder> order = nullptr);
+  /// \param seal  needed only if the study restarts blocks
+  Session(std::unique_ptr<study::Order> order, const study::TrialOptions& options,
+          record::SessionRecorder recorder, SealBlock seal = {});
 
   /// Brings a fresh session to the state that its stored events left; the recorder continues after
   /// the last one. Records nothing.
@@ -112,12 +109,12 @@ class Session {
   [[nodiscard]] const study::TrialOptions& options() const noexcept { return options_; }
   [[nodiscard]] SessionPhase phase() const noexcept { return phase_; }
   [[nodiscard]] bool accepts(SessionInput input) const noexcept;
-  /// The choice at each position of the answer screen: an index into the protocol's choices.
+  /// The choice at each position of the answer screen: an index into the choices.
   [[nodiscard]] const std::vector<int>& layout() const noexcept {
     return course_.schedule().layout;
   }
-  /// The current presentation, or between trials the next one; null when all are done.
-  [[nodiscard]] const study::Presentation* current() const noexcept { return course_.current(); }
+  /// The current trial, or between trials the next one; null when all are done.
+  [[nodiscard]] const study::Trial* current() const noexcept { return course_.current(); }
   /// Presentations that remain, with the current one.
   [[nodiscard]] int presentations_left() const noexcept { return course_.left(); }
   /// Presentations begun so far, with interrupted ones.
@@ -167,6 +164,9 @@ class Session {
   /// \param position  in the layout
   /// \throws std::invalid_argument if there is no such position
   void choose(int position);
+  /// Rates, in place of any choice or rating before.
+  /// \throws std::invalid_argument if a value is not finite
+  void rate(std::vector<double> values);
   /// Records the answer, the one before a change, and the evidence: all or nothing.
   void confirm(Time at, std::optional<int> confidence = std::nullopt);
 
@@ -190,22 +190,19 @@ class Session {
   /// \param reason  in the experimenter's words, sealed; may be empty
   /// \param code  in clear, if the program stops it
   void stop(Time at, const std::string& reason, const std::string& code = "");
-  /// \param may_name_one_key  Protocol::may_name_one_key; only then the end says in clear if 95 % of
-  ///   20 answers or more are at one position
+  /// \param may_name_one_key  the choices have places that are drawn (study::Choose::has_pictures);
+  ///   only then the end says in clear if 95 % of 20 answers or more are at one position: elsewhere
+  ///   a key means something by itself, and is the outcome
   void close(Time at, bool may_name_one_key = false);
 
  private:
-  struct Answer {
-    int position = 0;
-    std::optional<int> first_position;
-  };
-
   void require(SessionInput input, Time at) const;
   [[nodiscard]] bool is_under_way() const noexcept;
+  [[nodiscard]] bool is_changed() const noexcept;
   void move_to(SessionPhase phase, Time at) noexcept;
   void begin_presentation(Time at) noexcept;
-  /// \param position  of the answer, if there is one
-  void finish_presentation(Time at, std::optional<int> position);
+  void finish_presentation(Time at, const std::optional<Answer>& answer);
+  void count(const Answer& answer);
   [[nodiscard]] std::optional<int> trial_under_way() const noexcept;
   void note_force(double largest_n);
   /// Takes the current presentation off, as the study's on_interruption has it; after kPauseReason
@@ -225,7 +222,7 @@ class Session {
   study::Course course_;
   study::TrialOptions options_;
   record::SessionRecorder recorder_;
-  std::function<std::string(const std::vector<study::Presentation>&)> secret_of_block_;
+  SealBlock seal_block_;
   Told told_;
   SessionPhase phase_ = SessionPhase::fresh;
   SessionPhase before_pause_ = SessionPhase::ready;
@@ -235,7 +232,8 @@ class Session {
   std::optional<record::TrialEvidence> evidence_;
   std::optional<Answer> answer_;
   SessionRemarks remarks_;
-  std::map<int, int> answers_;             ///< how many, by position
+  int answered_ = 0;
+  std::map<int, int> choices_;             ///< how many, by position
   std::optional<double> largest_force_n_;  ///< sent in presentations
   int begun_ = 0;
   int done_since_break_ = 0;

@@ -44,13 +44,14 @@ void Session::follow(const record::Event& event) {
 bool Session::follow_trial(const record::Event& event) {
   const auto require_current = [&] {
     const int trial = record::trial_from_json(event.body).trial;
-    if (!in_presentation() || current()->trial != trial) {
+    if (!in_presentation() || current()->place.trial != trial) {
       refuse(event, "trial " + std::to_string(trial) + " is not under way");
     }
   };
   switch (event.kind) {
     case record::EventKind::presented:
-      if (phase_ != Phase::ready || current()->trial != record::trial_from_json(event.body).trial) {
+      if (phase_ != Phase::ready ||
+          current()->place.trial != record::trial_from_json(event.body).trial) {
         refuse(event, "is not what the schedule has next");
       }
       begin_presentation(event.at);
@@ -73,13 +74,15 @@ bool Session::follow_trial(const record::Event& event) {
       return true;
     case record::EventKind::answered: {
       require_current();
-      const std::optional<int> position = record::answer_from_json(event.body).position;
-      if (!position) refuse(event, "is not opened");
-      if (*position < 0 || *position >= static_cast<int>(layout().size())) {
+      const std::optional<Answer> answer = record::answer_from_json(event.body).answer;
+      if (!answer) refuse(event, "is not opened");
+      const auto* const chosen = std::get_if<Chosen>(&*answer);
+      if (chosen != nullptr &&
+          (chosen->position < 0 || chosen->position >= static_cast<int>(layout().size()))) {
         refuse(event, "answers at a position that there is not");
       }
-      ++answers_[*position];
-      finish_presentation(event.at, *position);
+      count(*answer);
+      finish_presentation(event.at, answer);
       return true;
     }
     case record::EventKind::interrupted:

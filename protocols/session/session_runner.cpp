@@ -1,12 +1,13 @@
 #include "protocols/session/session_runner.hpp"
 
-#include "protocols/session/interval_run.hpp"
+#include "protocols/session/plane_run.hpp"
 #include "protocols/session/session_desk.hpp"
 #include "protocols/session/trial_trace.hpp"
 #include "study/protocol.hpp"
 
 #include <algorithm>
 #include <utility>
+#include <variant>
 
 namespace touchtrial::session {
 namespace {
@@ -17,7 +18,7 @@ using Time = SessionClock::Time;
 constexpr std::chrono::seconds kBreak{60};
 constexpr std::chrono::seconds kBetweenTrials{2};
 /// With less time than this left, the participant may not go back to the plane.
-constexpr double kLeastAgainS = 0.5;
+constexpr double kMinAgainS = 0.5;
 
 /// The trials of a session, one after the other. Each presentation is a way from the schedule to
 /// the recorder: the participant is ready, explores, and answers; the session records it.
@@ -28,45 +29,48 @@ class TrialRun {
         session_(desk.session()),
         parts_(desk.parts()),
         tally_(tally),
-        servo_(desk.servo_options()),
-        intervals_(parts_.key.study.protocol->interval_plan(parts_.key.study)) {}
+        servo_(desk.servo_options()) {}
 
   /// Runs the current presentation to its answer or interruption.
   /// \pre the session is ready
   void run();
-  /// How many trials came again because they were not explored as asked for.
-  [[nodiscard]] int came_again() const noexcept { return came_again_; }
+  /// How many trials are repeated because they were not explored as asked for.
+  [[nodiscard]] int repeated() const noexcept { return repeated_; }
 
  private:
-  [[nodiscard]] engine::RenderingModel model() const;
-  /// Presents all planes of a trial with intervals.
-  void run_intervals();
   /// When an exploration began, by the servo's clock, and ended.
   struct Span {
     Time began;
     Time ended;
   };
   [[nodiscard]] Span note_exploration(const Exploration& done, Time plane_on);
+  /// Presents the trial's planes.
+  /// \param again  the participant goes back to the plane before answering
   /// \return whether the participant is to answer
-  [[nodiscard]] bool explore(const engine::RenderingModel& model);
-  [[nodiscard]] bool explore_again(const engine::RenderingModel& model);
+  [[nodiscard]] bool explore(bool again);
+  [[nodiscard]] PlanesEnd run_planes(bool again);
   [[nodiscard]] bool came_late();
-  [[nodiscard]] bool end_exploration(const Exploration& done, Time plane_on);
-  void answer(const engine::RenderingModel& model);
+  void answer();
   [[nodiscard]] AnswerStep question() const;
   void confirm(const StepReply& reply);
   void keep_evidence();
+  [[nodiscard]] bool takes_no_late_answer() const {
+    return parts_.key.study.trials.on_timeout == study::OnTimeout::no_response;
+  }
 
   SessionDesk& desk_;
   Session& session_;
   const SessionParts& parts_;
   SessionTally& tally_;
   device::ServoOptions servo_;
-  std::optional<study::IntervalPlan> intervals_;
+  study::Trial trial_;  ///< the current one
+  study::Ask ask_;
   TrialTrace trace_;
   Time presented_at_{};
-  int of_ = 0;                 ///< presentations in all, as far as is known
-  int came_again_ = 0;         ///< trials that were not explored as asked for
+  Exploration last_{};         ///< of the trial
+  Time ended_{};               ///< that exploration
+  int of_ = 0;                 ///< trials in all, as far as is known
+  int repeated_ = 0;           ///< trials that were not explored as asked for
   bool hand_was_off_ = false;  ///< in the trial before
   bool time_is_up_ = false;
 };
@@ -74,42 +78,22 @@ class TrialRun {
 void TrialRun::run() {
   of_ = session_.presentations_begun() + session_.presentations_left();
   time_is_up_ = false;
+  trial_ = *session_.current();
+  ask_ = parts_.key.study.task->ask(parts_.key.study, trial_.place);
   desk_.enter("ready");
-  const bool hand_off = session_.current()->hand_off;
+  const bool hand_off = trial_.place.hand_off;
   if (hand_off && !hand_was_off_) {
     const NoticeStep notice{NoticeStep::What::hand_off, session_.presentations_begun()};
     if (!desk_.attend(notice)) return;
   }
   hand_was_off_ = hand_off;
   if (!desk_.attend(ReadyStep{session_.presentations_begun() + 1, of_, false, hand_off})) return;
-  if (intervals_) return run_intervals();
-  const engine::RenderingModel presented = model();
-  if (explore(presented)) answer(presented);
-  const bool is_lost =
-      time_is_up_ && parts_.key.study.trials.on_timeout == study::OnTimeout::no_response;
-  if (!is_lost || !desk_.goes_on()) return;
+  trace_.begin();
+  if (explore(false)) answer();
+  if (!time_is_up_ || !takes_no_late_answer() || !desk_.goes_on()) return;
   desk_.enter("time is up");
   static_cast<void>(
       desk_.attend(NoticeStep{NoticeStep::What::time_is_up, session_.presentations_begun()}));
-}
-
-engine::RenderingModel TrialRun::model() const {
-  const study::Presentation& presentation = *session_.current();
-  if (presentation.role == study::Role::catch_trial) return parts_.source.flat();
-  return parts_.source.model(parts_.key.code_of(presentation.stimulus), presentation.gain_db);
-}
-
-bool TrialRun::explore(const engine::RenderingModel& model) {
-  if (parts_.explorer.in_real_time()) parts_.source.fetch();
-  trace_.begin();
-  presented_at_ = desk_.now();
-  session_.present(presented_at_);
-  ++tally_.presentations;
-  if (came_late()) return false;
-  desk_.enter("exploring");
-  ModelForce force(model);
-  return end_exploration(desk_.explore(force, parts_.source.plane(), servo_, trace_.next_part()),
-                         presented_at_);
 }
 
 /// Where a plane waited for a locked database, its trial has no beginning: it is presented anew.
@@ -119,17 +103,6 @@ bool TrialRun::came_late() {
   if (now - presented_at_ < kLate) return false;
   session_.interrupt(now, record::kPauseReason);
   return true;
-}
-
-bool TrialRun::explore_again(const engine::RenderingModel& model) {
-  device::ServoOptions rest = servo_;
-  rest.limit_ticks -= trace_.ticks();
-  record::Trace& part = trace_.next_part();
-  const Time plane_on = desk_.now();
-  session_.explore_again(plane_on);
-  desk_.enter("exploring");
-  ModelForce force(model);
-  return end_exploration(desk_.explore(force, parts_.source.plane(), rest, part), plane_on);
 }
 
 /// Ticks count from the servo's start, a moment after plane-on was recorded. Events that follow the
@@ -144,43 +117,19 @@ TrialRun::Span TrialRun::note_exploration(const Exploration& done, Time plane_on
   return {began, ended};
 }
 
-bool TrialRun::end_exploration(const Exploration& done, Time plane_on) {
-  const auto [began, ended] = note_exploration(done, plane_on);
-  if (is_interrupted(done.servo)) {
-    session_.interrupt(ended, desk_.note_interruption(done.servo), done.detail);
-    return false;
-  }
-  if (desk_.was_cut_short()) {
-    session_.interrupt(ended, record::kPauseReason);
-    return false;
-  }
-  trace_.add(done, began - presented_at_);
-  trace_.pack(session_, parts_.explorer.in_real_time());
-  time_is_up_ = done.servo.end == device::ServoEnd::time_limit;
-  if (!time_is_up_) {
-    session_.end_exploring(ended);
-  } else {
-    if (parts_.key.study.trials.on_timeout == study::OnTimeout::no_response) keep_evidence();
-    session_.time_out(ended);
-  }
-  return session_.phase() == SessionPhase::answering;
-}
-
-void TrialRun::run_intervals() {
-  const study::Presentation shown = *session_.current();
-  trace_.begin();
-  time_is_up_ = false;
+PlanesEnd TrialRun::run_planes(bool again) {
+  device::ServoOptions servo = servo_;
+  if (again) servo.limit_ticks -= trace_.ticks();
   Time plane_on{};
-  Time ended{};
   bool is_presented = false;
-  device::ServoReport last;
-  std::optional<record::InterruptionDetail> detail;
-  IntervalListener listener;
+  PlaneListener listener;
   listener.plane_on = [&]() -> record::Trace* {
     plane_on = desk_.now();
-    if (!is_presented) {
-      session_.present(plane_on);
+    if (again) {
+      session_.explore_again(plane_on);
+    } else if (!is_presented) {
       presented_at_ = plane_on;
+      session_.present(plane_on);
       ++tally_.presentations;
       is_presented = true;
       if (came_late()) return nullptr;
@@ -190,72 +139,91 @@ void TrialRun::run_intervals() {
   };
   listener.explored = [&](const Exploration& done) {
     const Span span = note_exploration(done, plane_on);
-    ended = span.ended;
-    last = done.servo;
-    detail = done.detail;
+    ended_ = span.ended;
+    last_ = done;
     if (!is_interrupted(done.servo)) trace_.add(done, span.began - presented_at_);
   };
-  switch (session::run_intervals(desk_, shown, false, listener)) {
-    case IntervalsEnd::broken_off:
-      return;
-    case IntervalsEnd::interrupted:
-      session_.interrupt(ended, desk_.note_interruption(last), detail);
-      return;
-    case IntervalsEnd::paused:
-      if (session_.in_presentation()) session_.interrupt(ended, record::kPauseReason);
-      return;
-    case IntervalsEnd::not_explored:
-      session_.interrupt(ended, "not explored as asked for");
-      ++came_again_;
+  return session::run_planes(desk_, trial_, servo, listener);
+}
+
+bool TrialRun::explore(bool again) {
+  switch (run_planes(again)) {
+    case PlanesEnd::broken_off:
+      return false;
+    case PlanesEnd::interrupted:
+      session_.interrupt(ended_, desk_.note_interruption(last_.servo), last_.detail);
+      return false;
+    case PlanesEnd::paused:
+      if (session_.in_presentation()) session_.interrupt(ended_, record::kPauseReason);
+      return false;
+    case PlanesEnd::not_explored:
+      session_.interrupt(ended_, "not explored as asked for");
+      ++repeated_;
       desk_.enter("not explored");
       static_cast<void>(
           desk_.attend(NoticeStep{NoticeStep::What::not_explored, session_.presentations_begun()}));
-      return;
-    case IntervalsEnd::explored:
+      return false;
+    case PlanesEnd::time_is_up:
+    case PlanesEnd::explored:
       break;
   }
   trace_.pack(session_, parts_.explorer.in_real_time());
-  session_.end_exploring(ended);
-  desk_.enter("answering");
-  const std::optional<StepReply> reply = desk_.attend(question());
-  if (!reply) return;
-  confirm(*reply);
-  if (!intervals_->feedback || shown.hand_off || !shown.chosen) return;
-  desk_.enter("feedback");
-  static_cast<void>(desk_.attend(FeedbackStep{reply->position, shown.chosen->target}));
+  const bool is_free = std::holds_alternative<study::Free>(ask_.exploring);
+  time_is_up_ = is_free && last_.servo.end == device::ServoEnd::time_limit;
+  if (!time_is_up_) {
+    session_.end_exploring(ended_);
+  } else {
+    if (takes_no_late_answer()) keep_evidence();
+    session_.time_out(ended_);
+  }
+  return session_.phase() == SessionPhase::answering;
 }
 
-void TrialRun::answer(const engine::RenderingModel& model) {
+void TrialRun::answer() {
   for (;;) {
     desk_.enter("answering");
     const AnswerStep step = question();
     const std::optional<StepReply> reply = desk_.attend(step);
     if (!reply) return;
-    if (!reply->explore_again) return confirm(*reply);
-    if (step.may_explore_again && !explore_again(model)) return;
+    if (!reply->explore_again) {
+      confirm(*reply);
+      if (!ask_.feedback || !trial_.right) return;
+      desk_.enter("feedback");
+      const auto& layout = session_.layout();
+      const auto right = std::ranges::find(layout, *trial_.right) - layout.begin();
+      const int answered = position_of(reply->answer).value_or(0);
+      static_cast<void>(desk_.attend(FeedbackStep{answered, static_cast<int>(right)}));
+      return;
+    }
+    if (step.may_explore_again && !explore(true)) return;
   }
 }
 
 AnswerStep TrialRun::question() const {
-  const study::SessionPlan& plan = parts_.key.study.session;
   const auto left_s = static_cast<double>(servo_.limit_ticks - trace_.ticks()) / servo_.rate_hz;
+  const bool is_free = std::holds_alternative<study::Free>(ask_.exploring);
   return {.trial = session_.presentations_begun(),
           .of = of_,
           .practice = false,
           .time_is_up = time_is_up_,
-          .may_explore_again = !intervals_ && !time_is_up_ && left_s >= kLeastAgainS,
-          .confidence_levels = plan.confidence_levels,
-          .question = intervals_ ? intervals_->question : std::string(),
-          .sight = plan.sight};
+          .may_explore_again = is_free && ask_.planes == 1 && !time_is_up_ && left_s >= kMinAgainS,
+          .confidence_levels = ask_.confidence_levels,
+          .question = ask_.question,
+          .picture = study::picture_of(parts_.key.study, trial_),
+          .sight = parts_.key.study.session.sight};
 }
 
 void TrialRun::confirm(const StepReply& reply) {
-  const int trial = session_.current()->trial;
-  if (reply.first_position) session_.choose(*reply.first_position);
-  session_.choose(reply.position);
+  if (const auto* const rated = std::get_if<Rated>(&reply.answer)) {
+    session_.rate(rated->values);
+  } else {
+    const auto& chosen = std::get<Chosen>(reply.answer);
+    if (chosen.first_position) session_.choose(*chosen.first_position);
+    session_.choose(chosen.position);
+  }
   keep_evidence();
   session_.confirm(desk_.when(reply), reply.confidence);
-  parts_.experimenter.acknowledged(trial);
+  parts_.experimenter.acknowledged(trial_.place.trial);
 }
 
 void TrialRun::keep_evidence() {
@@ -288,7 +256,7 @@ void run_trials(SessionDesk& desk, SessionTally& tally) {
     if (desk.interruptions() > most_interruptions && session.accepts(SessionInput::stop)) {
       session.stop(desk.now(), "", "too many faults");
     }
-    if (trials.came_again() > most_interruptions && session.accepts(SessionInput::stop)) {
+    if (trials.repeated() > most_interruptions && session.accepts(SessionInput::stop)) {
       session.stop(desk.now(), "", "too many trials not explored as asked for");
     }
   }
@@ -328,7 +296,7 @@ SessionTally run_session(Session& session, const SessionParts& parts) {
   desk.record_marks();
   if (!desk.left()) {
     const study::Study& study = parts.key.study;
-    session.close(desk.now(), study.protocol->may_name_one_key(study));
+    session.close(desk.now(), study::ask_of(study).has_pictures());
   }
   tally.duration = desk.now();
   tally.left = desk.left();

@@ -12,10 +12,12 @@
 #include "protocols/session/session_clock.hpp"
 #include "protocols/session/session_stages.hpp"
 #include "protocols/session/stimulus_source.hpp"
+#include "study/protocol.hpp"
 #include "study/study_key.hpp"
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -49,11 +51,13 @@ struct SessionParts {
   double rate_hz = device::kServoRateHz;  ///< of the servo
   Experimenter& experimenter = no_experimenter();
   const SessionTexts& texts = no_texts();
-  const PracticeTextures* practice = nullptr;  ///< null: no practice
-  std::string participant_name{};              ///< for the experimenter
-  std::string device_name{};                   ///< for the experimenter
-  device::LabLimits limits{};                  ///< the lab's, beside those of the study
-  Instruments* instruments = nullptr;          ///< told of the session's events in real time
+  /// Rounds of practice, numbered from 1; the same number always gives the same. Empty: none is
+  /// held.
+  std::function<study::Practice(int round)> practice{};
+  std::string participant_name{};      ///< for the experimenter
+  std::string device_name{};           ///< for the experimenter
+  device::LabLimits limits{};          ///< the lab's, beside those of the study
+  Instruments* instruments = nullptr;  ///< told of the session's events in real time
 };
 
 /// Runs a session that was opened or taken up again until it is closed or left: the opening stages

@@ -1,7 +1,7 @@
 #include "protocols/session/session_stages.hpp"
 
 #include "core/text.hpp"
-#include "protocols/session/interval_run.hpp"
+#include "protocols/session/plane_run.hpp"
 #include "protocols/session/session_desk.hpp"
 #include "study/protocol.hpp"
 
@@ -129,17 +129,18 @@ struct PracticeProgress {
 };
 
 /// \param practised  in chronological order
-/// \param a_round  presentations of a round
+/// \param plan  any round
 PracticeProgress progress_of(const std::vector<record::PracticeBody>& practised,
-                             const study::PracticePlan& plan, int a_round) {
+                             const study::Practice& plan) {
   PracticeProgress progress;
   for (const record::PracticeBody& one : practised) {
     if (one.round > progress.round) progress = {.round = one.round};
     ++progress.done;
     progress.correct += one.correct.value_or(false) ? 1 : 0;
   }
-  progress.passed = progress.correct >= plan.criterion;
-  if (!progress.passed && progress.done >= a_round) progress = {.round = progress.round + 1};
+  const bool is_whole = progress.done >= std::ssize(plan.trials);
+  progress.passed = plan.criterion > 0 ? progress.correct >= plan.criterion : is_whole;
+  if (!progress.passed && is_whole) progress = {.round = progress.round + 1};
   return progress;
 }
 
@@ -147,39 +148,35 @@ PracticeProgress progress_of(const std::vector<record::PracticeBody>& practised,
 /// recorded, which may be from an earlier run of the program.
 class PracticeRun {
  public:
-  PracticeRun(SessionDesk& desk, const PracticeTextures& textures)
-      : desk_(desk), textures_(textures), a_round_(textures.presentations) {}
+  explicit PracticeRun(SessionDesk& desk)
+      : desk_(desk),
+        plan_(desk.parts().practice(1)),
+        a_round_(static_cast<int>(plan_.trials.size())) {}
 
   /// \return whether the session goes on
   [[nodiscard]] bool run();
 
  private:
   [[nodiscard]] PracticeProgress progress() const {
-    return progress_of(desk_.session().remarks().practice, textures_.plan, a_round_);
+    return progress_of(desk_.session().remarks().practice, plan_);
   }
   [[nodiscard]] bool run_round(int round);
   /// \return empty if it was interrupted; to be repeated if the session goes on
   [[nodiscard]] std::optional<record::PracticeBody> present(const PracticeProgress& at,
-                                                            const PracticeRound& round);
-  /// The position that is right.
-  [[nodiscard]] static int right_at(const PracticeProgress& at, const PracticeRound& round);
+                                                            const study::Trial& trial);
   /// \return how it ended; empty if it was interrupted
-  [[nodiscard]] std::optional<device::ServoEnd> explore(const PracticeProgress& at,
-                                                        const PracticeRound& round);
-  [[nodiscard]] std::optional<device::ServoEnd> explore_plane(const engine::RenderingModel& model);
-  [[nodiscard]] std::optional<device::ServoEnd> explore_intervals(const study::Presentation& shown);
+  [[nodiscard]] std::optional<device::ServoEnd> explore(const study::Trial& trial);
 
   SessionDesk& desk_;
-  const PracticeTextures& textures_;
+  study::Practice plan_;
   record::Trace trace_;
   int a_round_;
-  int not_explored_ = 0;  ///< trials with an interval that was not explored as asked for
+  int not_explored_ = 0;  ///< trials with a plane that was not explored as asked for
 };
 
 bool PracticeRun::run() {
-  const int rounds = textures_.plan.rounds;
   for (PracticeProgress at = progress(); !at.passed; at = progress()) {
-    if (at.round > rounds || not_explored_ > a_round_) {
+    if (at.round > plan_.rounds || not_explored_ > a_round_) {
       if (!desk_.session().remarks().deviations.contains("practice-not-passed")) {
         desk_.session().deviate(desk_.now(), {"practice-not-passed", ""});
       }
@@ -191,7 +188,7 @@ bool PracticeRun::run() {
 }
 
 bool PracticeRun::run_round(int round) {
-  const PracticeRound shown = textures_.round(round);
+  const study::Practice shown = desk_.parts().practice(round);
   desk_.parts().participant.see_pictures(shown.labels);
   desk_.enter_practice("practice", 0, a_round_);
   if (!desk_.attend(PracticeStep{round})) return desk_.goes_on();
@@ -201,93 +198,75 @@ bool PracticeRun::run_round(int round) {
       if (!desk_.goes_on()) return false;
       continue;
     }
-    const std::optional<record::PracticeBody> done = present(at, shown);
+    const study::Trial& trial =
+        shown.trials[static_cast<std::size_t>(at.done) % shown.trials.size()];
+    const std::optional<record::PracticeBody> done = present(at, trial);
     if (!desk_.goes_on()) return false;
     if (!done) continue;
     desk_.session().practise(desk_.now(), *done);
+    if (!trial.right) continue;
     desk_.enter_practice("feedback", done->presentation, a_round_);
-    const FeedbackStep feedback{*done->position, right_at(at, shown)};
-    if (!desk_.attend(feedback) && !desk_.goes_on()) return false;
+    const int answered = position_of(done->answer).value_or(0);
+    if (!desk_.attend(FeedbackStep{answered, *trial.right}) && !desk_.goes_on()) return false;
   }
   return true;
 }
 
-int PracticeRun::right_at(const PracticeProgress& at, const PracticeRound& round) {
-  const auto nth = static_cast<std::size_t>(at.done);
-  if (!round.trials.empty()) return round.trials[nth % round.trials.size()].chosen->target;
-  return round.order[nth % round.order.size()];
-}
-
 std::optional<record::PracticeBody> PracticeRun::present(const PracticeProgress& at,
-                                                         const PracticeRound& round) {
+                                                         const study::Trial& trial) {
   const int number = at.done + 1;
   desk_.enter_practice("ready", number, a_round_);
   if (!desk_.attend(ReadyStep{number, a_round_, true})) return std::nullopt;
   desk_.enter_practice("exploring", number, a_round_);
-  const std::optional<device::ServoEnd> end = explore(at, round);
+  const std::optional<device::ServoEnd> end = explore(trial);
   if (!end) return std::nullopt;
   desk_.enter_practice("answering", number, a_round_);
   const study::Study& study = desk_.parts().key.study;
-  const auto intervals = study.protocol->interval_plan(study);
   const std::optional<StepReply> reply =
       desk_.attend(AnswerStep{.trial = number,
                               .of = a_round_,
                               .practice = true,
                               .time_is_up = *end == device::ServoEnd::time_limit,
-                              .question = intervals ? intervals->question : std::string(),
+                              .question = study.task->ask(study, trial.place).question,
+                              .picture = study::picture_of(study, trial),
                               .sight = study.session.sight});
   if (!reply) return std::nullopt;
-  return record::PracticeBody{at.round, number, reply->position,
-                              reply->position == right_at(at, round)};
+  record::PracticeBody body{at.round, number, reply->answer, std::nullopt};
+  if (trial.right) body.correct = position_of(reply->answer) == trial.right;
+  return body;
 }
 
-std::optional<device::ServoEnd> PracticeRun::explore(const PracticeProgress& at,
-                                                     const PracticeRound& round) {
-  if (round.trials.empty()) {
-    return explore_plane(*round.models[static_cast<std::size_t>(right_at(at, round))]);
-  }
-  return explore_intervals(round.trials[static_cast<std::size_t>(at.done) % round.trials.size()]);
-}
-
-std::optional<device::ServoEnd> PracticeRun::explore_intervals(const study::Presentation& shown) {
+std::optional<device::ServoEnd> PracticeRun::explore(const study::Trial& trial) {
   device::ServoReport last;
-  const IntervalListener listener{[this] { return &trace_; },
-                                  [&last](const Exploration& done) { last = done.servo; }};
-  switch (run_intervals(desk_, shown, true, listener)) {
-    case IntervalsEnd::explored:
-      return device::ServoEnd::hand_stopped;
-    case IntervalsEnd::interrupted:
+  const PlaneListener listener{[this] { return &trace_; },
+                               [&last](const Exploration& done) { last = done.servo; }};
+  switch (run_planes(desk_, trial, desk_.servo_options(), listener)) {
+    case PlanesEnd::explored:
+    case PlanesEnd::time_is_up:
+      return last.end;
+    case PlanesEnd::interrupted:
       desk_.session().note(desk_.now(), "practice interrupted: " + desk_.note_interruption(last));
       return std::nullopt;
-    case IntervalsEnd::not_explored:
+    case PlanesEnd::not_explored:
       ++not_explored_;
-      desk_.enter_practice("not explored", shown.trial, a_round_);
+      desk_.enter_practice("not explored", trial.place.trial, a_round_);
       static_cast<void>(desk_.attend(
           NoticeStep{NoticeStep::What::not_explored, desk_.session().presentations_begun()}));
       return std::nullopt;
-    case IntervalsEnd::paused:
-    case IntervalsEnd::broken_off:
+    case PlanesEnd::paused:
+    case PlanesEnd::broken_off:
       break;
   }
   return std::nullopt;
 }
 
-std::optional<device::ServoEnd> PracticeRun::explore_plane(const engine::RenderingModel& model) {
-  ModelForce force(model);
-  const Exploration done = desk_.explore(force, textures_.plane, desk_.servo_options(), trace_);
-  if (desk_.was_cut_short()) return std::nullopt;
-  if (!is_interrupted(done.servo)) return done.servo.end;
-  desk_.session().note(desk_.now(), "practice interrupted: " + desk_.note_interruption(done.servo));
-  return std::nullopt;
-}
-
 /// \return whether the session goes on
 bool practise(SessionDesk& desk) {
-  const PracticeTextures* textures = desk.parts().practice;
-  const bool wanted = textures != nullptr && textures->presentations > 0;
+  const auto& practice = desk.parts().practice;
+  const bool wanted = practice && !practice(1).trials.empty();
   if (!wanted || desk.session().presentations_begun() > 0) return true;
   const std::size_t before = desk.session().remarks().practice.size();
-  if (!PracticeRun(desk, *textures).run()) return false;
+  if (!PracticeRun(desk).run()) return false;
   if (desk.session().remarks().practice.size() == before) return true;  // it was over already
   desk.enter("practice is over");
   return insist(desk, NoticeStep{NoticeStep::What::practice_over}).has_value();
@@ -295,7 +274,7 @@ bool practise(SessionDesk& desk) {
 
 void show_pictures(SessionDesk& desk) {
   const study::Study& study = desk.parts().key.study;
-  const std::vector<study::Choice> choices = study.protocol->choices(study);
+  const std::vector<study::Choice> choices = study::choices_of(study);
   std::vector<std::string> pictures;
   for (const int choice : desk.session().layout()) {
     pictures.push_back(choices[static_cast<std::size_t>(choice)].label);

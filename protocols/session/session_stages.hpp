@@ -2,13 +2,9 @@
 /// questions and practice.
 #pragma once
 
-#include "core/plane_geometry.hpp"
-#include "engine/rendering/rendering_model.hpp"
 #include "protocols/session/experimenter.hpp"
-#include "study/schedule.hpp"
 #include "study/session_plan.hpp"
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,24 +17,6 @@ struct SessionTexts {
   std::optional<study::Questionnaire> handedness;  ///< asked after the instructions
   std::optional<study::Questionnaire> closing;     ///< asked after the last trial
   std::vector<DaySheetItem> day_sheet;             ///< for the experimenter
-};
-
-struct PracticeRound {
-  std::vector<std::string> labels;                    ///< by position
-  std::vector<const engine::RenderingModel*> models;  ///< by position
-  std::vector<int> order;                             ///< positions in the order of presentation
-  /// Instead of models and order: trials with intervals, each with its target.
-  std::vector<study::Presentation> trials{};
-};
-
-/// One participant's practice on textures that are not in the study. The fields of the models must
-/// outlive this.
-struct PracticeTextures {
-  PlaneGeometry plane;
-  int presentations = 0;       ///< of a round
-  study::PracticePlan plan{};  ///< criterion and rounds
-  /// Numbered from 1. The same number always gives the same round.
-  std::function<PracticeRound(int round)> round;
 };
 
 class SessionDesk;

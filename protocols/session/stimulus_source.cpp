@@ -68,20 +68,21 @@ engine::FieldWithGains StimulusSource::field(const std::string& code) const {
   return {found.field, found.gains};
 }
 
-StimulusSource::Mix StimulusSource::mix_of(const study::Interval& interval) noexcept {
-  if (!interval.other || interval.share == 0.0) return {interval.stimulus, interval.stimulus, 0.0};
-  return {interval.stimulus, *interval.other, interval.share};
+StimulusSource::Mix StimulusSource::mix_of(const study::Plane& plane) noexcept {
+  if (!plane.mix || plane.mix->share == 0.0) return {plane.field, plane.field, 0.0};
+  return {plane.field, plane.mix->other, plane.mix->share};
 }
 
 StimulusSource::StimulusSource(const engine::Pack& pack, const study::StudyCodes& codes)
     : StimulusSource(pack, codes.study.rendering) {
-  if (!codes.study.protocol->interval_plan(codes.study)) return;
+  const study::Fields fields = codes.study.task->fields(codes.study);
+  if (!fields.levelled) return;
   for (const auto& [code, index] : codes.stimuli) {
     const Mix alone{index, index, 0.0};
     mixes_.emplace(alone, applied(alone, codes));
   }
-  for (const study::Interval& interval : codes.study.protocol->mixtures(codes.study)) {
-    const Mix mix = mix_of(interval);
+  for (const study::Plane& plane : fields.mixtures) {
+    const Mix mix = mix_of(plane);
     if (!mixes_.contains(mix)) mixes_.emplace(mix, applied(mix, codes));
   }
 }
@@ -104,16 +105,28 @@ StimulusSource::Applied StimulusSource::applied(const Mix& mix,
   return sum;
 }
 
-engine::RenderingModel StimulusSource::plane_of(const study::Interval& interval) const {
-  const auto found = mixes_.find(mix_of(interval));
+engine::RenderingModel StimulusSource::levelled(const study::Plane& plane) const {
+  const auto found = mixes_.find(mix_of(plane));
   if (found == mixes_.end()) {
-    throw std::logic_error("StimulusSource: a plane that the protocol did not name");
+    throw std::logic_error("StimulusSource: a plane that the task did not name");
   }
   const double gain =
-      interval.blank ? 0.0 : found->second.factor * std::pow(10.0, interval.gain_db / 20.0);
+      plane.blank ? 0.0 : found->second.factor * std::pow(10.0, plane.gain_db / 20.0);
   engine::FieldView field = found->second.field.view();
-  field.geometry.pitch_mm *= interval.pitch_factor;
+  field.geometry.pitch_mm *= plane.pitch;
   return {field, rendering_, {gain, gain, gain}};
+}
+
+engine::RenderingModel StimulusSource::plane_of(const study::Plane& plane,
+                                                const study::StudyCodes& codes) const {
+  const int practised = plane.field.class_index - static_cast<int>(codes.study.classes.size());
+  if (practised >= 0 && practice_) return practice_->model(practised);
+  if (!mixes_.empty()) return levelled(plane);
+  if (plane.mix || plane.pitch != 1.0) {
+    throw std::logic_error("StimulusSource: planes that are mixed or stretched must be levelled");
+  }
+  if (plane.blank) return flat();
+  return model(codes.code_of(plane.field), plane.gain_db);
 }
 
 const StimulusSource::Stimulus& StimulusSource::stimulus(const std::string& code) const {

@@ -3,11 +3,14 @@
 
 #include "engine/pack/pack.hpp"
 #include "engine/rendering/rendering_model.hpp"
+#include "study/practice.hpp"
+#include "study/schedule.hpp"
 #include "study/study_key.hpp"
 
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace touchtrial::session {
@@ -21,7 +24,7 @@ class StimulusSource {
   /// \throws FileError if a field is missing, truncated, malformed or of another rendering model,
   ///   or the pack is empty
   StimulusSource(const engine::Pack& pack, const engine::RenderingOptions& rendering);
-  /// The same for sessions, whose trials may have intervals.
+  /// The same for sessions, whose planes may be levelled and mixed.
   StimulusSource(const engine::Pack& pack, const study::StudyCodes& codes);
 
   /// The model of a field.
@@ -37,11 +40,16 @@ class StimulusSource {
   /// \throws FileError if the pack has no such code
   [[nodiscard]] engine::FieldWithGains field(const std::string& code) const;
 
-  /// The plane of an interval. Its wall lies where that of the blank one does: a texture's mean
-  /// height is taken out. Gains are applied to forces, which are linear in them up to limits and as
-  /// long as contact lasts.
-  /// \throws std::logic_error if the study has no intervals, or its protocol did not name the mix
-  [[nodiscard]] engine::RenderingModel plane_of(const study::Interval& interval) const;
+  /// What a trial presents. Of a study that levels its fields (study::Fields::levelled), a
+  /// texture's wall lies where that of the blank one does: its mean height is taken out; gains are
+  /// applied to forces, which are linear in them up to limits and as long as contact lasts.
+  /// \throws std::logic_error if the study's task did not name the mix
+  /// \throws FileError if the pack has no such field
+  [[nodiscard]] engine::RenderingModel plane_of(const study::Plane& plane,
+                                                const study::StudyCodes& codes) const;
+
+  /// Adds the textures that participants practise with.
+  void practise_with(study::PracticeSet practice) { practice_.emplace(std::move(practice)); }
 
   /// A plane without texture, for catch trials.
   [[nodiscard]] const engine::RenderingModel& flat() const noexcept { return *flat_; }
@@ -77,14 +85,16 @@ class StimulusSource {
     engine::TextureField field;
     double factor = 1.0;
   };
-  [[nodiscard]] static Mix mix_of(const study::Interval& interval) noexcept;
+  [[nodiscard]] static Mix mix_of(const study::Plane& plane) noexcept;
+  [[nodiscard]] engine::RenderingModel levelled(const study::Plane& plane) const;
   [[nodiscard]] Applied applied(const Mix& mix, const study::StudyCodes& codes) const;
 
   std::map<std::string, Stimulus, std::less<>> stimuli_;
   std::optional<engine::RenderingModel> flat_;
   PlaneGeometry plane_;
   engine::RenderingOptions rendering_;
-  std::map<Mix, Applied> mixes_;  ///< of studies with intervals
+  std::map<Mix, Applied> mixes_;  ///< of studies that level their fields
+  std::optional<study::PracticeSet> practice_;
 };
 
 }  // namespace touchtrial::session

@@ -146,7 +146,7 @@ void TrialTrace::add(const Exploration& done, std::chrono::nanoseconds began) {
 }
 
 void TrialTrace::pack(const Session& session, bool beside) {
-  const int trial = session.current()->trial;
+  const int trial = session.current()->place.trial;
   packing_ = std::async(beside ? std::launch::async : std::launch::deferred,
                         [this, &session, trial] { return judged(session, trial); });
 }

@@ -21,7 +21,7 @@ void add_population(std::string_view protocol, MakePopulation make) {
 
 std::unique_ptr<const Population> population_of(const PopulationSetting& setting) {
   const study::Study& study = setting.key.study;
-  const auto found = known_populations().find(study.protocol->name());
+  const auto found = known_populations().find(study.protocol->name);
   if (found != known_populations().end()) return found->second(setting);
   throw StudyError(one_line("study " + study.name + ": the protocol " + study.protocol_name() +
                             " has no simulated participants; run it with people"));

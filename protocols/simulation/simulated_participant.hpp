@@ -8,7 +8,7 @@
 #include "protocols/simulation/felt_exploration.hpp"
 #include "protocols/simulation/subject_model.hpp"
 #include "protocols/simulation/trial_course.hpp"
-#include "study/adaptive_order.hpp"
+#include "study/order.hpp"
 
 #include <chrono>
 #include <cstdint>
@@ -16,13 +16,15 @@
 #include <optional>
 #include <utility>
 #include <variant>
+#include <vector>
 
 namespace touchtrial::simulation {
 
-/// A choice, and the time that it took after exploring.
+/// A choice or ratings, and the time that it took after exploring.
 struct ParticipantAnswer {
   int position = 0;  ///< index of the picture, from 0
   std::chrono::nanoseconds thought{};
+  std::vector<double> ratings{};  ///< not empty: in place of the choice
 };
 
 /// Leaves every question of a questionnaire out, and gives the lowest confidence. Subclasses
@@ -32,8 +34,13 @@ class PromptParticipant : public session::Participant {
   [[nodiscard]] std::optional<session::StepReply> attend(const session::Step& step) final {
     session::StepReply reply;
     if (const auto* const asked = std::get_if<session::AnswerStep>(&step)) {
+      this->asked(*asked);
       const ParticipantAnswer given = answer();
-      reply.position = given.position;
+      if (given.ratings.empty()) {
+        reply.answer = Chosen{given.position};
+      } else {
+        reply.answer = Rated{given.ratings};
+      }
       reply.took = given.thought;
       if (asked->confidence_levels > 0) reply.confidence = 1;
     }
@@ -50,6 +57,8 @@ class PromptParticipant : public session::Participant {
 
   /// The choice after exploring.
   [[nodiscard]] virtual ParticipantAnswer answer() = 0;
+  /// Called before each answer, with its question.
+  virtual void asked(const session::AnswerStep& /*step*/) {}
   /// Called at each break.
   virtual void rest() {}
   /// Called before each plane of a trial with several.
@@ -77,8 +86,8 @@ class SimulatedParticipant : public PromptParticipant {
     begin_visit(visit, std::move(course));
   }
   /// Gets what decides the presentations, for observers who are told the level.
-  /// \param order  of this visit; null: the schedule says all
-  virtual void follow(std::unique_ptr<study::AdaptiveOrder> /*order*/) {}
+  /// \param order  of this visit
+  virtual void follow(std::unique_ptr<study::Order> /*order*/) {}
   /// How many trials a visit counts as coming after: more than any session has.
   [[nodiscard]] static std::uint64_t trials_before(int visit) noexcept {
     constexpr std::uint64_t kTrialsOfVisit = 1'000'000;

@@ -89,15 +89,17 @@ FinishedSession run_session(const Setting& setting, const Place& place) {
   const SecretKey key = participant_key(setting, place);
   const study::ScheduleDraw draw =
       setting.key.draw_of(place.number, study::Draws::rehearsal, place.visit);
-  const study::Schedule schedule = study::make_schedule(setting.key.study, draw);
-  session::Session session(schedule, setting.key.study.trials,
-                           record::SessionRecorder(place.session, key, finished.events), {},
-                           study::adaptive_order(setting.key.study, draw));
+  const study::Study& study = setting.key.study;
+  auto order = study::make_order(study, draw);
+  const study::Schedule schedule = order->schedule();
+  session::Session session(std::move(order), study.trials,
+                           record::SessionRecorder(place.session, key, finished.events),
+                           session::seal_with(setting.key));
   session.open({}, opening_of(setting, place), study::schedule_to_json(schedule, setting.key));
   const std::unique_ptr<SimulatedParticipant> participant =
       setting.population.participant(place.number);
-  participant->come_to(place.visit, course_of(setting.key.study, schedule));
-  participant->follow(study::adaptive_order(setting.key.study, draw));
+  participant->come_to(place.visit, course_of(study, schedule));
+  participant->follow(study::make_order(study, draw));
   finished.tally =
       session::run_session_in_virtual_time(session, setting.key, setting.source, *participant);
   finished.keys = record::wrap_participant_key(setting.key.investigator_box, place.session, key);

@@ -1,6 +1,7 @@
 #include "analysis/fake_study.hpp"
 
 #include "engine/pack/pack.hpp"
+#include "study/protocol.hpp"
 #include "study/signed_pack.hpp"
 
 #include <algorithm>
@@ -89,31 +90,30 @@ int position_of(const study::Schedule& schedule, int class_index) {
 }
 
 /// The n-th presentation begins at 10 n seconds.
-void interrupt_trial(record::SessionRecorder& recorder, const study::Presentation& shown,
-                     int place) {
+void interrupt_trial(record::SessionRecorder& recorder, const study::Trial& shown, int place) {
   const milliseconds start(10'000 * place);
-  recorder.presented(start, shown.trial, shown.block);
-  recorder.interrupted(start + milliseconds(1000), shown.trial, "comfort stop");
+  recorder.presented(start, shown.place.trial, shown.place.block);
+  recorder.interrupted(start + milliseconds(1000), shown.place.trial, "comfort stop");
 }
 
 /// The plane is touched after 0.5 s, and the answer comes 4.25 s later.
 void record_trial(record::SessionRecorder& recorder, const FakeSession& session,
-                  const study::Schedule& schedule, const study::Presentation& shown, int place) {
+                  const study::Schedule& schedule, const study::Trial& shown, int place) {
   const milliseconds start(10'000 * place);
-  recorder.presented(start, shown.trial, shown.block);
-  recorder.first_contact(start + milliseconds(500), shown.trial);
+  recorder.presented(start, shown.place.trial, shown.place.block);
+  recorder.first_contact(start + milliseconds(500), shown.place.trial);
   const FakeAnswers answers = session.answers ? session.answers : FakeStudy::always_right();
   if (const auto answer = answers(shown)) {
     recorder.answered(start + milliseconds(4250),
-                      {shown.trial, position_of(schedule, *answer), std::nullopt, std::nullopt});
+                      {shown.place.trial, Chosen{position_of(schedule, *answer)}, std::nullopt});
   } else {
-    recorder.timed_out(start + milliseconds(4250), shown.trial);
+    recorder.timed_out(start + milliseconds(4250), shown.place.trial);
   }
-  record::TraceBody body{.trial = shown.trial, .rate_hz = 1000.0, .valid = session.valid};
-  if (shown.trial % 2 == 0) body.hand = session.hand;
+  record::TraceBody body{.trial = shown.place.trial, .rate_hz = 1000.0, .valid = session.valid};
+  if (shown.place.trial % 2 == 0) body.hand = session.hand;
   body.servo = session.servo;
   recorder.trace_stored(start + milliseconds(4500), body,
-                        {4.0, 300.5, 0.125, 0.001 * shown.trial, session.within_limits},
+                        {4.0, 300.5, 0.125, 0.001 * shown.place.trial, session.within_limits},
                         session.traces ? session.traces(shown) : fake_trace());
 }
 
@@ -138,9 +138,9 @@ FakeSession talkative(const std::string& participant, int enrolment, const std::
 }
 
 std::string fake_study_text(const study::Protocol& protocol, const std::string& first_label) {
-  const bool comparison = protocol.presents_all_methods();
+  const bool comparison = protocol.all_methods;
   nlohmann::json study{{"study", comparison ? "pair" : "single"},
-                       {"protocol", std::string(protocol.name())},
+                       {"protocol", std::string(protocol.name)},
                        {"trials", {{"repeats", kRepeats}}},
                        {"seed", 5}};
   study["classes"] = {{{"label", first_label}, {"images", {"../stimuli/first.png"}}},
@@ -183,14 +183,14 @@ void FakeStudy::add(const FakeSession& session) {
   recorder.opened(milliseconds(0), opening, study::schedule_to_json(schedule, key_));
   if (session.before_trials) session.before_trials(recorder);
   int place = 0;
-  const study::Presentation* again = nullptr;
-  for (const study::Presentation& presentation : schedule.presentations) {
+  const study::Trial* again = nullptr;
+  for (const study::Trial& shown : schedule.trials) {
     if (place == session.stop_after) break;
-    if (presentation.trial == session.interrupt_trial) {
-      again = &presentation;
-      interrupt_trial(recorder, presentation, ++place);
+    if (shown.place.trial == session.interrupt_trial) {
+      again = &shown;
+      interrupt_trial(recorder, shown, ++place);
     } else {
-      record_trial(recorder, session, schedule, presentation, ++place);
+      record_trial(recorder, session, schedule, shown, ++place);
     }
   }
   if (again != nullptr) record_trial(recorder, session, schedule, *again, ++place);
@@ -214,12 +214,12 @@ void FakeStudy::close_and_unblind() {
 }
 
 FakeAnswers FakeStudy::always_right() {
-  return [](const study::Presentation& shown) { return shown.stimulus.class_index; };
+  return [](const study::Trial& shown) { return shown.field().class_index; };
 }
 
 FakeAnswers FakeStudy::confusing(int from, int to) {
-  return [=](const study::Presentation& shown) {
-    return shown.stimulus.class_index == from ? to : shown.stimulus.class_index;
+  return [=](const study::Trial& shown) {
+    return shown.field().class_index == from ? to : shown.field().class_index;
   };
 }
 

@@ -15,10 +15,10 @@
 namespace touchtrial {
 
 /// Class index of the answer to a presentation, or nothing to let the time run out.
-using FakeAnswers = std::function<std::optional<int>(const study::Presentation&)>;
+using FakeAnswers = std::function<std::optional<int>(const study::Trial&)>;
 
 /// What was felt in a presentation.
-using FakeTraces = std::function<record::Trace(const study::Presentation&)>;
+using FakeTraces = std::function<record::Trace(const study::Trial&)>;
 
 /// The course of one fake session.
 struct FakeSession {

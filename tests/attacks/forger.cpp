@@ -7,6 +7,7 @@
 #include "record/rows.hpp"
 #include "record/schema.hpp"
 #include "record/store_fixture.hpp"
+#include "study/protocol.hpp"
 
 #include <array>
 #include <cstdlib>
@@ -100,14 +101,13 @@ void AttackedStudy::begin_open_session() {
 void AttackedStudy::answer(int trials) {
   const record::Trace trace = fixture::stroking(20, 0.05);
   for (int i = 0; i < trials; ++i) {
-    const study::Presentation& shown =
-        schedule_.presentations.at(static_cast<std::size_t>(answered_++));
+    const study::Trial& shown = schedule_.trials.at(static_cast<std::size_t>(answered_++));
     const seconds at(10 * answered_);
-    recorder_->presented(at, shown.trial, shown.block);
-    recorder_->first_contact(at + seconds(1), shown.trial);
+    recorder_->presented(at, shown.place.trial, shown.place.block);
+    recorder_->first_contact(at + seconds(1), shown.place.trial);
     recorder_->answered(
-        at + seconds(4), {shown.trial, answered_ % 3, std::nullopt, std::nullopt},
-        recorder_->packed({.trial = shown.trial, .rate_hz = 1000.0, .trace = {}}, {}, trace));
+        at + seconds(4), {shown.place.trial, Chosen{answered_ % 3}, std::nullopt},
+        recorder_->packed({.trial = shown.place.trial, .rate_hz = 1000.0, .trace = {}}, {}, trace));
   }
 }
 

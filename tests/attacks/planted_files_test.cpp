@@ -2,6 +2,7 @@
 // its files, and forged keys that would cost it hours.
 #include "app/touchtrial_process.hpp"
 #include "attacks/forger.hpp"
+#include "core/files.hpp"
 #include "core/hash.hpp"
 #include "support/catch.hpp"
 

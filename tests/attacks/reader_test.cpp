@@ -4,6 +4,7 @@
 #include "app/study_folder.hpp"
 #include "attacks/forger.hpp"
 #include "core/files.hpp"
+#include "study/protocol.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>

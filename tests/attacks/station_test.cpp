@@ -3,6 +3,7 @@
 #include "analysis/verification/verification.hpp"
 #include "attacks/forger.hpp"
 #include "core/errors.hpp"
+#include "study/protocol.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -39,7 +40,7 @@ bool opens(const std::vector<record::Event>& events, const std::vector<SecretKey
 
 /// Everybody answers the first class.
 FakeAnswers invented() {
-  return [](const study::Presentation&) { return 0; };
+  return [](const study::Trial&) { return 0; };
 }
 
 /// The program's own form of the database, with head files made anew from it.

@@ -343,6 +343,27 @@ class House:
                 if not source.path.startswith(folder + "/"):
                     yield f"{source.path} includes {name}, which is private to {folder}"
 
+    def reached_from(self, path):
+        """All headers that a file includes, directly or not."""
+        reached, waiting = set(), [path]
+        while waiting:
+            new = set(self.ours(self.sources[waiting.pop()])) & set(self.sources) - reached
+            reached |= new
+            waiting += new
+        return reached
+
+    def hidden_headers_reached(self):
+        """A header may say "Hidden from FOLDER and FILE, but for FILE": nothing there may include it, by any way."""
+        for header in self.sources.values():
+            comment = re.match(r"(?:///.*\n)*", header.text)[0].replace("///", "") if header.is_header else ""
+            found = re.search(r"Hidden\s+from\s+([^,:]+)(?:,\s+but\s+for\s+([\w/.]+))?", comment)
+            if not found:
+                continue
+            hidden_from = tuple(re.sub(r"\.$", "", place) for place in found[1].split() if place != "and")
+            for path in self.sources:
+                if path != found[2] and path.startswith(hidden_from) and header.path in self.reached_from(path):
+                    yield f"{path} reaches {header.path}, which is hidden from it"
+
     def names_defined_twice(self):
         """Names that belong to their source alone may not meet another of their folder, whose files may be joined."""
         files_by_meaning = collections.defaultdict(dict)
@@ -391,7 +412,7 @@ class House:
 
     def violations(self):
         return [*self.not_read, *self.wrong_includes(), *self.third_party_headers_shown(),
-                *self.private_headers_used_elsewhere(), *self.names_defined_twice(),
+                *self.private_headers_used_elsewhere(), *self.hidden_headers_reached(), *self.names_defined_twice(),
                 *self.namespaces_of_other_rooms(), *self.unguarded_or_unexplained()]
 
 

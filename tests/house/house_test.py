@@ -167,6 +167,18 @@ class HouseTest(unittest.TestCase):
              "device/qualified.hpp opens namespace touchtrial::engine", "device/using.hpp uses all of namespace engine",
              "engine/global.hpp defines Global in no namespace", "engine/global.hpp defines kGlobal in no namespace"])
 
+    def test_hidden_headers(self):
+        secret = header("touchtrial::engine", "struct Secret {};",
+                        "Hidden from app/windows and app/seen.hpp, but for app/windows/preview.cpp: why.")
+        by_the_way = header("touchtrial::engine", before='#include "engine/secret.hpp"')
+        self.assertEqual(violations({
+            "engine/secret.hpp": secret, "engine/way.hpp": by_the_way,
+            "app/windows/screen.cpp": header("touchtrial::app", before='#include "engine/way.hpp"'),
+            "app/windows/preview.cpp": header("touchtrial::app", before='#include "engine/secret.hpp"'),
+            "app/seen.hpp": header("touchtrial::app"),
+            "app/other.cpp": header("touchtrial::app", before='#include "engine/secret.hpp"')}),
+            ["app/windows/screen.cpp reaches engine/secret.hpp, which is hidden from it"])
+
     def test_headers_without_guard_or_purpose_and_unpaired_brackets(self):
         self.assertEqual(violations({
             "core/bare.hpp": "namespace touchtrial {}\n",

@@ -31,7 +31,7 @@ void record_course(SessionRecorder& recorder, const Course& course) {
   recorder.remarked(later(seconds(1)), EventKind::instructed, "");
   recorder.practised(later(seconds(1)), {.round = 1,
                                          .presentation = 1,
-                                         .position = course.practised_well ? 0 : 1,
+                                         .answer = Chosen{course.practised_well ? 0 : 1},
                                          .correct = course.practised_well});
   recorder.remarked(later(seconds(1)), EventKind::noted, course.note);
   recorder.deviated(later(seconds(1)), {"other", course.note});
@@ -47,8 +47,7 @@ void record_course(SessionRecorder& recorder, const Course& course) {
                         stroking(course.samples, course.practised_well ? 0.2 : 0.0));
     recorder.answered(later(seconds(2)),
                       {.trial = trial,
-                       .position = position,
-                       .first_position = course.change_of_mind,
+                       .answer = Chosen{position, course.change_of_mind},
                        .confidence = course.confidence},
                       evidence);
   }

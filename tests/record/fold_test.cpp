@@ -22,8 +22,7 @@ class FoldedSession final : public EventSink {
     rows = next;
   }
   void answer(int trial) {
-    recorder.answered(seconds(2),
-                      {.trial = trial, .position = 1, .first_position = {}, .confidence = {}});
+    recorder.answered(seconds(2), {.trial = trial, .answer = Chosen{1}, .confidence = {}});
   }
   void trace(int trial) {
     recorder.trace_stored(
@@ -52,7 +51,7 @@ TEST_CASE("a trial goes from presented by contact to answered") {
   session.answer(1);
   REQUIRE(session.row(1).state == TrialState::answered);
   REQUIRE(session.row(1).answered_at == seconds(2));
-  REQUIRE(session.row(1).position == 1);
+  REQUIRE(position_of(session.row(1).answer) == 1);
 }
 
 TEST_CASE("stored events give the rows that opened ones give, without answers and times") {
@@ -61,15 +60,13 @@ TEST_CASE("stored events give the rows that opened ones give, without answers an
   session.recorder.first_contact(seconds(1), 1);
   session.recorder.explored_again(seconds(1), 1);
   session.trace(1);
-  session.recorder.answered(seconds(2),
-                            {.trial = 1, .position = 1, .first_position = 2, .confidence = 3});
+  session.recorder.answered(seconds(2), {.trial = 1, .answer = Chosen{1, 2}, .confidence = 3});
   TrialRow expected = session.row(1);
   REQUIRE(expected.samples == 3);
   expected.presented_at = {};
   expected.contact_at.reset();
   expected.answered_at.reset();
-  expected.position.reset();
-  expected.first_position.reset();
+  expected.answer.reset();
   expected.confidence.reset();
   expected.samples = 0;
   REQUIRE(session.in_clear.trials.at({1, 1}) == expected);
@@ -84,7 +81,7 @@ TEST_CASE("a trial may be answered after its time is up") {
   session.recorder.presented(seconds(1), 1, 0);
   session.recorder.timed_out(seconds(1), 1);
   REQUIRE(session.row(1).state == TrialState::timed_out);
-  REQUIRE_FALSE(session.row(1).position);
+  REQUIRE_FALSE(position_of(session.row(1).answer));
   session.answer(1);
   REQUIRE(session.row(1).state == TrialState::answered);
 }
@@ -165,7 +162,7 @@ TEST_CASE("restarting a block voids its presented trials and nothing else") {
   session.recorder.block_restarted(seconds(3), 1, 7, "[]");
   REQUIRE(session.row(1).state == TrialState::answered);
   REQUIRE(session.row(3).state == TrialState::voided);
-  REQUIRE(session.row(3).position == 1);
+  REQUIRE(position_of(session.row(3).answer) == 1);
   REQUIRE(session.row(4).state == TrialState::voided);
   session.recorder.presented(seconds(4), 7, 1);
   REQUIRE(session.row(7).state == TrialState::presented);

@@ -137,7 +137,7 @@ struct OpenSession {
   void answer(int trial) {
     recorder.presented(seconds(20 * trial), trial, 0);
     recorder.answered(seconds(20 * trial + 9),
-                      {.trial = trial, .position = 2, .first_position = {}, .confidence = {}});
+                      {.trial = trial, .answer = Chosen{2}, .confidence = {}});
   }
 
   std::unique_ptr<EventSink> sink;

@@ -17,9 +17,9 @@ using namespace touchtrial::record;
 
 TEST_CASE("bodies are compact JSON with sorted keys") {
   REQUIRE(presented_to_json(7, 2) == R"({"block":2,"trial":7})");
-  REQUIRE(to_json(AnswerBody{.trial = 7, .position = 0, .first_position = {}, .confidence = {}}) ==
+  REQUIRE(to_json(AnswerBody{.trial = 7, .answer = Chosen{0}, .confidence = {}}) ==
           R"({"position":0,"trial":7})");
-  REQUIRE(to_json(AnswerBody{.trial = 7, .position = 1, .first_position = 4, .confidence = 2}) ==
+  REQUIRE(to_json(AnswerBody{.trial = 7, .answer = Chosen{1, 4}, .confidence = 2}) ==
           R"({"confidence":2,"first_position":4,"position":1,"trial":7})");
   REQUIRE(
       to_json(TrialMeasures{
@@ -54,9 +54,9 @@ TEST_CASE("every body reads back as it was written") {
   REQUIRE(read_trace.hand == trace.hand);
   REQUIRE(read_trace.saturated);
 
-  const AnswerBody answer = answer_from_json(
-      to_json(AnswerBody{.trial = 1, .position = 4, .first_position = 0, .confidence = {}}));
-  REQUIRE(answer.first_position == 0);
+  const AnswerBody answer =
+      answer_from_json(to_json(AnswerBody{.trial = 1, .answer = Chosen{4, 0}, .confidence = {}}));
+  REQUIRE(first_position_of(answer.answer) == 0);
   REQUIRE_FALSE(answer.confidence);
 
   REQUIRE(trial_from_json(interrupted_to_json(4, "pause", nullptr)).reason == "pause");
@@ -72,7 +72,7 @@ TEST_CASE("every body reads back as it was written") {
 }
 
 TEST_CASE("what is in clear of a body reads without the rest") {
-  REQUIRE_FALSE(answer_from_json(R"({"trial":1})").position);
+  REQUIRE_FALSE(position_of(answer_from_json(R"({"trial":1})").answer));
   REQUIRE_FALSE(practice_from_json(R"({"presentation":1,"round":1})").correct);
   REQUIRE(deviation_from_json(R"({"code":"late"})").code == "late");
   REQUIRE(resumed_from_json(R"({"after":"pause","program_version":""})").after == "pause");

@@ -46,8 +46,7 @@ inline void record_session(record::StudyStore& store, Acknowledged& acknowledged
     const record::TraceBody body{
         .trial = trial, .samples = 0, .rate_hz = 1000.0, .overruns = 0, .valid = true, .trace = {}};
     const record::TrialEvidence evidence = recorder.packed(body, {}, trace);
-    const record::AnswerBody answer{
-        .trial = trial, .position = trial, .first_position = {}, .confidence = {}};
+    const record::AnswerBody answer{.trial = trial, .answer = Chosen{trial}, .confidence = {}};
     attempt([&] { recorder.answered(start + seconds(9), answer, evidence); });
   }
   attempt([&] { recorder.closed(seconds(90), true); });

@@ -82,12 +82,12 @@ TEST_CASE("an opened event has the time and the body with which it was recorded"
     REQUIRE(opened.event.sequence == stored.sequence);
   };
   const nanoseconds at(1'234'567'891);
-  recorder.practised(at, {.round = 2, .presentation = 3, .position = 1, .correct = true});
+  recorder.practised(at, {.round = 2, .presentation = 3, .answer = Chosen{1}, .correct = true});
   recorded(R"({"correct":true,"position":1,"presentation":3,"round":2})",
            R"({"presentation":3,"round":2})");
   recorder.presented(at, 7, 2);
   recorded(R"({"block":2,"trial":7})", R"({"block":2,"trial":7})");
-  recorder.answered(at, {.trial = 7, .position = 4, .first_position = 0, .confidence = 5});
+  recorder.answered(at, {.trial = 7, .answer = Chosen{4, 0}, .confidence = 5});
   recorded(R"({"confidence":5,"first_position":0,"position":4,"trial":7})", R"({"trial":7})");
   recorder.remarked(at, EventKind::noted, "sneezed");
   recorded(R"({"text":"sneezed"})", "{}");
@@ -101,8 +101,7 @@ TEST_CASE("an opened event has the time and the body with which it was recorded"
   body.saturated = true;
   body.explorations = {900, 101};
   const TrialEvidence evidence = recorder.packed(body, {}, stroking(1001, 0.05));
-  recorder.answered(at, {.trial = 7, .position = 4, .first_position = {}, .confidence = {}},
-                    evidence);
+  recorder.answered(at, {.trial = 7, .answer = Chosen{4}, .confidence = {}}, evidence);
   const Event& stored = events.events[events.events.size() - 2];
   const std::string in_clear =
       R"({"contact_ok":true,"force_ok":true,"overruns":2,"path_ok":false,"rate_hz":1000.0,)"
@@ -123,8 +122,8 @@ TEST_CASE("the size of a sealed part follows from the kind of its event") {
     return events.events.back().sealed.size();
   };
   const std::size_t least =
-      size_of({.trial = 1, .position = 0, .first_position = {}, .confidence = {}}, nanoseconds(0));
-  REQUIRE(size_of({.trial = 99, .position = 63, .first_position = 62, .confidence = 100},
+      size_of({.trial = 1, .answer = Chosen{0}, .confidence = {}}, nanoseconds(0));
+  REQUIRE(size_of({.trial = 99, .answer = Chosen{63, 62}, .confidence = 100},
                   std::chrono::hours(9)) == least);
 }
 

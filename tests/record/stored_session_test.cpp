@@ -19,8 +19,7 @@ void break_off(StudyStore& store) {
   SessionRecorder recorder(1, participant_key(1), *sink);
   recorder.opened(nanoseconds(0), opening(1), "{}");
   recorder.presented(seconds(1), 1, 0);
-  recorder.answered(seconds(2),
-                    {.trial = 1, .position = 3, .first_position = {}, .confidence = {}});
+  recorder.answered(seconds(2), {.trial = 1, .answer = Chosen{3}, .confidence = {}});
   recorder.presented(seconds(3), 2, 0);
 }
 
@@ -41,7 +40,7 @@ TrialEvidence evidence_of(const SessionRecorder& recorder, int trial) {
 }
 
 AnswerBody answer_to(int trial) {
-  return {.trial = trial, .position = 2, .first_position = {}, .confidence = {}};
+  return {.trial = trial, .answer = Chosen{2}, .confidence = {}};
 }
 
 }  // namespace
@@ -96,10 +95,9 @@ TEST_CASE("every accepted event is in the file at once, for other programs too")
   recorder.presented(seconds(1), 1, 0);
   REQUIRE(reader.events(1).size() == 2);
   REQUIRE(reader.trials().at(0).state == TrialState::presented);
-  recorder.answered(seconds(2),
-                    {.trial = 1, .position = 3, .first_position = {}, .confidence = {}});
+  recorder.answered(seconds(2), {.trial = 1, .answer = Chosen{3}, .confidence = {}});
   REQUIRE(reader.trials().at(0).state == TrialState::answered);
-  REQUIRE(opened_trials(reader, 1).at(0).position == 3);
+  REQUIRE(position_of(opened_trials(reader, 1).at(0).answer) == 3);
   REQUIRE_FALSE(reader.first_fault());
 }
 
@@ -110,7 +108,7 @@ TEST_CASE("a refused event leaves no mark, and the session goes on") {
   REQUIRE(refuses([&] { recorder.presented(seconds(1), 1, 0); }, "begins with 'opened'"));
   REQUIRE(study.store->events(0).size() == 1);
   recorder.opened(nanoseconds(0), opening(1), "{}");
-  const AnswerBody answer{.trial = 1, .position = 3, .first_position = {}, .confidence = {}};
+  const AnswerBody answer{.trial = 1, .answer = Chosen{3}, .confidence = {}};
   REQUIRE(refuses([&] { recorder.answered(seconds(2), answer); }, "has not been presented"));
   REQUIRE(study.store->events(1).size() == 1);
   recorder.presented(seconds(1), 1, 0);
@@ -175,8 +173,8 @@ TEST_CASE("a session that broke off goes on where it ended, and is one chain") {
   recorder.closed(seconds(13), true);
 
   REQUIRE(study.store->sessions().at(0).state == SessionState::completed);
-  REQUIRE(opened_trials(*study.store, 1).at(0).position == 3);
-  REQUIRE(opened_trials(*study.store, 1).at(1).position == 2);
+  REQUIRE(position_of(opened_trials(*study.store, 1).at(0).answer) == 3);
+  REQUIRE(position_of(opened_trials(*study.store, 1).at(1).answer) == 2);
   REQUIRE(study.store->events(0).size() == 3);
   REQUIRE_FALSE(study.store->first_fault());
 }

@@ -97,8 +97,7 @@ TEST_CASE("sessions and trials are derived from the events") {
                         .presented_at = {},
                         .contact_at = {},
                         .answered_at = {},
-                        .position = {},
-                        .first_position = {},
+                        .answer = {},
                         .confidence = {},
                         .track = {},
                         .level = {},
@@ -109,8 +108,7 @@ TEST_CASE("sessions and trials are derived from the events") {
   opened.presented_at = seconds(40);
   opened.contact_at = seconds(40) + milliseconds(350);
   opened.answered_at = seconds(49);
-  opened.position = 2;
-  opened.first_position = 4;
+  opened.answer = Chosen{2, 4};
   opened.confidence = 3;
   opened.samples = 20;
   REQUIRE(opened_trials(*study.store, 1)[1] == opened);
@@ -120,7 +118,7 @@ TEST_CASE("sessions and trials are derived from the events") {
   REQUIRE(last.block == 1);
   REQUIRE(last.state == TrialState::timed_out);
   REQUIRE_FALSE(last.valid);
-  REQUIRE_FALSE(opened_trials(*study.store, 2)[2].position);
+  REQUIRE_FALSE(position_of(opened_trials(*study.store, 2)[2].answer));
 }
 
 TEST_CASE("events of one kind are visited by session and sequence") {

@@ -2,6 +2,7 @@
 
 #include "support/catch.hpp"
 
+#include <memory>
 #include <stdexcept>
 #include <vector>
 
@@ -9,35 +10,66 @@ namespace touchtrial {
 namespace {
 
 using study::OnInterruption;
-using study::Presentation;
+using study::Trial;
 
 /// Trials 1 and 2 of block 0, and 3 and 4 of block 1.
 study::Schedule two_blocks() {
   study::Schedule schedule;
   for (int trial = 1; trial <= 4; ++trial) {
-    schedule.presentations.push_back({.trial = trial, .block = (trial - 1) / 2, .stimulus = {}});
+    schedule.trials.push_back(
+        {.place = {.trial = trial, .block = (trial - 1) / 2}, .planes = {{.field = {}}}});
   }
   return schedule;
 }
 
-/// A restarted block has two trials, and one more at each further restart.
-std::vector<Presentation> drawn(int block, int restarts_before, int first_trial) {
-  std::vector<Presentation> again;
-  for (int i = 0; i < 2 + restarts_before; ++i) {
-    again.push_back({.trial = first_trial + i, .block = block, .stimulus = {}});
+/// Presents two blocks. A restarted one has two trials, and one more at each further restart.
+class GrowingBlocks final : public study::Order {
+ public:
+  GrowingBlocks() : Order(two_blocks(), SecretKey{}) {}
+  std::vector<Trial> restarted(int block, int restarts_before, int first_trial) const override {
+    std::vector<Trial> again;
+    for (int i = 0; i < 2 + restarts_before; ++i) {
+      again.push_back(
+          {.place = {.trial = first_trial + i, .block = block}, .planes = {{.field = {}}}});
+    }
+    return again;
   }
-  return again;
+};
+
+study::Course course_of_blocks(OnInterruption policy) {
+  return {std::make_unique<GrowingBlocks>(), policy};
 }
+
+/// Chooses a plane for each place of two blocks, and notes which trials were interrupted.
+class SameAgain final : public study::Order {
+ public:
+  explicit SameAgain(std::vector<int>& spoilt) : Order(without_planes(), {}), spoilt_(spoilt) {}
+  Trial at(const Trial& scheduled) const override {
+    Trial trial = scheduled;
+    trial.planes.resize(1);
+    return trial;
+  }
+  void interrupted(const Trial& shown) override { spoilt_.push_back(shown.place.trial); }
+
+ private:
+  static study::Schedule without_planes() {
+    study::Schedule schedule = two_blocks();
+    for (Trial& trial : schedule.trials) trial.planes.clear();
+    return schedule;
+  }
+
+  std::vector<int>& spoilt_;
+};
 
 /// Finishes the course.
 std::vector<int> rest_of(study::Course& course) {
   std::vector<int> trials;
-  for (; !course.is_over(); course.finish({})) trials.push_back(course.current()->trial);
+  for (; !course.is_over(); course.finish({})) trials.push_back(course.current()->place.trial);
   return trials;
 }
 
 TEST_CASE("a course presents its schedule in order, and is over after it") {
-  study::Course course(two_blocks(), OnInterruption::repeat);
+  study::Course course = course_of_blocks(OnInterruption::repeat);
   CHECK(course.left() == 4);
   CHECK(rest_of(course) == std::vector<int>{1, 2, 3, 4});
   CHECK(course.is_over());
@@ -45,32 +77,31 @@ TEST_CASE("a course presents its schedule in order, and is over after it") {
 }
 
 TEST_CASE("an interrupted presentation is repeated at the end, or left out, as the policy says") {
-  study::Course repeated(two_blocks(), OnInterruption::repeat);
+  study::Course repeated = course_of_blocks(OnInterruption::repeat);
   repeated.finish({});
   repeated.spoil();
   CHECK(rest_of(repeated) == std::vector<int>{3, 4, 2});
-  study::Course left_out(two_blocks(), OnInterruption::leave_out);
+  study::Course left_out = course_of_blocks(OnInterruption::leave_out);
   left_out.finish({});
   left_out.spoil();
   CHECK(rest_of(left_out) == std::vector<int>{3, 4});
 }
 
 TEST_CASE("of an order that chooses, an interrupted place is repeated at the end of its block") {
-  struct SameAgain final : study::AdaptiveOrder {
-    void choose(study::Presentation& place) const override { place.chosen.emplace(); }
-    void answer(const study::Presentation& /*shown*/, int /*choice*/) override {}
-  };
-  study::Course course(two_blocks(), OnInterruption::repeat, {}, std::make_unique<SameAgain>());
+  std::vector<int> spoilt;
+  study::Course course(std::make_unique<SameAgain>(spoilt), OnInterruption::repeat);
+  CHECK(course.is_adaptive());
   course.spoil();
   course.finish({});
-  CHECK(course.current()->trial == 1);
-  CHECK(course.current()->interruptions == 1);
+  CHECK(course.current()->place.trial == 1);
+  CHECK(course.current()->planes.size() == 1);
+  CHECK(spoilt == std::vector<int>{1});
   CHECK(rest_of(course) == std::vector<int>{1, 3, 4});
 }
 
 TEST_CASE("an interrupted block is restarted under new numbers before all else") {
   const auto restarted = [] {
-    study::Course course(two_blocks(), OnInterruption::restart_block, drawn);
+    study::Course course = course_of_blocks(OnInterruption::restart_block);
     course.finish({});
     course.spoil();
     REQUIRE(course.block_to_restart() == 0);
@@ -92,11 +123,12 @@ TEST_CASE("an interrupted block is restarted under new numbers before all else")
   course.restart(course.drawn_again(0));
   CHECK(rest_of(course) == std::vector<int>{7, 8, 9, 3, 4});
   CHECK(course.was_given_up(6));
-  CHECK(course.schedule().presentations.size() == 9);
+  CHECK(course.schedule().trials.size() == 9);
 }
 
-TEST_CASE("a course that restarts blocks needs to know how to draw them") {
-  CHECK_THROWS_AS(study::Course(two_blocks(), OnInterruption::restart_block),
+TEST_CASE("blocks of an order that chooses cannot be restarted") {
+  std::vector<int> spoilt;
+  CHECK_THROWS_AS(study::Course(std::make_unique<SameAgain>(spoilt), OnInterruption::restart_block),
                   std::invalid_argument);
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "study/laboratory.hpp"
+#include "study/protocol.hpp"
 #include "study/refusal.hpp"
 
 #include <set>
@@ -99,26 +100,36 @@ TEST_CASE("a study without practice has the plane without texture") {
   const study::PracticeSet practice(study, kStrong, plane_of(kSide));
   CHECK(practice.classes() == 0);
   CHECK_FALSE(has_texture(practice.flat()));
-  CHECK(study::practice_round(study, drawn(study, 1), 1).empty());
+  CHECK(study::practice_of(study, drawn(study, 1), 1).trials.empty());
 }
 
 TEST_CASE("a practice round has every texture about equally often, in an order of its own") {
   const PracticeLaboratory laboratory;
   const study::Study study = laboratory.study();
   std::set<std::vector<int>> orders;
-  std::set<std::vector<int>> layouts;
+  std::set<std::vector<std::string>> layouts;
   for (int enrolment = 1; enrolment <= 20; ++enrolment) {
     for (int round = 1; round <= 2; ++round) {
-      const std::vector<int> order = study::practice_round(study, drawn(study, enrolment), round);
-      CHECK(order == study::practice_round(study, drawn(study, enrolment), round));
-      REQUIRE(order.size() == 5);
+      const study::Practice practice = study::practice_of(study, drawn(study, enrolment), round);
+      CHECK(practice.trials == study::practice_of(study, drawn(study, enrolment), round).trials);
+      REQUIRE(practice.trials.size() == 5);
+      std::vector<int> order;
+      for (const study::Trial& trial : practice.trials) {
+        CHECK(trial.place.trial == static_cast<int>(order.size()) + 1);
+        CHECK(trial.role == study::Role::practice);
+        const int shown = trial.field().class_index - static_cast<int>(study.classes.size());
+        order.push_back(shown);
+        const auto position = static_cast<std::size_t>(trial.right.value());
+        CHECK(practice.labels.at(position) ==
+              study.practice.classes.at(static_cast<std::size_t>(shown)).label);
+      }
       const auto ones = std::ranges::count(order, 1);
       CHECK((ones == 2 || ones == 3));
       orders.insert(order);
-      std::vector<int> layout = study::practice_layout(study, drawn(study, enrolment), round);
+      std::vector<std::string> layout = practice.labels;
       layouts.insert(layout);
       std::ranges::sort(layout);
-      CHECK(layout == std::vector<int>{0, 1});
+      CHECK(layout == std::vector<std::string>{"one", "two"});
     }
   }
   CHECK(orders.size() > 10);

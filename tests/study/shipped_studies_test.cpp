@@ -21,7 +21,7 @@ TEST_CASE("the classification study is the paper's: five textures, 25 trials, on
   CHECK(study.presented_methods() == 1);
   CHECK(study.methods == std::vector<study::StudyMethod>{{{}, "adaptive"}});
   CHECK(study.scored_trials() == 25);
-  CHECK(schedule_of(study, 1).presentations.size() == 25);
+  CHECK(schedule_of(study, 1).trials.size() == 25);
   CHECK(study.rendering == engine::RenderingOptions{});
   CHECK(study.trials == study::TrialOptions{.practice = 5, .break_every = 10});
   CHECK(study.session == study::SessionPlan{});

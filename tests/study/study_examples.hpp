@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/errors.hpp"
+#include "study/protocol.hpp"
 #include "study/refusal.hpp"
-#include "study/schedule.hpp"
 #include "study/study.hpp"
 
 #include <filesystem>

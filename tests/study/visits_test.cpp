@@ -1,5 +1,6 @@
 /// Several visits of a participant, and groups: the study file, what is dealt, and schedules.
 #include "core/errors.hpp"
+#include "study/protocol.hpp"
 #include "study/station.hpp"
 #include "study/study_examples.hpp"
 #include "study/study_key.hpp"
@@ -110,8 +111,8 @@ TEST_CASE("every visit presents all methods in the participant's order, and tria
     std::set<int> first_methods;
     for (int visit = 1; visit <= 3; ++visit) {
       const study::Schedule schedule = schedule_at(key, number, visit);
-      CHECK(schedule.presentations.size() == schedule_at(alone, number, 1).presentations.size());
-      first_methods.insert(schedule.presentations.front().stimulus.method);
+      CHECK(schedule.trials.size() == schedule_at(alone, number, 1).trials.size());
+      first_methods.insert(schedule.trials.front().field().method);
     }
     CHECK(first_methods.size() == 1);
     CHECK_FALSE(schedule_at(key, number, 1) == schedule_at(key, number, 2));
@@ -127,19 +128,19 @@ TEST_CASE("methods that are divided between visits are those of one long session
   CHECK(key.study.scored_trials() == alone.study.scored_trials());
   std::map<int, int> first_method;
   for (int number = 1; number <= 8; ++number) {
-    const std::vector<study::Presentation> whole = schedule_at(alone, number, 1).presentations;
-    std::vector<study::Presentation> visits;
+    const std::vector<study::Trial> whole = schedule_at(alone, number, 1).trials;
+    std::vector<study::Trial> visits;
     for (int visit = 1; visit <= 2; ++visit) {
-      const std::vector<study::Presentation> own = schedule_at(key, number, visit).presentations;
-      CHECK(own.front().trial == 1);
-      for (const study::Presentation& shown : own) CHECK(shown.block == visit - 1);
+      const std::vector<study::Trial> own = schedule_at(key, number, visit).trials;
+      CHECK(own.front().place.trial == 1);
+      for (const study::Trial& shown : own) CHECK(shown.place.block == visit - 1);
       visits.insert(visits.end(), own.begin(), own.end());
     }
     REQUIRE(visits.size() == whole.size());
-    for (std::size_t i = 0; i < whole.size(); ++i) CHECK(visits[i].stimulus == whole[i].stimulus);
-    ++first_method[whole.front().stimulus.method];
+    for (std::size_t i = 0; i < whole.size(); ++i) CHECK(visits[i].planes == whole[i].planes);
+    ++first_method[whole.front().field().method];
     const study::ScheduleDraw second = key.draw_of(number, Draws::people, 2);
-    const auto again = study::restarted_block(key.study, second, 1, 0, 100);
+    const auto again = study::make_order(key.study, second)->restarted(1, 0, 100);
     CHECK(again.size() == visits.size() / 2);
   }
   CHECK(first_method == std::map<int, int>{{0, 4}, {1, 4}});

@@ -247,7 +247,7 @@ TEST_CASE("keys over the console are the participant's, except while text is wri
     const auto give_up = steady_clock::now() + kPatience;
     while (!reply && steady_clock::now() < give_up) reply = room.window.attend(answer);
     REQUIRE(reply);
-    CHECK(reply->position == 1);
+    CHECK(position_of(reply->answer) == 1);
   });
 }
 

@@ -250,8 +250,8 @@ TEST_CASE("a spoken answer is entered by its number in alphabetical order") {
   CHECK(terminal.typed("\n6\n4").empty());
   const auto reply = terminal.reply("\n");
   REQUIRE(reply);
-  CHECK(reply->position == 0);
-  CHECK(reply->first_position == 1);
+  CHECK(position_of(reply->answer) == 0);
+  CHECK(first_position_of(reply->answer) == 1);
   CHECK(reply->confidence == 4);
   CHECK(reply->at);
 }
@@ -270,7 +270,7 @@ TEST_CASE("participants who see answer for themselves") {
   terminal.step.sight = study::Sight::curtain;
   const auto reply = terminal.reply("");
   REQUIRE(reply);
-  CHECK(reply->position == 2);
+  CHECK(position_of(reply->answer) == 2);
 }
 
 }  // namespace

@@ -137,8 +137,8 @@ TEST_CASE("replies to 25 trials hold the choices made by keys, with times after 
       const auto reply =
           sitting.answer(answer_step(trial), first + pad + std::to_string(choice + 1) + " Return");
       REQUIRE(reply);
-      CHECK(reply->position == choice);
-      CHECK(reply->first_position.has_value() == changes);
+      CHECK(position_of(reply->answer) == choice);
+      CHECK(first_position_of(reply->answer).has_value() == changes);
       REQUIRE(reply->at);
       CHECK(*reply->at > before);
       CHECK(*reply->at < steady_clock::now());
@@ -157,7 +157,7 @@ TEST_CASE("a picture and Next are clicked with a real mouse") {
     sitting.click(640, 640);
     const auto reply = sitting.reply_to(step);
     REQUIRE(reply);
-    CHECK(reply->position == 2);
+    CHECK(position_of(reply->answer) == 2);
   });
 }
 
@@ -193,8 +193,8 @@ TEST_CASE("a choice is still there after a pause") {
     for (int i = 0; i < 20; ++i) CHECK_FALSE(sitting.window.attend(session::PauseStep{}));
     const auto reply = sitting.answer(answer_step(), "Return");
     REQUIRE(reply);
-    CHECK(reply->position == 3);
-    CHECK_FALSE(reply->first_position);
+    CHECK(position_of(reply->answer) == 3);
+    CHECK_FALSE(first_position_of(reply->answer));
   });
 }
 
@@ -357,7 +357,9 @@ TEST_CASE("the exploring screen does not depend on what is felt, to the last byt
 
 app::ParticipantWindowOptions with_intervals() {
   app::ParticipantWindowOptions wanted = options();
-  wanted.intervals = study::IntervalPlan{.question = "threshold_texture"};
+  wanted.ask = {.exploring = study::InContact{},
+                .planes = 2,
+                .question = study::Choose{"threshold_texture", {}}};
   wanted.stiffness_n_per_mm = 0.4;
   wanted.interval_pause = milliseconds(300);
   wanted.least_touch = {.contact_s = 0.5, .path_mm = 25.0};

@@ -64,7 +64,8 @@ std::vector<int> positions_as_answered(const Laboratory& lab, const std::string&
       store, analysis::person_keys(store, study::load_study_key(lab.in("config/study.key"))));
   std::ranges::sort(trials, {}, &record::TrialRow::answered_at);
   std::vector<int> positions;
-  for (const record::TrialRow& trial : trials) positions.push_back(trial.position.value_or(-1));
+  for (const record::TrialRow& trial : trials)
+    positions.push_back(position_of(trial.answer).value_or(-1));
   return positions;
 }
 

@@ -10,7 +10,9 @@
 #include "app/windows/participant/screen.hpp"
 #include "protocols/identification/study/identification.hpp"
 #include "study/languages.hpp"
+#include "study/protocol.hpp"
 #include "support/catch.hpp"
+#include "windows/drawn_screen.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -18,6 +20,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -25,130 +28,6 @@
 
 namespace touchtrial {
 namespace {
-
-/// Square pictures of one size.
-class Squares final : public app::PictureShelf {
- public:
-  explicit Squares(double side_mm) : side_mm_(side_mm) {}
-  [[nodiscard]] Vec2 size_mm(const std::string& /*label*/) const override {
-    return {side_mm_, side_mm_};
-  }
-  [[nodiscard]] void* texture(const std::string& /*label*/, int /*w*/, int /*h*/) override {
-    return nullptr;
-  }
-
- private:
-  double side_mm_;
-};
-
-const app::Words& words_in(const std::string& language) {
-  static std::map<std::string, app::Words> all;
-  const auto [place, is_new] = all.try_emplace(language);
-  if (is_new) place->second = app::words_of(study::language_of(language).texts);
-  return place->second;
-}
-
-/// Dear ImGui without a window or a graphics card.
-class Paper {
- public:
-  explicit Paper(Vec2 size, double text_scale = 1.0, const std::set<char32_t>& letters = {})
-      : size_(size), context_(ImGui::CreateContext()) {
-    ImGui::SetCurrentContext(context_);
-    ImGui::GetIO().IniFilename = nullptr;
-    ImGui::GetIO().DisplaySize = {static_cast<float>(size.x), static_cast<float>(size.y)};
-    fonts_ = app::load_participant_fonts(text_scale * app::design_unit(size), letters);
-  }
-  ~Paper() { ImGui::DestroyContext(context_); }
-  Paper(const Paper&) = delete;
-  Paper& operator=(const Paper&) = delete;
-
-  [[nodiscard]] app::Canvas draw(app::Screen& screen, bool high_contrast = false) const {
-    ImGui::SetCurrentContext(context_);
-    ImGui::NewFrame();
-    app::Canvas canvas(*ImGui::GetBackgroundDrawList(), fonts_, size_, screen.attention(),
-                       high_contrast);
-    screen.draw(canvas);
-    ImGui::EndFrame();
-    return canvas;
-  }
-  [[nodiscard]] Vec2 size() const noexcept { return size_; }
-
- private:
-  Vec2 size_;
-  ImGuiContext* context_;
-  app::Fonts fonts_;
-};
-
-app::InputEvent key(app::Key which, int digit = 0) {
-  return {.key = which, .digit = digit};
-}
-
-/// A screen on paper, with what it is drawn from.
-struct Drawn {
-  explicit Drawn(const session::Step& step, const std::string& language = "en",
-                 const std::vector<std::string>& labels = {})
-      : context{.words = &words_in(language),
-                .language = language,
-                .shelf = &shelf,
-                .glass = &glass},
-        screen(app::screen_for(step, context, labels)) {}
-  [[nodiscard]] app::Canvas draw() { return paper.draw(*screen); }
-  std::optional<session::StepReply> press(app::Key which, int digit = 0) {
-    std::optional<session::StepReply> reply = screen->take(key(which, digit));
-    static_cast<void>(draw());
-    return reply;
-  }
-  /// Types letters.
-  void write(const std::u32string& letters) {
-    for (const char32_t letter : letters) {
-      app::InputEvent event{.kind = app::InputEvent::Kind::letter, .letter = letter};
-      CHECK_FALSE(screen->take(event));
-    }
-  }
-
-  Paper paper{{1280.0, 720.0}};
-  Squares shelf{51.2};
-  app::Glass glass{0.27, true};
-  app::ScreenContext context;
-  std::shared_ptr<app::Screen> screen;
-};
-
-bool lies_inside(const app::Box& inner, const app::Box& outer) {
-  constexpr double kRounding = 1.5;
-  return inner.x >= outer.x - kRounding && inner.y >= outer.y - kRounding &&
-         inner.right() <= outer.right() + kRounding && inner.bottom() <= outer.bottom() + kRounding;
-}
-
-bool overlap(const app::Box& a, const app::Box& b) {
-  constexpr double kRounding = 1.5;
-  return a.x + kRounding < b.right() && b.x + kRounding < a.right() &&
-         a.y + kRounding < b.bottom() && b.y + kRounding < a.bottom();
-}
-
-/// \return faults of a picture, one line each; empty if there are none
-std::string faults_of(const app::Canvas& canvas) {
-  std::string faults;
-  const app::Box all = {0.0, 0.0, canvas.size().x, canvas.size().y};
-  const std::vector<app::PlacedText>& texts = canvas.texts();
-  for (std::size_t i = 0; i < texts.size(); ++i) {
-    if (!lies_inside(texts[i].box, all)) faults += "off the screen: " + texts[i].text + "\n";
-    if (!lies_inside(texts[i].box, texts[i].room)) faults += "clipped: " + texts[i].text + "\n";
-    for (std::size_t j = 0; j < i; ++j) {
-      if (overlap(texts[i].box, texts[j].box)) {
-        faults += "'" + texts[i].text + "' lies over '" + texts[j].text + "'\n";
-      }
-    }
-  }
-  if (!canvas.missing().empty()) faults += "a letter that no font has\n";
-  const std::vector<app::Target>& targets = canvas.targets();
-  for (std::size_t i = 0; i < targets.size(); ++i) {
-    if (!lies_inside(targets[i].box, all)) faults += "a button is off the screen\n";
-    for (std::size_t j = 0; j < i; ++j) {
-      if (overlap(targets[i].box, targets[j].box)) faults += "two buttons overlap\n";
-    }
-  }
-  return faults;
-}
 
 study::Question choice(int options) {
   study::Question question{"hand", study::QuestionKind::choice, {}, {}, true};
@@ -218,21 +97,14 @@ void check_all_pages(const Paper& paper, app::Screen& screen) {
   }
 }
 
-/// The texts of a language's files, and of the questions in this file.
-std::vector<std::string> all_texts(const std::string& language) {
-  std::vector<std::string> texts = {"≤≥"};
-  for (const auto& [section, parts] : study::language_of(language).texts) {
-    for (const auto& [key, text] : parts) texts.push_back(text);
-  }
-  return texts;
-}
-
 /// A study with every page of instructions.
 study::Study full_study(const std::string& language) {
   study::Study study;
   study.protocol = &study::identification::comparison();
+  study.task = study.protocol->read(std::nullopt);
   study.classes.resize(5);
   study.trials.practice = 5;
+  study.practice.classes.resize(2);
   study.session.language = language;
   study.session.confidence_levels = 5;
   return study;
@@ -292,8 +164,11 @@ std::vector<session::Step> steps_with_intervals() {
   for (const char* question : {"threshold_texture", "threshold_stronger", "threshold_coarser",
                                "threshold_odd", "threshold_same"}) {
     for (const study::Sight sight : {study::Sight::curtain, study::Sight::blindfold}) {
-      steps.push_back(session::AnswerStep{
-          .trial = 2, .of = 60, .confidence_levels = 5, .question = question, .sight = sight});
+      steps.push_back(session::AnswerStep{.trial = 2,
+                                          .of = 60,
+                                          .confidence_levels = 5,
+                                          .question = study::Choose{question, {}},
+                                          .sight = sight});
     }
   }
   return steps;
@@ -310,15 +185,16 @@ TEST_CASE("all screens of trials with several planes can be read, in all languag
   const Paper paper(size, text_scale, app::letters_in(all_texts(language)));
   Squares shelf(50.0);
   const app::Glass glass = {0.27, true};
-  study::IntervalPlan plan;
-  plan.count = 3;
-  plan.feedback = feedback;
+  const study::Ask ask{.exploring = study::InContact{},
+                       .planes = 3,
+                       .question = study::Choose{"threshold_odd", {}},
+                       .feedback = feedback};
   const app::ScreenContext context = {.words = &words_in(language),
                                       .language = language,
                                       .mouse = mouse,
                                       .shelf = &shelf,
                                       .glass = &glass,
-                                      .intervals = &plan};
+                                      .ask = ask};
   for (const session::Step& step : steps_with_intervals()) {
     for (const std::vector<std::string>& labels :
          {std::vector<std::string>{"first", "second", "third"},
@@ -397,12 +273,6 @@ TEST_CASE("a page shows its pictures beside the text, and bold words without the
   const double bold = width_of_body("Title\n\n**words**");
   CHECK(bold > plain);
   CHECK(bold < 1.5 * plain);
-}
-
-bool shows(const app::Canvas& canvas, const std::string& part) {
-  return std::ranges::any_of(canvas.texts(), [&](const app::PlacedText& placed) {
-    return placed.text.find(part) != std::string::npos;
-  });
 }
 
 TEST_CASE("pictures claim a scale only on a screen whose size is known") {
@@ -538,7 +408,8 @@ struct Asked : Drawn {
 };
 
 const session::AnswerStep kPictures{.trial = 1, .of = 25};
-const session::AnswerStep kWords{.trial = 1, .of = 60, .question = "threshold_odd"};
+const session::AnswerStep kWords{
+    .trial = 1, .of = 60, .question = study::Choose{"threshold_odd", {}}};
 const std::vector<std::string> kThree = {"first", "second", "third"};
 
 TEST_CASE("an answer needs a choice that is there and Next, and can be changed once") {
@@ -559,8 +430,8 @@ TEST_CASE("an answer needs a choice that is there and Next, and can be changed o
   }
   const auto reply = asked.press(app::Key::enter);
   REQUIRE(reply);
-  CHECK(reply->position == (changes ? 2 : 0));
-  CHECK(reply->first_position == (changes ? std::optional(0) : std::nullopt));
+  CHECK(position_of(reply->answer) == (changes ? 2 : 0));
+  CHECK(first_position_of(reply->answer) == (changes ? std::optional(0) : std::nullopt));
   CHECK_FALSE(asked.press(app::Key::enter));
 }
 
@@ -581,7 +452,7 @@ TEST_CASE("arrows go from choice to choice, and to Next") {
   CHECK(asked.screen->attention().focus == app::kNextTarget);
   const auto reply = asked.press(app::Key::enter);
   REQUIRE(reply);
-  CHECK(reply->position == 1);
+  CHECK(position_of(reply->answer) == 1);
 }
 
 TEST_CASE("what is said before a plane goes away by itself and not by a key") {
@@ -607,7 +478,7 @@ TEST_CASE("confidence is asked after the answer, whose time is when Next was pre
   last.at = app::InputEvent::Time(std::chrono::seconds(9));
   const auto reply = asked.screen->take(last);
   REQUIRE(reply);
-  CHECK(reply->position == 1);
+  CHECK(position_of(reply->answer) == 1);
   CHECK(reply->confidence == 4);
   CHECK(reply->at == next.at);
 }
@@ -630,7 +501,7 @@ TEST_CASE("a picture and Next can be clicked; releasing the button elsewhere is 
   CHECK_FALSE(click(app::kNextTarget, {0.0, -300.0}));
   const auto reply = click(app::kNextTarget, {0.0, 0.0});
   REQUIRE(reply);
-  CHECK(reply->position == 4);
+  CHECK(position_of(reply->answer) == 4);
 }
 
 TEST_CASE("feeling again is offered only if the step allows it") {

@@ -9,6 +9,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -17,9 +18,14 @@
 namespace touchtrial {
 namespace {
 
+void give_protocol(study::Study& study, const study::Protocol& protocol) {
+  study.protocol = &protocol;
+  study.task = protocol.read(std::nullopt);
+}
+
 study::Study two_textures() {
   study::Study study;
-  study.protocol = &study::identification::classification();
+  give_protocol(study, study::identification::classification());
   study.classes = {{"bark", {}}, {"cloth", {}}};
   return study;
 }
@@ -43,10 +49,13 @@ std::vector<study::Study> every_kind(const std::string& language) {
   for (int bits = 0; bits < 32; ++bits) {
     study::Study study = two_textures();
     study.session.language = language;
-    if ((bits & 1) != 0) study.protocol = &study::identification::comparison();
+    if ((bits & 1) != 0) give_protocol(study, study::identification::comparison());
     if ((bits & 2) != 0) study.session.sight = study::Sight::blindfold;
     if ((bits & 4) != 0) study.trials.on_timeout = study::OnTimeout::no_response;
-    if ((bits & 8) != 0) study.trials.practice = 5;
+    if ((bits & 8) != 0) {
+      study.trials.practice = 5;
+      study.practice.classes = {{"felt", {}}, {"cork", {}}};
+    }
     if ((bits & 16) != 0) {
       study.session.confidence_levels = 5;
       study.session.consent_version = "2026-03";
@@ -56,11 +65,22 @@ std::vector<study::Study> every_kind(const std::string& language) {
   return studies;
 }
 
+/// Whether a protocol names the text, which the window then looks up.
+bool is_named_by_protocol(const std::string& key) {
+  return key.starts_with("threshold_") || key.starts_with("choice_") || key == "rate_title" ||
+         key.starts_with("scale_fit");
+}
+
 TEST_CASE("the window uses every text of the screens, and no other") {
   study::Texts texts = study::language_of("en").texts;
-  CHECK(app::words_of(texts).next == "Next");
+  const app::Words words = app::words_of(texts);
+  CHECK(words.next == "Next");
   for (const auto& [key, text] : study::language_of("en").texts.at("screens")) {
     INFO(key);
+    if (is_named_by_protocol(key)) {
+      CHECK(app::title_of(words, key) == text);
+      continue;
+    }
     study::Texts without = texts;
     without.at("screens").erase(key);
     CHECK_THROWS_AS(app::words_of(without), std::out_of_range);
@@ -172,15 +192,15 @@ TEST_CASE("instructions of trials with several planes hold their numbers and the
     CAPTURE(language);
     const app::Words words = app::words_of(study::language_of(code).texts);
     for (const study::Study& study : every_kind_with_intervals(language)) {
-      const study::IntervalPlan plan = study.protocol->interval_plan(study).value();
+      const study::Ask ask = study::ask_of(study);
       const session::SessionTexts texts = app::session_texts(study);
       CHECK(texts.instructions.size() == 7);
       const std::string text = all_of(texts.instructions);
       CHECK(text.find_first_of("{}") == std::string::npos);
-      CHECK(text.find(app::title_of(words, plan.question)) != std::string::npos);
-      CHECK(app::title_of(words, plan.question) != words.answer_title);
+      CHECK(text.find(app::title_of(words, ask.title())) != std::string::npos);
+      CHECK(app::title_of(words, ask.title()) != words.answer_title);
       for (const std::string& number :
-           {std::to_string(plan.count), std::string("15"),
+           {std::to_string(ask.planes), std::string("15"),
             std::string(study::has_decimal_comma(code) ? "2,5" : "2.5")}) {
         CHECK(text.find(number) != std::string::npos);
       }
@@ -213,6 +233,18 @@ TEST_CASE("a study's own instructions replace the program's in their language on
   CHECK(app::session_texts(study).instructions.size() > 1);
   study.session.language = "de";
   CHECK(app::session_texts(study).instructions == std::vector<std::string>{"Nur das, {limit}."});
+}
+
+TEST_CASE("a protocol of which the texts have no page needs the study's own instructions") {
+  study::Study study = two_textures();
+  study::Protocol other = study::identification::classification();
+  other.name = "presence";
+  give_protocol(study, other);
+  CHECK_THROWS_WITH(app::session_texts(study),
+                    holds_text("no instructions presence") && holds_text("/session/instructions"));
+  study.session.instructions["en"] = {"Say whether there was a texture."};
+  CHECK(app::session_texts(study).instructions ==
+        std::vector<std::string>{"Say whether there was a texture."});
 }
 
 TEST_CASE("a study replaces one page of the instructions by its own") {

@@ -28,25 +28,16 @@ struct OptionalColumn {
   DataCell (*value)(const BidsPerson&);
 };
 
-DataCell text_or_nothing(const std::optional<std::string>& text) {
-  if (!text) return std::monostate{};
-  return *text;
-}
-
 constexpr std::array<OptionalColumn, 5> kOptionalColumns{{
-    {"age_band", [](const BidsPerson& of) { return text_or_nothing(of.age_band); }},
-    {"sex", [](const BidsPerson& of) { return text_or_nothing(of.sex); }},
+    {"age_band", [](const BidsPerson& of) { return or_nothing(of.age_band); }},
+    {"sex", [](const BidsPerson& of) { return or_nothing(of.sex); }},
     {"handedness",
      [](const BidsPerson& of) -> DataCell {
        if (!of.handedness_score) return std::monostate{};
        return handedness_of(*of.handedness_score);
      }},
-    {"handedness_score",
-     [](const BidsPerson& of) -> DataCell {
-       if (!of.handedness_score) return std::monostate{};
-       return *of.handedness_score;
-     }},
-    {"consent_version", [](const BidsPerson& of) { return text_or_nothing(of.consent_version); }},
+    {"handedness_score", [](const BidsPerson& of) { return or_nothing(of.handedness_score); }},
+    {"consent_version", [](const BidsPerson& of) { return or_nothing(of.consent_version); }},
 }};
 
 /// Adds the column unless all its values are missing.

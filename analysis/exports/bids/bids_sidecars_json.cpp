@@ -36,7 +36,7 @@ std::string stamped(const std::string& text, bool simulated) {
 void put_columns(Json& object, const std::vector<std::string>& columns) {
   for (const std::string& column : columns) {
     if (column == "participant_id" || column == "session_id") continue;
-    const ColumnMeaning& meaning = meaning_of(column);
+    const ColumnMeaning meaning = meaning_of(column);
     Json described{{"Description", meaning.description}};
     put_if_given(described, "Units", meaning.unit);
     for (const auto& [value, means] : meaning.levels) described["Levels"][value] = means;
@@ -55,8 +55,11 @@ std::string task_description(const DatasetSource& study) {
   }
   return fmt::format(
       "Each trial presents a texture through a force-feedback device, without anything to see of "
-      "it; the participant explores it and then says which of {} textures it was. Protocol: {}.",
-      commitment.positions, commitment.protocol);
+      "it; the participant explores it and then {}. Protocol: {}.",
+      commitment.positions > 0
+          ? fmt::format("says which of {} textures it was", commitment.positions)
+          : "rates it",
+      commitment.protocol);
 }
 
 /// The study's own instructions, or the name of the program's instructions that it uses.

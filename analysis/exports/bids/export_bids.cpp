@@ -95,7 +95,7 @@ bool is_shown(const TrialColumn& column, bool unblinded) {
 }
 
 DataCell stimulus_file(const TrialView& trial) {
-  if (!trial.outcome->has_stimulus()) return std::monostate{};
+  if (!trial.outcome->has_stimulus) return std::monostate{};
   const study::StimulusIndex& shown = trial.outcome->stimulus;
   return stimulus_name(trial.study->design, shown.class_index, shown.exemplar);
 }

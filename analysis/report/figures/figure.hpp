@@ -15,6 +15,7 @@ struct Figure {
   std::string script;   ///< for gnuplot, without terminal and output
   double width_cm = 16.0;
   double height_cm = 9.0;
+  std::string section{};  ///< id of the section or subheading below which it stands; empty: no page
 };
 
 enum class FigureFormat { svg, pdf };

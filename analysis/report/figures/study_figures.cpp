@@ -213,7 +213,7 @@ std::optional<Figure> flow_figure(const StudyHead& report) {
   return figure;
 }
 
-std::optional<Figure> servo_figure(const StudyHead& report) {
+std::optional<Figure> servo_figure(const StudyHead& report, const std::string& section) {
   const std::vector<ServoTrial>& trials = report.collection.servo_trials;
   if (trials.empty()) return {};
   const std::vector<std::vector<double>> rows = rows_of(trials);
@@ -233,7 +233,7 @@ std::optional<Figure> servo_figure(const StudyHead& report) {
     entries.push_back(mark_entry(mark, series_colour(colour), name));
   }
   const Legend legend(sheet, margins.left_cm, entries);
-  Figure figure = figure_on(sheet, "servo-lateness");
+  Figure figure = figure_on(sheet, "servo-lateness", {}, section);
   const std::size_t together = trials_together(trials.size());
   figure.caption = stamped(
       report.simulated,

@@ -10,10 +10,12 @@
 
 namespace touchtrial::analysis {
 
-/// Participants from enrolment to analysis.
+/// Participants from enrolment to analysis. For papers: a page shows this as text.
 [[nodiscard]] std::optional<Figure> flow_figure(const StudyHead& report);
 /// The servo's lateness; nothing for studies in virtual time.
-[[nodiscard]] std::optional<Figure> servo_figure(const StudyHead& report);
+/// \param section  Figure::section
+[[nodiscard]] std::optional<Figure> servo_figure(const StudyHead& report,
+                                                 const std::string& section);
 
 /// Stamps the right edges with upright text below SIMULATED, where every figure leaves room.
 /// \param stamp  empty: leaves the figures as they are

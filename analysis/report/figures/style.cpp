@@ -112,13 +112,14 @@ std::string hexadecimal(Rgb colour) {
   return fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue);
 }
 
-Figure figure_on(const Sheet& sheet, std::string id, std::string alt) {
+Figure figure_on(const Sheet& sheet, std::string id, std::string alt, std::string section) {
   return {.id = std::move(id),
           .caption = {},
           .alt = std::move(alt),
           .script = {},
           .width_cm = sheet.width_cm,
-          .height_cm = sheet.height_cm};
+          .height_cm = sheet.height_cm,
+          .section = std::move(section)};
 }
 
 std::string sheet_head(const Sheet& sheet) {
@@ -167,6 +168,12 @@ std::string accuracy_axis(const std::string& label) {
       gnuplot_string(label));
 }
 
+void add_bar(Rows& rows, double place, double mean, const std::optional<Interval>& interval,
+             double unit) {
+  const Interval bar = interval.value_or(Interval{mean, mean});
+  rows.push_back({place, unit * mean, unit * bar.low, unit * bar.high});
+}
+
 std::vector<double> evenly_chosen(const std::vector<double>& sorted, std::size_t most) {
   if (sorted.size() <= most) return sorted;
   std::vector<double> chosen;
@@ -176,8 +183,7 @@ std::vector<double> evenly_chosen(const std::vector<double>& sorted, std::size_t
   return chosen;
 }
 
-void add_dots(std::vector<std::vector<double>>& rows, double x, double width,
-              const std::vector<double>& sorted) {
+void add_dots(Rows& rows, double x, double width, const std::vector<double>& sorted) {
   constexpr double kGoldenSection = 0.618033988749895;
   const std::vector<double> chosen = evenly_chosen(sorted, kMostDots);
   for (std::size_t i = 0; i < chosen.size(); ++i) {

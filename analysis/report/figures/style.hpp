@@ -56,7 +56,9 @@ struct Margins {
 };
 
 /// A figure of the sheet's size, still without caption and script.
-[[nodiscard]] Figure figure_on(const Sheet& sheet, std::string id, std::string alt = {});
+/// \param section  Figure::section
+[[nodiscard]] Figure figure_on(const Sheet& sheet, std::string id, std::string alt = {},
+                               std::string section = {});
 
 /// Sets borders, tics and grid, and stamps what is simulated.
 [[nodiscard]] std::string sheet_head(const Sheet& sheet);
@@ -69,9 +71,17 @@ struct Margins {
 [[nodiscard]] std::string text_on_sheet(const Sheet& sheet, const std::string& text, double left_cm,
                                         double top_cm, const std::string& more = "left");
 
+/// Numbers by row and column.
+using Rows = std::vector<std::vector<double>>;
+
 /// "$name << EOD .." with rows of numbers; those not finite become "NaN", which gnuplot omits.
 [[nodiscard]] std::string data_block(const std::string& name,
                                      std::span<const std::vector<double>> rows);
+
+/// Adds a row for a mark with a bar: its place, and a mean and the ends of its interval, which are
+/// the mean itself if there is none.
+void add_bar(Rows& rows, double place, double mean, const std::optional<Interval>& interval,
+             double unit = 1.0);
 
 /// At most `most` of the values, evenly spaced in their order.
 /// \param most  >= 2
@@ -81,8 +91,7 @@ struct Margins {
 inline constexpr std::size_t kMostDots = 100;
 /// Adds a row (x, value) for each of at most kMostDots evenly chosen values. A sequence that fills
 /// intervals evenly (multiples of the golden section) spreads them around x.
-void add_dots(std::vector<std::vector<double>>& rows, double x, double width,
-              const std::vector<double>& sorted);
+void add_dots(Rows& rows, double x, double width, const std::vector<double>& sorted);
 
 /// An axis in per cent from 0 to 100, with room for whole marks at 100.
 [[nodiscard]] std::string accuracy_axis(const std::string& label);

@@ -20,6 +20,16 @@ void add_sources(const Table& table, std::vector<Source>& references) {
 
 }  // namespace
 
+std::vector<Column> columns_of(const std::vector<std::string>& titles,
+                               const std::vector<std::string>& left) {
+  std::vector<Column> columns;
+  for (const std::string& title : titles) {
+    const bool is_left = columns.empty() || std::ranges::find(left, title) != left.end();
+    columns.push_back({title, is_left ? Align::left : Align::right});
+  }
+  return columns;
+}
+
 bool has_tables_or_warnings(const Section& section) {
   return std::any_of(section.blocks.begin(), section.blocks.end(), [](const Block& block) {
     return std::holds_alternative<Table>(block) || std::holds_alternative<Warnings>(block);

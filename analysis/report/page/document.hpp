@@ -28,6 +28,11 @@ struct Column {
   Align align = Align::right;
 };
 
+/// \param titles  the first one's column heads the rows, and so stands left
+/// \param left  titles of the other columns that stand left
+[[nodiscard]] std::vector<Column> columns_of(const std::vector<std::string>& titles,
+                                             const std::vector<std::string>& left = {});
+
 struct Cell {
   std::string text;
   bool strong = false;  ///< emphasised, for example the correct answers in a confusion matrix
@@ -47,10 +52,11 @@ struct Table {
 };
 
 struct Picture {
-  std::string id;       ///< unique; characters [a-z0-9-]
-  std::string caption;  ///< with its stamp, if any
-  std::string alt;      ///< what it shows, in words
-  std::string svg;      ///< a whole SVG file; empty if it could not be drawn
+  std::string id;         ///< unique; characters [a-z0-9-]
+  std::string caption;    ///< with its stamp, if any
+  std::string alt;        ///< what it shows, in words
+  std::string svg;        ///< a whole SVG file; empty if it could not be drawn
+  std::string section{};  ///< id of the section or subheading below which framed_document puts it
 };
 
 struct Subheading {

@@ -137,7 +137,8 @@ DrawnFigures draw_report_figures(const std::vector<Figure>& figures) {
     }
   }
   for (std::size_t i = 0; i < figures.size(); ++i) {
-    drawn.pictures.push_back({figures[i].id, figures[i].caption, figures[i].alt, svg[i]});
+    const Figure& figure = figures[i];
+    drawn.pictures.push_back({figure.id, figure.caption, figure.alt, svg[i], figure.section});
   }
   return drawn;
 }

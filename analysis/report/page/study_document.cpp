@@ -63,7 +63,8 @@ std::vector<std::string> banners_of(const StudyHead& report, const Provenance& p
   return banners;
 }
 
-Definitions header_of(const StudyHead& report, const Provenance& provenance, bool figures_missing) {
+Definitions header_of(const StudyHead& report, const Provenance& provenance,
+                      const Pictures& pictures) {
   Definitions header;
   header.entries = {{"protocol", report.protocol},
                     {"participants", std::to_string(report.participants)},
@@ -71,7 +72,7 @@ Definitions header_of(const StudyHead& report, const Provenance& provenance, boo
                     {"textures", listed(report.classes, " and ")}};
   const Definitions evidence = evidence_header(provenance);
   header.entries.insert(header.entries.end(), evidence.entries.begin(), evidence.entries.end());
-  if (figures_missing) {
+  if (std::ranges::any_of(pictures, &std::string::empty, &Picture::svg)) {
     header.entries.emplace_back(
         "figures",
         "Figures were not drawn: gnuplot could not be used, for the reason that `touchtrial "
@@ -79,6 +80,23 @@ Definitions header_of(const StudyHead& report, const Provenance& provenance, boo
         "said. Make the report again where it can; here each is described in words.");
   }
   return header;
+}
+
+/// Puts a picture below the sentences of a section or subheading, if it belongs there.
+void place(const Picture& picture, Section& section) {
+  auto at = section.blocks.begin();
+  if (section.id != picture.section) {
+    at = std::ranges::find_if(section.blocks, [&](const Block& one) {
+      const auto* heading = std::get_if<Subheading>(&one);
+      return heading != nullptr && heading->id == picture.section;
+    });
+    if (at == section.blocks.end()) return;
+    ++at;
+  }
+  at = std::find_if(at, section.blocks.end(), [](const Block& one) {
+    return std::holds_alternative<Table>(one) || std::holds_alternative<Subheading>(one);
+  });
+  section.blocks.insert(at, picture);
 }
 
 }  // namespace
@@ -127,12 +145,12 @@ Section warnings_section(const std::vector<std::string>& warnings) {
 }
 
 Document framed_document(const StudyHead& head, Section headline, std::vector<Section> results,
-                         const Provenance& provenance, bool figures_missing) {
+                         const Provenance& provenance, const Pictures& pictures) {
   Document document;
   document.title = "Report of the study " + head.study;
   document.stamp = joined(head.simulated ? "SIMULATED" : "", further_stamp(head.pilot, provenance));
   document.banners = banners_of(head, provenance);
-  document.header = header_of(head, provenance, figures_missing);
+  document.header = header_of(head, provenance, pictures);
   std::vector<Block> verdict = verdict_blocks(head);
   headline.blocks.insert(headline.blocks.begin(), std::make_move_iterator(verdict.begin()),
                          std::make_move_iterator(verdict.end()));
@@ -144,6 +162,9 @@ Document framed_document(const StudyHead& head, Section headline, std::vector<Se
                                    registration_section(head.registration)};
   std::ranges::move(results, std::back_inserter(sections));
   say_unadjusted(head.looks, sections);
+  for (const Picture& picture : pictures) {
+    for (Section& section : sections) place(picture, section);
+  }
   for (Section& section : sections) {
     if (!section.blocks.empty()) document.sections.push_back(std::move(section));
   }

@@ -34,7 +34,7 @@ struct Provenance {
 /// UNVERIFIED DEVICE that hold, or empty.
 [[nodiscard]] std::string further_stamp(bool pilot, const Provenance& provenance);
 
-/// Pictures for a report. The id of a picture tells to which section it belongs (docs/report.md).
+/// Pictures for a report.
 using Pictures = std::vector<Picture>;
 
 /// The frame of every protocol's report: title, banners, header, and the sections on warnings,
@@ -44,10 +44,11 @@ using Pictures = std::vector<Picture>;
 ///   registered question
 /// \param results  the protocol's other sections, in their order; sections without blocks are left
 ///   out
-/// \param figures_missing  whether the header says that figures could not be drawn
+/// \param pictures  in their order; each stands before the first table or subheading of its section,
+///   or of what is below its subheading. One whose section is none of these is left out.
 [[nodiscard]] Document framed_document(const StudyHead& head, Section headline,
                                        std::vector<Section> results, const Provenance& provenance,
-                                       bool figures_missing = false);
+                                       const Pictures& pictures = {});
 
 /// The report before unblinding: how data collection proceeds, and nothing about outcomes.
 [[nodiscard]] Document quality_document(const QualityReport& report, const Provenance& provenance);

@@ -10,6 +10,8 @@
 namespace touchtrial::analysis {
 
 inline constexpr const char* kNoFigure = "–";
+/// The usual level of significance. Only the wording depends on it.
+inline constexpr double kUsualLevel = 0.05;
 
 /// A share as a percentage: "77.0%" for 0.77.
 [[nodiscard]] std::string share_figure(std::optional<double> share);

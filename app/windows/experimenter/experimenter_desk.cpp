@@ -391,8 +391,9 @@ std::optional<session::StepReply> SpokenAnswers::attend(const session::Step& ste
   if (!spoken) return std::nullopt;
   session::StepReply reply;
   reply.at = std::chrono::steady_clock::now();
-  reply.position = positions_.at(spoken->label);
-  if (spoken->first) reply.first_position = positions_.at(*spoken->first);
+  Chosen chosen{positions_.at(spoken->label)};
+  if (spoken->first) chosen.first_position = positions_.at(*spoken->first);
+  reply.answer = chosen;
   reply.confidence = spoken->confidence;
   return reply;
 }

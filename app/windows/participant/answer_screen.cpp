@@ -9,7 +9,6 @@
 namespace touchtrial::app {
 namespace {
 
-constexpr int kFeelAgain = 102;
 constexpr double kBadge = 40.0;  ///< height of the number below a picture
 constexpr double kBadgeSide = 34.0;
 constexpr double kWordWidth = 300.0;  ///< of a choice that is a word
@@ -40,15 +39,13 @@ std::string AnswerScreen::name_of(int position) const {
 
 void AnswerScreen::paint(Canvas& canvas) {
   const Words& words = *context_.words;
-  draw_progress(canvas, {step_.trial - 1, step_.of,
-                         with_numbers(step_.practice ? words.practice_of : words.trial_of,
-                                      {{"trial", step_.trial}, {"of", step_.of}})});
+  draw_progress(canvas, progress_of(words, step_.trial, step_.of, step_.practice));
   if (answered_at_) return paint_confidence(canvas);
   const bool spoken = step_.sight == study::Sight::blindfold;
   const std::string& saying = has_words() ? words.answer_spoken_choice : words.answer_spoken_text;
   const std::string note = step_.time_is_up ? words.time_is_up : (spoken ? saying : "");
   const std::string& which = spoken ? words.answer_spoken_title : words.answer_title;
-  const Box area = draw_heading(canvas, has_words() ? title_of(words, step_.question) : which, note,
+  const Box area = draw_heading(canvas, has_words() ? title_of(words, title()) : which, note,
                                 step_.time_is_up ? tone::kWarn : tone::kQuiet);
   if (spoken) {
     paint_names(canvas, area);
@@ -58,7 +55,7 @@ void AnswerScreen::paint(Canvas& canvas) {
     paint_pictures(canvas, area);
   }
   std::vector<FooterButton> buttons;
-  if (step_.may_explore_again) buttons.push_back({kFeelAgain, words.feel_again, false});
+  if (step_.may_explore_again) buttons.push_back({kFeelAgainTarget, words.feel_again, false});
   // A spoken answer needs no button.
   if (!spoken || chosen_ >= 0) buttons.push_back({kNextTarget, words.next, true, chosen_ >= 0});
   draw_footer(canvas, buttons);
@@ -208,7 +205,7 @@ std::optional<session::StepReply> AnswerScreen::activate(int id, Time at) {
     return std::nullopt;
   }
   session::StepReply reply;
-  if (id == kFeelAgain) {
+  if (id == kFeelAgainTarget) {
     reply.explore_again = true;
     return reply;
   }
@@ -218,8 +215,7 @@ std::optional<session::StepReply> AnswerScreen::activate(int id, Time at) {
     return std::nullopt;
   }
   reply.at = answered_at_.value_or(at);
-  reply.position = chosen_;
-  reply.first_position = first_;
+  reply.answer = Chosen{chosen_, first_};
   if (answered_at_) reply.confidence = confidence_;
   return reply;
 }
@@ -237,7 +233,9 @@ void FeedbackScreen::paint(Canvas& canvas) {
   const Words& words = *context_.words;
   const bool correct = step_.answered == step_.correct;
   const std::string title = correct ? words.correct_title : words.wrong_title;
-  if (context_.intervals != nullptr) {
+  const auto* const choose = std::get_if<study::Choose>(&context_.ask.question);
+  const bool has_words = choose != nullptr && choose->has_words();
+  if (has_words) {
     draw_card(canvas, title,
               filled(words.right_answer, {{"label", choice_text(words, name_of(step_.correct))}}));
   } else if (context_.sight == study::Sight::blindfold) {

@@ -35,7 +35,13 @@ class AnswerScreen final : public Screen {
   [[nodiscard]] bool is_fixed() const noexcept { return first_.has_value(); }
   [[nodiscard]] int count() const noexcept { return static_cast<int>(labels_.size()); }
   [[nodiscard]] std::string hint() const;
-  [[nodiscard]] bool has_words() const noexcept { return !step_.question.empty(); }
+  [[nodiscard]] bool has_words() const noexcept {
+    return std::get<study::Choose>(step_.question).has_words();
+  }
+  /// Key of the question's title; empty: which picture it is.
+  [[nodiscard]] const std::string& title() const noexcept {
+    return std::get<study::Choose>(step_.question).title;
+  }
   [[nodiscard]] std::string name_of(int position) const;
 
   session::AnswerStep step_;

@@ -37,6 +37,9 @@ constexpr std::array<std::pair<int, Key>, 6> kPadKeys = {{
     {GLFW_GAMEPAD_BUTTON_B, Key::space},
 }};
 
+constexpr std::chrono::milliseconds kUntilRepeat{400};
+constexpr std::chrono::milliseconds kBetweenRepeats{40};
+
 }  // namespace
 
 InputEvent event_of_key(int key, int action, int modifiers) {
@@ -44,7 +47,8 @@ InputEvent event_of_key(int key, int action, int modifiers) {
   event.at = std::chrono::steady_clock::now();
   if (action == GLFW_RELEASE) return event;
   event.kind = action == GLFW_REPEAT ? InputEvent::Kind::repeat : InputEvent::Kind::key;
-  event.key = key_of(key, (modifiers & GLFW_MOD_SHIFT) != 0);
+  event.shift = (modifiers & GLFW_MOD_SHIFT) != 0;
+  event.key = key_of(key, event.shift);
   if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) {
     event.key = Key::digit;
     event.digit = key - GLFW_KEY_0;
@@ -55,18 +59,26 @@ InputEvent event_of_key(int key, int action, int modifiers) {
   return event;
 }
 
-void Gamepads::poll(const std::function<void(Key)>& tell) {
+void Gamepads::poll(const std::function<void(Key, InputEvent::Kind)>& tell) {
+  const InputEvent::Time now = std::chrono::steady_clock::now();
   for (int pad = 0; pad < kPads; ++pad) {
     GLFWgamepadstate state;
     if (glfwJoystickIsGamepad(pad) == GLFW_FALSE ||
         glfwGetGamepadState(pad, &state) == GLFW_FALSE) {
-      held_[pad].fill(false);
+      repeats_[pad].fill(std::nullopt);
       continue;
     }
     for (std::size_t i = 0; i < kPadKeys.size(); ++i) {
-      const bool held = state.buttons[kPadKeys[i].first] == GLFW_PRESS;
-      if (held && !held_[pad][i]) tell(kPadKeys[i].second);
-      held_[pad][i] = held;
+      std::optional<InputEvent::Time>& repeats = repeats_[pad][i];
+      if (state.buttons[kPadKeys[i].first] != GLFW_PRESS) {
+        repeats.reset();
+      } else if (!repeats) {
+        tell(kPadKeys[i].second, InputEvent::Kind::key);
+        repeats = now + kUntilRepeat;
+      } else if (now >= *repeats) {
+        tell(kPadKeys[i].second, InputEvent::Kind::repeat);
+        repeats = now + kBetweenRepeats;
+      }
     }
   }
 }

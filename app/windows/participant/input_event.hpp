@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <functional>
+#include <optional>
 
 namespace touchtrial::app {
 
@@ -41,6 +42,7 @@ struct InputEvent {
   Time at{};  ///< when it arrived
   Key key = Key::none;
   int digit = 0;        ///< 0 to 9
+  bool shift = false;   ///< held down with the key
   char32_t letter = 0;  ///< Unicode
   Vec2 position{};      ///< of the pointer, window units from the top-left corner
 };
@@ -50,19 +52,21 @@ struct InputEvent {
 /// \return an event of Key::none for a key without meaning or a key that is released
 [[nodiscard]] InputEvent event_of_key(int key, int action, int modifiers);
 
-/// Turns buttons of gamepads into pressed keys: the cross moves, A is Enter, B is the space bar.
+/// Turns buttons of gamepads into keys: the cross moves, A is Enter, B is the space bar. A button
+/// that is held down repeats, as a key does.
 /// GLFW has no events for gamepads, so the time of a key is that of the poll. Belongs to the main
 /// thread.
 class Gamepads {
  public:
   /// Reads all gamepads.
-  /// \param tell  called for each button that was pressed since the last poll
-  void poll(const std::function<void(Key)>& tell);
+  /// \param tell  called for each button that was pressed since the last poll, or is to repeat
+  void poll(const std::function<void(Key, InputEvent::Kind)>& tell);
 
  private:
   static constexpr int kPads = 16;
   static constexpr int kButtons = 6;
-  std::array<std::array<bool, kButtons>, kPads> held_{};
+  /// When the buttons that are held down repeat.
+  std::array<std::array<std::optional<InputEvent::Time>, kButtons>, kPads> repeats_{};
 };
 
 }  // namespace touchtrial::app

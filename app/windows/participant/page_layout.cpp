@@ -37,6 +37,12 @@ Box content_area(const Canvas& canvas) {
 
 }  // namespace
 
+Progress progress_of(const Words& words, int trial, int of, bool practice) {
+  return {
+      trial - 1, of,
+      with_numbers(practice ? words.practice_of : words.trial_of, {{"trial", trial}, {"of", of}})};
+}
+
 void draw_progress(Canvas& canvas, const Progress& progress) {
   if (progress.of <= 0) return;
   const double unit = canvas.unit();

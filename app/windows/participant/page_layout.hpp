@@ -17,6 +17,9 @@ struct Progress {
   std::string text;
 };
 
+/// Before a trial is answered.
+/// \param trial  from 1 to `of`
+[[nodiscard]] Progress progress_of(const Words& words, int trial, int of, bool practice);
 void draw_progress(Canvas& canvas, const Progress& progress);
 
 /// What a card shows beside its text.

@@ -95,6 +95,9 @@ std::set<char32_t> letters_to_show(const ParticipantWindowOptions& options) {
     add(question.text);
     std::ranges::for_each(question.options, add);
   }
+  for (const study::Scale& scale : options.ask.scales()) {
+    texts.insert(texts.end(), {scale.text, scale.low, scale.high});
+  }
   for (const auto& [label, picture] : options.pictures) texts.push_back(label);
   std::set<char32_t> letters = letters_in(texts);
   require_letters(letters);
@@ -178,7 +181,7 @@ struct ParticipantWindow::State {
                options.pointer != nullptr,
                &shelf,
                &glass,
-               options.intervals ? &*options.intervals : nullptr};
+               options.ask};
     glfwSetWindowUserPointer(window, this);
     take_callbacks();
     tell_surface();
@@ -415,20 +418,25 @@ struct ParticipantWindow::State {
     }
   }
 
+  /// What the hand must do for a plane's clock to run; null: planes have none.
+  [[nodiscard]] const study::InContact* clock() const noexcept {
+    return std::get_if<study::InContact>(&options.ask.exploring);
+  }
+
   /// Counts how long the hand has explored an interval as asked for.
   void count_explored(double press_n, double seconds, Vec2 way_mm) noexcept {
     if (!has_lifted && !interval->hand_off) return;
     constexpr double kSmoothS = 0.005;  ///< positions have steps
     const double share = std::min(1.0, seconds / kSmoothS);
     velocity_mm_s = velocity_mm_s + share * ((1.0 / seconds) * way_mm - velocity_mm_s);
-    const study::IntervalWindows& windows = options.intervals->windows;
+    const study::HandRange& range = clock()->range;
     const double speed_mm_s = norm(velocity_mm_s);
     const bool counts = interval->hand_off ||
-                        (press_n >= windows.lightest_n && press_n <= windows.strongest_n &&
-                         speed_mm_s >= windows.slowest_mm_s && speed_mm_s <= windows.fastest_mm_s);
+                        (press_n >= range.lightest_n && press_n <= range.strongest_n &&
+                         speed_mm_s >= range.slowest_mm_s && speed_mm_s <= range.fastest_mm_s);
     if (!counts) return;
     explored_s += seconds;
-    explored = static_cast<int>(kExploredSteps * explored_s / options.intervals->seconds);
+    explored = static_cast<int>(kExploredSteps * explored_s / clock()->seconds);
   }
 
   [[nodiscard]] engine::ColourImage existing(std::optional<engine::ColourImage> picture) const {
@@ -520,8 +528,8 @@ ParticipantWindow::~ParticipantWindow() = default;
 void ParticipantWindow::pump(milliseconds longest) {
   State& s = *state_;
   glfwWaitEventsTimeout(std::chrono::duration<double>(longest).count());
-  s.gamepads.poll([&s](Key key) {
-    InputEvent event = State::event_now(InputEvent::Kind::key);
+  s.gamepads.poll([&s](Key key, InputEvent::Kind kind) {
+    InputEvent event = State::event_now(kind);
     event.key = key;
     // B stops forces but chooses nothing.
     if (key != Key::space || s.exploring || s.between) s.take(event);
@@ -590,7 +598,8 @@ void ParticipantWindow::show_exploring(const PlaneGeometry& plane) {
   s.has_touched = s.touches_enough();
   s.asks_for_touch = false;
   const auto* const interval = s.step ? std::get_if<session::IntervalStep>(&*s.step) : nullptr;
-  s.interval = interval != nullptr && s.options.intervals ? std::optional(*interval) : std::nullopt;
+  s.interval =
+      interval != nullptr && s.clock() != nullptr ? std::optional(*interval) : std::nullopt;
   s.has_clock = s.interval.has_value();
   s.has_lifted = s.lifted_shown = false;
   s.velocity_mm_s = {};

@@ -8,7 +8,7 @@
 #include "device/drivers/mouse/pointer_exchange.hpp"
 #include "engine/pictures/colour_image.hpp"
 #include "protocols/session/participant.hpp"
-#include "study/interval_plan.hpp"
+#include "study/ask.hpp"
 #include "study/study.hpp"
 
 #include <chrono>
@@ -41,10 +41,8 @@ struct ParticipantWindowOptions {
   bool has_several_methods = false;
   /// What must be felt before Enter ends an exploration: over all explorations of a presentation.
   study::LeastTouch least_touch{0.0, 0.0};
-  /// Of trials with several planes, each of which ends by itself; empty: a trial has one, and the
-  /// choices are pictures.
-  std::optional<study::IntervalPlan> intervals;
-  double stiffness_n_per_mm = 0.0;  ///< of the planes' wall; only needed with `intervals`
+  study::Ask ask{};                 ///< of the study's trials
+  double stiffness_n_per_mm = 0.0;  ///< of the planes' wall; only needed where planes have a clock
   /// For how long it is said which of a trial's planes comes next.
   std::chrono::milliseconds interval_pause{1000};
   /// Returns the explored device; called when each plane comes on.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <variant>
 
 namespace touchtrial::app {
 namespace {
@@ -73,101 +74,90 @@ void ScreenList::add_questions(const std::string& name,
   add_pages(name, session::QuestionStep{&*questionnaire}, leave);
 }
 
-/// Whether the device is only heard in some trials.
-bool has_hand_off(const study::Study& study) {
-  return std::ranges::any_of(study.protocol->schedule(study, {}).presentations,
-                             &study::Presentation::hand_off);
-}
-
-void add_interval_practice(ScreenList& list, const study::Study& study,
-                           const study::IntervalPlan& plan) {
-  const int of = static_cast<int>(study.protocol->practice_trials(study, {}, 1).size());
-  if (of == 0 || plan.practice_rounds == 0) return;
-  list.set_practice(true);
-  list.add("practice", session::PracticeStep{1});
-  list.add("practice-ready", session::ReadyStep{1, of, true});
-  list.add_interval("practice-interval", "practice-explore",
-                    {.trial = 1, .practice = true, .interval = 1, .of = plan.count});
-  list.add("practice-answer", session::AnswerStep{.trial = 1,
-                                                  .of = of,
-                                                  .practice = true,
-                                                  .question = plan.question,
-                                                  .sight = study.session.sight});
-  list.add("practice-right", session::FeedbackStep{0, 0});
-  list.add("practice-wrong", session::FeedbackStep{0, 1});
-  if (plan.practice_rounds > 1) list.add("practice-again", session::PracticeStep{2});
-  list.set_practice(false);
-  list.add("practice-over", session::NoticeStep{session::NoticeStep::What::practice_over});
-}
-
 /// The keys that choose and go on, to the scale of confidence.
 std::vector<InputEvent> keys_to_confidence() {
   return {pressed_key(Key::digit, 1), pressed_key(Key::enter)};
 }
 
-void add_interval_trials(ScreenList& list, const study::Study& study,
-                         const study::IntervalPlan& plan, int of) {
-  using What = session::NoticeStep::What;
-  session::IntervalStep next{.trial = 1, .interval = 1, .of = plan.count};
-  list.add("ready", session::ReadyStep{1, of, false});
-  list.add_interval("interval", "explore", next);
-  const session::AnswerStep answer{.trial = 1,
-                                   .of = of,
-                                   .confidence_levels = study.session.confidence_levels,
-                                   .question = plan.question,
-                                   .sight = study.session.sight};
-  list.add("answer", answer);
-  if (answer.confidence_levels > 0 && answer.sight != study::Sight::blindfold) {
-    list.add("confidence", answer, keys_to_confidence());
-  }
-  if (plan.feedback) {
-    list.add("right", session::FeedbackStep{0, 0});
-    list.add("wrong", session::FeedbackStep{0, 1});
-  }
-  list.add("not-explored", session::NoticeStep{What::not_explored});
-  if (!has_hand_off(study)) return;
-  next.hand_off = true;
-  list.add("hand-off", session::NoticeStep{What::hand_off});
-  list.add("hand-off-ready", session::ReadyStep{of, of, false, true});
-  list.add_interval("hand-off-interval", "hand-off-explore", next);
+/// The label of the picture that is shown with ratings; empty: none.
+/// \param class_index  practice classes follow the study's
+std::string rated_picture(const study::Study& study, const study::Ask& ask, int class_index) {
+  if (!std::holds_alternative<study::Rate>(ask.question)) return "";
+  return study::picture_of(study, {.picture = class_index});
 }
 
-void add_practice_screens(ScreenList& list, const study::Study& study) {
-  if (study.trials.practice == 0) return;
-  const int of = study.trials.practice;
-  const study::Sight sight = study.session.sight;
+/// A trial's planes, and what is said before each if there are several.
+/// \param prefix  of the screens' names
+void add_planes(ScreenList& list, const study::Ask& ask, const std::string& prefix,
+                session::IntervalStep next) {
+  if (ask.planes == 1) return list.add_plane(prefix + "explore");
+  next.of = ask.planes;
+  list.add_interval(prefix + "interval", prefix + "explore", next);
+}
+
+void add_practice(ScreenList& list, const study::Study& study, const study::Ask& ask) {
+  const study::Practice practice = study::practice_of(study);
+  const int of = static_cast<int>(practice.trials.size());
+  if (of == 0 || practice.rounds == 0) return;
   list.set_practice(true);
   list.add("practice", session::PracticeStep{1});
   list.add("practice-ready", session::ReadyStep{1, of, true});
-  list.add_plane("practice-explore");
+  add_planes(list, ask, "practice-", {.trial = 1, .practice = true});
   list.add("practice-answer",
-           session::AnswerStep{.trial = 1, .of = of, .practice = true, .sight = sight});
-  list.add("practice-right", session::FeedbackStep{0, 0});
-  list.add("practice-wrong", session::FeedbackStep{0, 1});
-  if (study.practice.rounds > 1) list.add("practice-again", session::PracticeStep{2});
+           session::AnswerStep{
+               .trial = 1,
+               .of = of,
+               .practice = true,
+               .question = ask.question,
+               .picture = rated_picture(study, ask, static_cast<int>(study.classes.size())),
+               .sight = study.session.sight});
+  if (practice.trials.front().right) {
+    list.add("practice-right", session::FeedbackStep{0, 0});
+    list.add("practice-wrong", session::FeedbackStep{0, 1});
+  }
+  if (practice.rounds > 1) list.add("practice-again", session::PracticeStep{2});
   list.set_practice(false);
   list.add("practice-over", session::NoticeStep{session::NoticeStep::What::practice_over});
 }
 
-void add_trial_screens(ScreenList& list, const study::Study& study, int of) {
+void add_trial(ScreenList& list, const study::Study& study, const study::Ask& ask, int of) {
+  const bool is_free = std::holds_alternative<study::Free>(ask.exploring);
   list.add("ready", session::ReadyStep{1, of, false});
-  list.add_plane("explore");
+  add_planes(list, ask, "", {.trial = 1});
   session::AnswerStep answer{.trial = 1,
                              .of = of,
-                             .may_explore_again = true,
-                             .confidence_levels = study.session.confidence_levels,
+                             .may_explore_again = is_free && ask.planes == 1,
+                             .confidence_levels = ask.confidence_levels,
+                             .question = ask.question,
+                             .picture = rated_picture(study, ask, 0),
                              .sight = study.session.sight};
-  const bool is_asked =
-      answer.confidence_levels > 0 && study.session.sight != study::Sight::blindfold;
   list.add("answer", answer);
-  if (is_asked) list.add("confidence", answer, keys_to_confidence());
-  if (study.trials.on_timeout == study::OnTimeout::fade) {
+  if (answer.confidence_levels > 0 && answer.sight != study::Sight::blindfold) {
+    list.add("confidence", answer, keys_to_confidence());
+  }
+  if (ask.feedback) {
+    list.add("right", session::FeedbackStep{0, 0});
+    list.add("wrong", session::FeedbackStep{0, 1});
+  }
+  if (!is_free) {
+    list.add("not-explored", session::NoticeStep{session::NoticeStep::What::not_explored});
+  } else if (study.trials.on_timeout == study::OnTimeout::fade) {
     answer.time_is_up = true;
     answer.may_explore_again = false;
     list.add("time-up", answer);
   } else {
     list.add("time-up", session::NoticeStep{session::NoticeStep::What::time_is_up});
   }
+}
+
+/// A trial in which the device is only heard, if the study has any.
+void add_hand_off(ScreenList& list, const study::Schedule& schedule, const study::Ask& ask) {
+  const auto is_heard = [](const study::Trial& trial) { return trial.place.hand_off; };
+  if (!std::ranges::any_of(schedule.trials, is_heard)) return;
+  const int of = static_cast<int>(schedule.trials.size());
+  list.add("hand-off", session::NoticeStep{session::NoticeStep::What::hand_off});
+  list.add("hand-off-ready", session::ReadyStep{of, of, false, true});
+  add_planes(list, ask, "hand-off-", {.trial = 1, .hand_off = true});
 }
 
 /// \param of  trials of a session
@@ -189,33 +179,22 @@ std::vector<PreviewScreen> preview_screens(const study::Study& study,
       "welcome", session::InstructionStep{texts.instructions},
       std::vector<std::vector<InputEvent>>(texts.instructions.size(), {pressed_key(Key::enter)}));
   list.add_questions("handedness", texts.handedness);
-  if (const auto plan = study.protocol->interval_plan(study)) {
-    const int of = static_cast<int>(study.protocol->schedule(study, {}).presentations.size());
-    add_interval_practice(list, study, *plan);
-    add_interval_trials(list, study, *plan, of);
-    add_interruptions(list, study.trials, of);
-  } else {
-    const int of = study.scored_trials() + study.trials.catch_trials;
-    add_practice_screens(list, study);
-    add_trial_screens(list, study, of);
-    add_interruptions(list, study.trials, of);
-  }
+  const study::Ask ask = study::ask_of(study);
+  const study::Schedule schedule = study::make_schedule(study, {});
+  const int of = static_cast<int>(schedule.trials.size());
+  add_practice(list, study, ask);
+  add_trial(list, study, ask, of);
+  add_hand_off(list, schedule, ask);
+  add_interruptions(list, study.trials, of);
   list.add_questions("closing", texts.closing);
   list.add("thanks", session::EndStep{});
   return list.take();
 }
 
 std::vector<std::string> preview_labels(const study::Study& study, const PreviewScreen& screen) {
+  if (screen.practice) return study::practice_of(study).labels;
   std::vector<std::string> labels;
-  if (study.protocol->interval_plan(study)) {
-    for (const study::Choice& choice : study.protocol->choices(study)) {
-      labels.push_back(choice.label);
-    }
-    return labels;
-  }
-  for (const study::StudyClass& shown : screen.practice ? study.practice.classes : study.classes) {
-    labels.push_back(shown.label);
-  }
+  for (const study::Choice& choice : study::choices_of(study)) labels.push_back(choice.label);
   return labels;
 }
 

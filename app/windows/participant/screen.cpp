@@ -50,6 +50,7 @@ std::optional<session::StepReply> Screen::take_pointer(const InputEvent& event) 
     attention_.held = under;
     attention_.focus = -1;
   }
+  if (attention_.held >= 0) drag(attention_.held, event.position);
   if (event.kind != InputEvent::Kind::released) return std::nullopt;
   const int held = std::exchange(attention_.held, -1);
   if (held < 0 || held != under) return std::nullopt;

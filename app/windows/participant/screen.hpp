@@ -6,11 +6,12 @@
 #include "app/windows/participant/input_event.hpp"
 #include "app/windows/participant/words.hpp"
 #include "protocols/session/participant.hpp"
-#include "study/interval_plan.hpp"
+#include "study/ask.hpp"
 
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace touchtrial::app {
@@ -29,8 +30,16 @@ struct ScreenContext {
   bool mouse = false;  ///< the device is a mouse
   PictureShelf* shelf = nullptr;
   const Glass* glass = nullptr;
-  /// Of trials with several planes, whose choices are words; null: a trial has one plane.
-  const study::IntervalPlan* intervals = nullptr;
+  study::Ask ask{};  ///< of the study's trials
+
+  /// Whether planes have a clock (study::InContact).
+  [[nodiscard]] bool has_clock() const noexcept {
+    return std::holds_alternative<study::InContact>(ask.exploring);
+  }
+  /// Whether trials ask for ratings.
+  [[nodiscard]] bool rates() const noexcept {
+    return std::holds_alternative<study::Rate>(ask.question);
+  }
 };
 
 class Screen {
@@ -56,6 +65,8 @@ class Screen {
   [[nodiscard]] virtual std::optional<session::StepReply> activate(int id, Time at) = 0;
   /// \return the target that Enter activates if no target has the focus; -1: none
   [[nodiscard]] virtual int default_target() const noexcept { return -1; }
+  /// Called while the mouse button holds a target: when it is pressed, moved and released.
+  virtual void drag(int /*id*/, Vec2 /*to*/) {}
   /// Handles keys that have a special meaning on this screen.
   /// \return whether the event was such a key
   virtual bool takes_key(const InputEvent& /*event*/) { return false; }
@@ -86,5 +97,6 @@ class Screen {
 /// Targets that screens have in common.
 inline constexpr int kNextTarget = 100;
 inline constexpr int kBackTarget = 101;
+inline constexpr int kFeelAgainTarget = 102;
 
 }  // namespace touchtrial::app

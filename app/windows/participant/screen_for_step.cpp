@@ -1,5 +1,6 @@
 #include "app/windows/participant/answer_screen.hpp"
 #include "app/windows/participant/page_layout.hpp"
+#include "app/windows/participant/rating_screen.hpp"
 #include "app/windows/participant/screen.hpp"
 #include "study/languages.hpp"
 
@@ -135,10 +136,8 @@ class Maker {
                 again ? words_.practice_again_text : practice_text(), "", words_.practice_start);
   }
   Made operator()(const session::ReadyStep& step) const {
-    const Progress progress{step.trial - 1, step.of,
-                            with_numbers(step.practice ? words_.practice_of : words_.trial_of,
-                                         {{"trial", step.trial}, {"of", step.of}})};
-    return note(words_.ready_title, ready_text(step), words_.ready_keys, words_.go_on, progress);
+    return note(words_.ready_title, ready_text(step), words_.ready_keys, words_.go_on,
+                progress_of(words_, step.trial, step.of, step.practice));
   }
   Made operator()(const session::IntervalStep& step) const {
     const std::string& pen = context_.mouse ? words_.interval_text_mouse : words_.interval_text;
@@ -146,6 +145,9 @@ class Maker {
                 step.hand_off ? words_.interval_text_hand_off : pen, "", "");
   }
   Made operator()(const session::AnswerStep& step) const {
+    if (std::holds_alternative<study::Rate>(step.question)) {
+      return std::make_shared<RatingScreen>(step, context_);
+    }
     return std::make_shared<AnswerScreen>(step, context_, labels_);
   }
   Made operator()(const session::FeedbackStep& step) const {
@@ -160,10 +162,7 @@ class Maker {
   Made operator()(const session::NoticeStep& step) const {
     using What = session::NoticeStep::What;
     if (step.what == What::practice_over) {
-      const bool is_told = context_.intervals != nullptr && context_.intervals->feedback;
-      return note(words_.practice_over_title,
-                  is_told ? words_.practice_over_text_feedback : words_.practice_over_text, "",
-                  words_.go_on);
+      return note(words_.practice_over_title, practice_over_text(), "", words_.go_on);
     }
     if (step.what == What::time_is_up) {
       return note(words_.no_response_title, words_.no_response_text, "", words_.go_on);
@@ -192,13 +191,19 @@ class Maker {
 
  private:
   [[nodiscard]] const std::string& practice_text() const {
-    if (context_.intervals != nullptr) return words_.practice_text_intervals;
+    if (context_.rates()) return words_.practice_text_rating;
+    if (context_.has_clock()) return words_.practice_text_intervals;
     const bool says = context_.sight == study::Sight::blindfold;
     return says ? words_.practice_text_blindfold : words_.practice_text;
   }
+  [[nodiscard]] const std::string& practice_over_text() const {
+    if (context_.rates()) return words_.practice_over_text_rating;
+    const bool is_told = context_.ask.feedback;
+    return is_told ? words_.practice_over_text_feedback : words_.practice_over_text;
+  }
   [[nodiscard]] const std::string& ready_text(const session::ReadyStep& step) const {
     if (step.hand_off) return words_.ready_text_hand_off;
-    if (context_.intervals != nullptr) {
+    if (context_.has_clock()) {
       return context_.mouse ? words_.ready_text_intervals_mouse : words_.ready_text_intervals;
     }
     return context_.mouse ? words_.ready_text_mouse : words_.ready_text;

@@ -1,7 +1,6 @@
 #include "app/windows/participant/words.hpp"
 
-#include <algorithm>
-#include <iterator>
+#include <utility>
 
 namespace touchtrial::app {
 namespace {
@@ -12,30 +11,25 @@ constexpr std::pair<const char*, std::string Words::*> kWords[] = {
 #undef TOUCHTRIAL_ENTRY
 };
 
-/// \return null if there is no such key
-const std::string* find_text(const Words& words, const std::string& key) {
-  const auto* const found =
-      std::ranges::find(kWords, key, [](const auto& entry) { return std::string(entry.first); });
-  return found == std::end(kWords) ? nullptr : &(words.*(found->second));
-}
-
 }  // namespace
 
 Words words_of(const study::Texts& texts) {
   const auto& screens = texts.at("screens");
   Words words;
   for (const auto& [key, member] : kWords) words.*member = screens.at(key);
+  words.by_key = screens;
   return words;
 }
 
 const std::string& title_of(const Words& words, const std::string& key) {
-  const std::string* const text = find_text(words, key);
-  return text != nullptr ? *text : words.answer_title;
+  if (key.empty()) return words.answer_title;
+  const auto text = words.by_key.find(key);
+  return text != words.by_key.end() ? text->second : key;
 }
 
 std::string choice_text(const Words& words, const std::string& label) {
-  const std::string* const text = find_text(words, "choice_" + label);
-  return text != nullptr ? *text : label;
+  const auto text = words.by_key.find("choice_" + label);
+  return text != words.by_key.end() ? text->second : label;
 }
 
 std::string filled(std::string text,

@@ -3,6 +3,7 @@
 
 #include "study/session_plan.hpp"
 
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,11 +26,13 @@ namespace touchtrial::app {
   TEXT(practice_text) \
   TEXT(practice_text_blindfold)  /* where answers are spoken */ \
   TEXT(practice_text_intervals)  /* where a trial has several planes */ \
+  TEXT(practice_text_rating)  /* where answers are ratings */ \
   TEXT(practice_again_text) \
   TEXT(practice_start) \
   TEXT(practice_over_title) \
   TEXT(practice_over_text) \
   TEXT(practice_over_text_feedback)  /* where answers are told in trials too */ \
+  TEXT(practice_over_text_rating) \
   TEXT(ready_title) \
   TEXT(ready_text) \
   TEXT(ready_text_mouse) \
@@ -54,19 +57,12 @@ namespace touchtrial::app {
   TEXT(answer_spoken_title) \
   TEXT(answer_spoken_text) \
   TEXT(answer_spoken_choice)  /* where choices are words */ \
-  TEXT(threshold_texture)  /* titles that a protocol names by their keys */ \
-  TEXT(threshold_stronger) \
-  TEXT(threshold_coarser) \
-  TEXT(threshold_odd) \
-  TEXT(threshold_same) \
-  TEXT(choice_first)  /* choices that are words */ \
-  TEXT(choice_second) \
-  TEXT(choice_third) \
-  TEXT(choice_same) \
-  TEXT(choice_different) \
   TEXT(time_is_up)  /* an answer is still required */ \
+  TEXT(time_is_up_rating) \
   TEXT(no_response_title) \
   TEXT(no_response_text) \
+  TEXT(rate_hint)  /* how to mark a line */ \
+  TEXT(rate_hint_points)  /* where scales are numbers */ \
   TEXT(choose_hint)  /* before the choice */ \
   TEXT(changes_once)  /* after the choice, which may be changed once */ \
   TEXT(now_fixed)  /* after the change */ \
@@ -109,6 +105,7 @@ struct Words {
 #define TOUCHTRIAL_MEMBER(name) std::string name;
   TOUCHTRIAL_SCREEN_TEXTS(TOUCHTRIAL_MEMBER)
 #undef TOUCHTRIAL_MEMBER
+  std::map<std::string, std::string> by_key;  ///< all of the section, for keys that protocols name
 };
 
 /// \param texts  a language's, as study::texts_of gives them
@@ -116,8 +113,8 @@ struct Words {
 [[nodiscard]] Words words_of(const study::Texts& texts);
 
 /// The title of an answer.
-/// \param key  in "screens"
-/// \return that of an answer without a key if there is no such text
+/// \param key  in "screens"; empty: which picture it is. Must outlive the title
+/// \return the key itself if there is no such text
 [[nodiscard]] const std::string& title_of(const Words& words, const std::string& key);
 
 /// A choice that is a word, in the words' language.

@@ -1,12 +1,12 @@
 #include "protocols/identification/analysis/identification_analysis.hpp"
 
 #include "analysis/exports/data_table.hpp"
-#include "protocols/identification/analysis/counted_trials.hpp"
 #include "protocols/identification/analysis/cues/cue_report.hpp"
 #include "protocols/identification/analysis/cues/exploration_path.hpp"
 #include "protocols/identification/analysis/figures/figures.hpp"
 #include "protocols/identification/analysis/mixed_model.hpp"
 #include "protocols/identification/analysis/page/sections.hpp"
+#include "protocols/identification/analysis/report.hpp"
 
 #include <utility>
 

@@ -1,12 +1,12 @@
 #include "protocols/identification/analysis/mixed_model.hpp"
 
+#include "analysis/choices/people.hpp"
 #include "analysis/exports/data_table.hpp"
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/exports/trial_tables.hpp"
 #include "core/errors.hpp"
 #include "core/text.hpp"
 
-#include <algorithm>
 #include <map>
 
 #include <fmt/format.h>
@@ -19,24 +19,16 @@ DataCell class_or_nothing(const Outcomes& outcomes, const std::optional<int>& in
   return outcomes.classes[*index];
 }
 
-DataCell whole_or_nothing(const std::optional<int>& number) {
-  if (!number) return std::monostate{};
-  return std::int64_t{*number};
-}
-
 /// The name of an image, preceded by its class, because two classes may have images of the same
 /// name.
 std::string image_name(const Outcomes& outcomes, const TrialOutcome& trial) {
   return outcomes.classes[trial.stimulus.class_index] + ": " + image_of(outcomes, trial);
 }
 
-std::vector<const TrialOutcome*> in_order_of_presentation(const Outcomes& outcomes) {
-  std::vector<const TrialOutcome*> trials;
+choices::OwnTrials in_order_of_presentation(const Outcomes& outcomes) {
+  choices::OwnTrials trials;
   for (const TrialOutcome& trial : outcomes.trials) trials.push_back(&trial);
-  std::stable_sort(trials.begin(), trials.end(), [](const TrialOutcome* a, const TrialOutcome* b) {
-    return std::pair(a->row.session, a->row.presented_at) <
-           std::pair(b->row.session, b->row.presented_at);
-  });
+  choices::sort_as_felt(trials);
   return trials;
 }
 
@@ -69,9 +61,9 @@ std::vector<DataCell> row_of(const Outcomes& outcomes, const TrialOutcome& trial
           class_or_nothing(outcomes, trial.response),
           class_or_nothing(outcomes, previous_class),
           class_or_nothing(outcomes, previous_response),
-          whole_or_nothing(row.confidence),
-          time_or_nothing(row.reaction_time()),
-          time_or_nothing(row.from_contact()),
+          or_nothing(row.confidence),
+          or_nothing(row.reaction_time()),
+          or_nothing(row.from_contact()),
           flag(trial.valid()),
           1.0 / static_cast<double>(outcomes.classes.size()),
           flag(outcomes.simulated)};
@@ -137,16 +129,6 @@ DataTable mixed_model_table(const Outcomes& outcomes) {
     previous = trial;
   }
   return table;
-}
-
-/// The text as a quoted R string.
-std::string r_text(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
-  }
-  return quoted + "\"";
 }
 
 std::string method_names(const Outcomes& outcomes) {

@@ -1,17 +1,356 @@
 #include "protocols/identification/analysis/report.hpp"
 
+#include "analysis/choices/orders.hpp"
+#include "analysis/choices/primary.hpp"
 #include "analysis/outcomes/departures.hpp"
+#include "analysis/statistics/cluster_bootstrap.hpp"
 #include "analysis/statistics/paired_tests.hpp"
-#include "protocols/identification/analysis/counted_trials.hpp"
-#include "protocols/identification/analysis/method_pairs.hpp"
-#include "protocols/identification/analysis/method_report.hpp"
-#include "protocols/identification/analysis/primary.hpp"
-#include "protocols/identification/analysis/warnings.hpp"
+#include "core/parallel.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <initializer_list>
+#include <utility>
 
 namespace touchtrial::analysis::identification {
 namespace {
+
+using Choices = std::vector<Choice>;
+using choices::OwnTrials;
+using choices::Person;
+
+/// By method; every method has all participants, in the order of sessions.
+using CountedTrials = std::vector<std::vector<Person>>;
+
+constexpr int kNullDeals = 500;
+constexpr int kFewestNullDeals = 50;
+constexpr int kMostNullTrials = 1'000'000;
+
+Choice choice_of(const TrialOutcome& trial) {
+  return {trial.stimulus.class_index, trial.response};
+}
+
+Choices choices_of(const OwnTrials& trials) {
+  Choices choices;
+  for (const TrialOutcome* trial : trials) choices.push_back(choice_of(*trial));
+  return choices;
+}
+
+/// The trials that presented one class.
+OwnTrials of_class(const OwnTrials& trials, int class_index) {
+  OwnTrials own;
+  std::ranges::copy_if(trials, std::back_inserter(own), [class_index](const TrialOutcome* trial) {
+    return trial->stimulus.class_index == class_index;
+  });
+  return own;
+}
+
+/// The number of deals for the null mean. With many trials the mean varies little from deal to deal
+/// and each deal takes longer, so fewer suffice.
+int null_deals(int trials) {
+  return std::clamp(kMostNullTrials / std::max(1, trials), kFewestNullDeals, kNullDeals);
+}
+
+/// The participants' own accuracies with a class.
+std::vector<double> shares_of_class(const std::vector<Person>& people, int class_index) {
+  std::vector<double> shares;
+  for (const Person& one : people) {
+    const auto share = choices::accuracy_of(of_class(one.trials, class_index)).share();
+    if (share) shares.push_back(*share);
+  }
+  return shares;
+}
+
+void add_class_accuracies(const std::vector<Person>& people, MethodReport& report) {
+  for (int i = 0; i < report.confusion.classes(); ++i) {
+    const Proportion accuracy = report.confusion.accuracy(i);
+    report.accuracy.push_back({accuracy, wilson_interval(accuracy),
+                               clopper_pearson_interval(accuracy), jeffreys_interval(accuracy),
+                               participant_mean(shares_of_class(people, i))});
+  }
+}
+
+/// What each participant answered.
+std::vector<ConfusionMatrix> own_confusions(int classes, const std::vector<Person>& people) {
+  std::vector<ConfusionMatrix> own;
+  for (const Person& one : people) {
+    if (!one.trials.empty()) own.emplace_back(classes, choices_of(one.trials));
+  }
+  return own;
+}
+
+/// Of participants' means over the classes from `first` to `last`.
+UnbiasedHits unbiased_hits(const std::vector<ConfusionMatrix>& participants, int first, int last) {
+  std::vector<double> rates;
+  double by_chance = 0.0;
+  for (const ConfusionMatrix& own : participants) {
+    double rate = 0.0;
+    double chance = 0.0;
+    int presented = 0;
+    for (int i = first; i <= last; ++i) {
+      const auto one = unbiased_hit_rate(own, i);
+      if (!one) continue;
+      ++presented;
+      rate += *one;
+      chance += unbiased_hit_rate_by_chance(own, i).value_or(0.0);
+    }
+    if (presented == 0) continue;
+    rates.push_back(rate / presented);
+    by_chance += chance / presented;
+  }
+  UnbiasedHits hits{participant_mean(rates)};
+  if (!rates.empty()) hits.by_chance = by_chance / static_cast<double>(rates.size());
+  return hits;
+}
+
+void add_unbiased_hits(int classes, const std::vector<Person>& people, MethodReport& report) {
+  const std::vector<ConfusionMatrix> own = own_confusions(classes, people);
+  for (int i = 0; i < classes; ++i) report.unbiased.push_back(unbiased_hits(own, i, i));
+  report.unbiased.push_back(unbiased_hits(own, 0, classes - 1));
+}
+
+ParticipantAccuracy participant_accuracy(int classes, const Person& person) {
+  const ConfusionMatrix own(classes, choices_of(person.trials));
+  const LabelMatching matching = best_label_matching(own);
+  return {person.name, choices::accuracy_of(person.trials), matching, raw_information_transfer(own),
+          label_swap_p(own, matching)};
+}
+
+void add_participants(int classes, const std::vector<Person>& people, int method,
+                      MethodReport& report) {
+  std::vector<double> shares;
+  std::vector<Proportion> accuracies;
+  for (const Person& one : people) {
+    if (one.trials.empty()) continue;
+    report.per_participant.push_back(participant_accuracy(classes, one));
+    accuracies.push_back(report.per_participant.back().accuracy);
+    shares.push_back(accuracies.back().share().value_or(0.0));
+  }
+  report.mean = participant_mean(shares);
+  report.bootstrap = bootstrap_mean(shares, static_cast<std::uint64_t>(method));
+  report.spread = spread_of(accuracies);
+  if (accuracies.size() < kFewestForBootstrap) return;
+  const auto pooled = cluster_bootstrap(accuracies, static_cast<std::uint64_t>(method));
+  if (pooled && pooled->low < pooled->high) {
+    report.d_prime_over_participants = d_prime(report.overall, classes, *pooled);
+  }
+}
+
+/// Adds the p of the fit by drawn tables: fewer of them where each has many trials.
+void judge(ChoiceModel& model, int trials, int method) {
+  constexpr int kMostDrawnTrials = 5'000'000;
+  constexpr int kFewestDraws = 199;
+  constexpr int kMostDraws = 999;
+  if (!model.converged) return;
+  model.draws = std::clamp(kMostDrawnTrials / std::max(1, trials), kFewestDraws, kMostDraws);
+  model.drawn_p = choice_model_p(model, model.draws, static_cast<std::uint64_t>(method));
+}
+
+InformationTransfer information_of(int classes, const std::vector<Person>& people, int trials,
+                                   int method) {
+  std::vector<Choices> answers;
+  for (const Person& one : people) answers.push_back(choices_of(one.trials));
+  return information_transfer(classes, answers, static_cast<std::uint64_t>(method),
+                              null_deals(trials));
+}
+
+/// Calls functions at once where a study is so large that threads pay.
+void in_parts(int trials, std::initializer_list<std::function<void()>> parts) {
+  constexpr int kFewTrials = 2'000;
+  const auto take = [&](std::size_t i) { parts.begin()[i](); };
+  if (trials >= kFewTrials) return all_in_parallel(parts.size(), take);
+  for (std::size_t i = 0; i < parts.size(); ++i) take(i);
+}
+
+MethodReport method_report(const Outcomes& outcomes, int method,
+                           const std::vector<Person>& people) {
+  const auto classes = static_cast<int>(outcomes.classes.size());
+  MethodReport report;
+  report.method = outcomes.methods[method];
+  report.confusion = confusion_of(outcomes, method);
+  report.overall = report.confusion.accuracy();
+  const int all = report.overall.n;
+  // Each part has its own members of the report, and its own random numbers.
+  in_parts(all, {[&] {
+                   report.choice = choice_model(report.confusion);
+                   if (report.choice) judge(*report.choice, all, method);
+                 },
+                 [&] { report.order = choices::order_of(outcomes, method); },
+                 [&] { report.information = information_of(classes, people, all, method); },
+                 [&] { add_participants(classes, people, method, report); },
+                 [&] {
+                   KnownMatches known;
+                   report.chance =
+                       choices::chance_of(outcomes, method, choices::kMostChanceDeals, &known);
+                   report.prevalence = choices::own_prevalence(outcomes, method, &known);
+                 },
+                 [&] {
+                   report.matching = best_label_matching(report.confusion);
+                   report.d_prime = d_prime(report.overall, classes);
+                   add_class_accuracies(people, report);
+                   add_unbiased_hits(classes, people, report);
+                   report.reaction = choices::reaction_times(outcomes, method);
+                   report.breakdowns = choices::breakdowns(outcomes, method);
+                   report.confidence = choices::confidence_of(outcomes, method);
+                   report.robustness = choices::robustness(outcomes, method);
+                 }});
+  return report;
+}
+
+/// One participant's trials with two methods.
+using PairedTrials = std::pair<OwnTrials, OwnTrials>;
+using PairedProportions = std::pair<Proportion, Proportion>;
+
+/// The trials of the participants who felt both methods.
+std::vector<PairedTrials> paired_trials(const CountedTrials& counted, int first, int second) {
+  std::vector<PairedTrials> pairs;
+  for (std::size_t i = 0; i < counted[first].size(); ++i) {
+    const OwnTrials& a = counted[first][i].trials;
+    const OwnTrials& b = counted[second][i].trials;
+    if (!a.empty() && !b.empty()) pairs.emplace_back(a, b);
+  }
+  return pairs;
+}
+
+std::vector<PairedTrials> pairs_of_class(const std::vector<PairedTrials>& pairs, int class_index) {
+  std::vector<PairedTrials> own;
+  for (const auto& [first, second] : pairs) {
+    PairedTrials one(of_class(first, class_index), of_class(second, class_index));
+    if (!one.first.empty() && !one.second.empty()) own.push_back(std::move(one));
+  }
+  return own;
+}
+
+std::vector<PairedProportions> proportions_of(const std::vector<PairedTrials>& pairs) {
+  std::vector<PairedProportions> proportions;
+  for (const auto& [first, second] : pairs) {
+    proportions.emplace_back(choices::accuracy_of(first), choices::accuracy_of(second));
+  }
+  return proportions;
+}
+
+MethodComparison compared(const std::vector<PairedProportions>& pairs) {
+  std::vector<PairedAccuracy> accuracies;
+  for (const auto& [first, second] : pairs) {
+    accuracies.push_back({first.share().value_or(0.0), second.share().value_or(0.0)});
+  }
+  return compare_methods(accuracies);
+}
+
+/// McNemar's mid-p. Exists only if every participant has one trial with each method, because then
+/// the pairs are independent.
+std::optional<double> mcnemar_of(const std::vector<PairedProportions>& pairs) {
+  int first_only = 0;
+  int second_only = 0;
+  for (const auto& [first, second] : pairs) {
+    if (first.n != 1 || second.n != 1) return std::nullopt;
+    if (first.correct > second.correct) ++first_only;
+    if (second.correct > first.correct) ++second_only;
+  }
+  if (pairs.empty()) return std::nullopt;
+  return mcnemar_mid_p(first_only, second_only);
+}
+
+Proportion pooled(const std::vector<Person>& people, int class_index) {
+  Proportion all;
+  for (const Person& one : people) all += choices::accuracy_of(of_class(one.trials, class_index));
+  return all;
+}
+
+ClassComparison class_comparison(const CountedTrials& counted, int first, int second,
+                                 const std::vector<PairedTrials>& pairs, int class_index) {
+  const auto proportions = proportions_of(pairs_of_class(pairs, class_index));
+  return {pooled(counted[first], class_index), pooled(counted[second], class_index),
+          compared(proportions), mcnemar_of(proportions)};
+}
+
+MethodPair method_pair(int classes, const CountedTrials& counted, int first, int second) {
+  const std::vector<PairedTrials> pairs = paired_trials(counted, first, second);
+  const std::vector<PairedProportions> proportions = proportions_of(pairs);
+  MethodPair pair;
+  pair.first = first;
+  pair.second = second;
+  pair.overall = compared(proportions);
+  pair.odds_ratio = mantel_haenszel(proportions);
+  if (pair.odds_ratio && proportions.size() >= kFewestForBootstrap) {
+    pair.odds_ratio->bootstrap = odds_ratio_bootstrap(proportions);
+  }
+  pair.mcnemar_mid_p = mcnemar_of(proportions);
+  for (int i = 0; i < classes; ++i) {
+    pair.classes.push_back(class_comparison(counted, first, second, pairs, i));
+  }
+  return pair;
+}
+
+/// Adjusts the p values by Holm. A pair has no p if nobody felt both methods; such pairs are left
+/// out.
+void adjust(std::vector<MethodPair>& pairs) {
+  std::vector<MethodPair*> family;
+  std::vector<double> p_values;
+  for (MethodPair& pair : pairs) {
+    if (!pair.overall.p) continue;
+    family.push_back(&pair);
+    p_values.push_back(*pair.overall.p);
+  }
+  const std::vector<double> adjusted = holm_adjusted(p_values);
+  for (std::size_t i = 0; i < family.size(); ++i) family[i]->p_holm = adjusted[i];
+}
+
+/// Adds one participant's occasions with a class. The n-th occasion is the n-th presentation of the
+/// class with every method; it says whether each of these answers was right.
+void add_occasions(int class_index, const std::vector<const OwnTrials*>& methods,
+                   std::vector<std::vector<bool>>& occasions) {
+  std::vector<OwnTrials> own;
+  std::size_t common = methods.front()->size();
+  for (const OwnTrials* trials : methods) {
+    own.push_back(of_class(*trials, class_index));
+    common = std::min(common, own.back().size());
+  }
+  for (std::size_t n = 0; n < common; ++n) {
+    std::vector<bool>& occasion = occasions.emplace_back();
+    for (const OwnTrials& trials : own) occasion.push_back(trials[n]->correct());
+  }
+}
+
+std::vector<std::vector<std::vector<bool>>> occasions_by_participant(int classes,
+                                                                     const CountedTrials& counted) {
+  std::vector<std::vector<std::vector<bool>>> all;
+  for (std::size_t i = 0; i < counted.front().size(); ++i) {
+    std::vector<const OwnTrials*> methods;
+    for (const auto& people : counted) methods.push_back(&people[i].trials);
+    std::vector<std::vector<bool>> own;
+    for (int c = 0; c < classes; ++c) add_occasions(c, methods, own);
+    if (!own.empty()) all.push_back(std::move(own));
+  }
+  return all;
+}
+
+/// Every pair of methods, in the order of methods. With three or more methods, the p values are
+/// adjusted.
+std::vector<MethodPair> method_pairs(int classes, const CountedTrials& counted) {
+  const auto methods = static_cast<int>(counted.size());
+  std::vector<MethodPair> pairs;
+  for (int first = 0; first < methods; ++first) {
+    for (int second = first + 1; second < methods; ++second) {
+      pairs.push_back(method_pair(classes, counted, first, second));
+    }
+  }
+  if (methods > 2) adjust(pairs);
+  return pairs;
+}
+
+/// All methods compared at once.
+/// \return nothing if there are fewer than three methods, or no occasion on which they differ
+std::optional<MethodsTogether> methods_together(int classes, const CountedTrials& counted) {
+  if (counted.size() < 3) return std::nullopt;
+  const auto by_participant = occasions_by_participant(classes, counted);
+  std::vector<std::vector<bool>> occasions;
+  for (const auto& own : by_participant) occasions.insert(occasions.end(), own.begin(), own.end());
+  const std::optional<CochranQ> cochran = cochran_q(occasions);
+  if (!cochran) return std::nullopt;
+  return MethodsTogether{*cochran, cochran_q_permuted_p(by_participant)};
+}
 
 /// Adjusts the p of label swaps over all participants and methods of the study.
 void adjust_swaps(std::vector<MethodReport>& methods) {
@@ -38,24 +377,35 @@ void order_by_name(std::vector<MethodReport>& methods) {
 
 StudyReport make_report(const Outcomes& outcomes) {
   const auto classes = static_cast<int>(outcomes.classes.size());
-  const CountedTrials counted = counted_by_method(outcomes);
+  CountedTrials counted;
   StudyReport report;
   static_cast<StudyHead&>(report) = head_of(outcomes);
   for (int i = 0; i < static_cast<int>(outcomes.methods.size()); ++i) {
-    report.methods.push_back(method_report(outcomes, i, counted));
+    counted.push_back(choices::people_with(outcomes, [i](const TrialOutcome& trial) {
+      return trial.counted && trial.stimulus.method == i;
+    }));
+    report.methods.push_back(method_report(outcomes, i, counted.back()));
   }
   adjust_swaps(report.methods);
   if (outcomes.collection.is_public) order_by_name(report.methods);
   report.pairs = method_pairs(classes, counted);
   if (report.methods.size() == 2) report.comparison = report.pairs.front().overall;
   report.together = methods_together(classes, counted);
-  report.primary = primary_result(outcomes);
+  report.primary = choices::primary_result(outcomes);
   if (report.primary && report.primary->ended_at_look) {
     report.departures = departures_of(outcomes, true);
   }
   if (report.methods.size() == 1) report.prevalence = report.methods.front().prevalence;
   report.warnings = report_warnings(outcomes, report);
   return report;
+}
+
+ConfusionMatrix confusion_of(const Outcomes& outcomes, int method) {
+  ConfusionMatrix confusion(static_cast<int>(outcomes.classes.size()));
+  for (const TrialOutcome& trial : outcomes.trials) {
+    if (trial.counted && trial.stimulus.method == method) confusion.add(choice_of(trial));
+  }
+  return confusion;
 }
 
 }  // namespace touchtrial::analysis::identification

@@ -2,6 +2,7 @@
 /// docs/data-dictionary.md, "Report".
 #pragma once
 
+#include "analysis/choices/subsets.hpp"
 #include "analysis/outcomes/outcomes.hpp"
 #include "analysis/outcomes/study_head.hpp"
 #include "analysis/statistics/chance_test.hpp"
@@ -16,7 +17,6 @@
 #include "analysis/statistics/proportion.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "protocols/identification/analysis/cues/cue_report.hpp"
-#include "protocols/identification/analysis/subsets.hpp"
 
 #include <optional>
 #include <string>
@@ -24,22 +24,14 @@
 
 namespace touchtrial::analysis::identification {
 
-/// Answers that were rated alike.
-struct RatedAccuracy {
-  int rating = 1;
-  Proportion accuracy;  ///< all participants' answers pooled
-  MeanEstimate mean;    ///< of the own accuracies of those who gave this rating
-};
-
-struct ConfidenceReport {
-  std::vector<RatedAccuracy> ratings;  ///< from 1 (a guess) to the study's highest
-  MeanEstimate area;                   ///< of participants' own type-2 areas
-  int without_area = 0;                ///< participants whose answers are all right, or all wrong
-};
-
-/// One method's counted trials with a response and a rating.
-/// \return nothing if the study does not ask for confidence
-[[nodiscard]] std::optional<ConfidenceReport> confidence_of(const Outcomes& outcomes, int method);
+using choices::Breakdown;
+using choices::BreakdownKind;
+using choices::ConfidenceReport;
+using choices::GroupAccuracy;
+using choices::RatedAccuracy;
+using choices::ReactionTimes;
+using choices::SubsetAccuracy;
+using choices::TrialSubset;
 
 /// Accuracy with a class.
 struct ClassAccuracy {
@@ -132,6 +124,14 @@ struct StudyReport : StudyHead {
 
 /// Makes the report from the outcomes that count.
 [[nodiscard]] StudyReport make_report(const Outcomes& outcomes);
+
+/// All participants' trials with one method.
+[[nodiscard]] ConfusionMatrix confusion_of(const Outcomes& outcomes, int method);
+
+/// The warnings against misreading the report, of one or two sentences each, the gravest first.
+/// \param report  complete except for its warnings
+[[nodiscard]] std::vector<std::string> report_warnings(const Outcomes& outcomes,
+                                                       const StudyReport& report);
 
 /// The report as one JSON object, indented, with a line feed at the end. Numbers that do not exist
 /// are null.

@@ -1,7 +1,11 @@
 #include "analysis/report/bibliography.hpp"
 #include "analysis/report/json_figures.hpp"
 #include "protocols/identification/analysis/cues/cues_json.hpp"
-#include "protocols/identification/analysis/method_json.hpp"
+#include "protocols/identification/analysis/report.hpp"
+
+#include <numeric>
+
+#include <fmt/format.h>
 
 namespace touchtrial::analysis::identification {
 namespace {
@@ -34,15 +38,14 @@ Json class_json(const ClassComparison& one, const std::string& label) {
 
 Json odds_ratio_json(const std::optional<OddsRatio>& ratio) {
   if (!ratio) return nullptr;
-  Json object{{"estimate", figure_json(ratio->estimate)},
-              {"interval", interval_json(ratio->bootstrap)},
-              {"interval_of_trials", interval_json(ratio->interval)}};
-  put_method(object,
-             "Mantel and Haenszel's common odds ratio, participants as strata; interval: expanded "
-             "percentiles of 9,999 draws of participants; interval_of_trials: of Robins, Breslow "
-             "and Greenland, which takes trials as independent",
-             {"mantel1959", "robins1986", "davison1997", "hesterberg2015"});
-  return object;
+  return with_method(
+      {{"estimate", figure_json(ratio->estimate)},
+       {"interval", interval_json(ratio->bootstrap)},
+       {"interval_of_trials", interval_json(ratio->interval)}},
+      "Mantel and Haenszel's common odds ratio, participants as strata; interval: expanded "
+      "percentiles of 9,999 draws of participants; interval_of_trials: of Robins, Breslow "
+      "and Greenland, which takes trials as independent",
+      {"mantel1959", "robins1986", "davison1997", "hesterberg2015"});
 }
 
 Json pair_json(const MethodPair& pair, const StudyReport& report) {
@@ -75,39 +78,302 @@ Json comparison_json(const MethodComparison& comparison) {
           {"db", figure_json(comparison.db)}};
 }
 
-/// The description of the intervals of accuracies, which is the same for every method.
-Json intervals_json() {
-  Json object;
-  put_method(object,
-             "wilson, clopper_pearson and jeffreys: 95 %, all participants' trials pooled as if "
-             "independent; p is correct / n, with trials without a response as wrong; mean and "
-             "interval: of participants' own accuracies, by Student's t",
-             {"wilson1927", "clopper1934", "brown2001", "student1908"});
-  return object;
+Json together_json(const MethodsTogether& together) {
+  return with_method(
+      {{"q", figure_json(together.cochran.q)},
+       {"degrees_of_freedom", together.cochran.degrees_of_freedom},
+       {"p", figure_json(together.cochran.p)},
+       {"permuted_p", figure_json(together.permuted_p)}},
+      "Cochran's Q over occasions (participant, class, n-th presentation); p under "
+      "chi-square takes occasions as independent; permuted_p exchanges methods within "
+      "participants, Monte Carlo over 9,999 deals, (b+1)/(m+1)",
+      {"cochran1950", "phipson2010"});
 }
 
-Json quantiles_json() {
-  Json object;
-  put_method(object, "quartiles by definition 7, over trials with a response", {"hyndman1996"});
-  return object;
+std::vector<int> up_to(int count) {
+  std::vector<int> numbers(static_cast<std::size_t>(count));
+  std::iota(numbers.begin(), numbers.end(), 0);
+  return numbers;
 }
 
-Json pairs_json(const StudyReport& report) {
+Json rows_json(const Plane<double>& values) {
+  return array_json(up_to(values.height()),
+                    [&](int i) { return array_json(values.row(i), figure_json); });
+}
+
+Json counts_json(const ConfusionMatrix& confusion) {
+  const std::vector<int> classes = up_to(confusion.classes());
+  return array_json(classes, [&](int i) {
+    return array_json(classes, [&](int j) { return confusion.count(i, j); });
+  });
+}
+
+/// The row and column sums. The bias shows in how often a class was answered, compared with how
+/// often it was presented.
+Json marginals_json(const ConfusionMatrix& confusion) {
+  const std::vector<int> classes = up_to(confusion.classes());
+  return {{"presented", array_json(classes, [&](int i) { return confusion.presented(i); })},
+          {"answered", array_json(classes, [&](int i) { return confusion.answered(i); })}};
+}
+
+Json classes_json(const MethodReport& method, const std::vector<std::string>& classes) {
   Json all = Json::array();
-  for (const MethodPair& pair : report.pairs) all.push_back(pair_json(pair, report));
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    const ClassAccuracy& one = method.accuracy[i];
+    Json entry{{"class", classes[i]}};
+    put_proportion(entry, one.accuracy);
+    entry["wilson"] = interval_json(known(one.wilson, one.accuracy));
+    entry["clopper_pearson"] = interval_json(known(one.clopper_pearson, one.accuracy));
+    entry["jeffreys"] = interval_json(known(one.jeffreys, one.accuracy));
+    put_mean(entry, one.mean);
+    all.push_back(std::move(entry));
+  }
   return all;
 }
 
-Json together_json(const MethodsTogether& together) {
-  Json object{{"q", figure_json(together.cochran.q)},
-              {"degrees_of_freedom", together.cochran.degrees_of_freedom},
-              {"p", figure_json(together.cochran.p)},
-              {"permuted_p", figure_json(together.permuted_p)}};
+Json matching_json(const LabelMatching& matching, const std::vector<std::string>& classes) {
+  Json object;
+  put_proportion(object, matching.accuracy);
+  object["answer_of"] = array_json(matching.answer_of, [&](int answer) { return classes[answer]; });
+  return object;
+}
+
+Json participants_json(const MethodReport& method, const std::vector<std::string>& classes) {
+  return array_json(method.per_participant, [&](const ParticipantAccuracy& one) {
+    Json entry{{"participant", one.participant}};
+    put_proportion(entry, one.accuracy);
+    entry["best_matching"] = matching_json(one.matching, classes);
+    entry["consistency_bits"] = figure_json(one.consistency);
+    entry["swap_p"] = figure_json(one.swap_p);
+    entry["swap_p_adjusted"] = figure_json(one.swap_adjusted);
+    return entry;
+  });
+}
+
+Json spread_json(const std::optional<Spread>& spread) {
+  if (!spread) return nullptr;
+  return {{"estimate", figure_json(spread->estimate)},
+          {"interval", interval_json(spread->interval)}};
+}
+
+Json overall_json(const MethodReport& method) {
+  Json overall;
+  put_proportion(overall, method.overall);
+  put_mean(overall, method.mean);
+  overall["sd"] = figure_json(method.mean.sd);
+  overall["bootstrap"] = interval_json(method.bootstrap);
+  put_method(overall,
+             "mean: of participants' own accuracies, each of which weighs the same however many "
+             "trials it has, with Student's t interval; bootstrap: expanded percentiles of the "
+             "same mean in 9,999 draws of whole participants; sd: of the accuracies as they are; "
+             "spread: of participants' own probabilities of a right answer, by Paule and Mandel, "
+             "with the Q-profile interval; 95 %",
+             {"student1908", "davison1997", "hesterberg2015", "paule1982", "viechtbauer2007"});
+  overall["spread"] = spread_json(method.spread);
+  return overall;
+}
+
+std::string how(const ChanceTest& test) {
+  if (test.exact) return "one-sided, exact, over the orders that the study could have had";
+  return fmt::format("one-sided, Monte Carlo over {} orders made by the study's rule, (b+1)/(m+1)",
+                     test.deals);
+}
+
+Json chance_json(const std::optional<ChanceTest>& test) {
+  if (!test) return nullptr;
+  return with_method({{"correct", test->correct},
+                      {"trials", test->trials},
+                      {"expected", figure_json(test->expected)},
+                      {"p", figure_json(test->p)},
+                      {"exact", test->exact},
+                      {"deals", test->deals}},
+                     "that at least one participant can: " + how(*test), {"phipson2010"});
+}
+
+Json d_prime_json(const MethodReport& method) {
+  const DPrime limits = method.d_prime_over_participants.value_or(DPrime{});
+  return with_method(
+      {{"estimate", figure_json(method.d_prime.estimate)},
+       {"low", figure_json(limits.low)},
+       {"high", figure_json(limits.high)},
+       {"of_trials",
+        {{"low", figure_json(method.d_prime.low)}, {"high", figure_json(method.d_prime.high)}}}},
+      "nominal, of the pooled share, as if all classes were equally distant and no answer "
+      "preferred; low and high of the share's bootstrap interval over participants; "
+      "of_trials: of the Clopper-Pearson interval, which takes trials as independent",
+      {"green1966", "hacker1979", "davison1997"});
+}
+
+Json information_json(const InformationTransfer& information) {
+  return with_method(
+      {{"raw", figure_json(information.raw)},
+       {"corrected", figure_json(information.corrected)},
+       {"null_mean", figure_json(information.null_mean)}},
+      fmt::format("bits, over trials with a response; corrected by Miller and Madow; "
+                  "null_mean: of {} deals, answers permuted within participants",
+                  information.deals),
+      {"tan2010", "miller1955"});
+}
+
+Json choice_json(const ChoiceModel& model) {
+  return with_method(
+      {{"similarity", rows_json(model.similarity)},
+       {"bias", array_json(model.bias, figure_json)},
+       {"group", model.group},
+       {"expected", rows_json(model.expected)},
+       {"g_squared", figure_json(model.g_squared)},
+       {"degrees_of_freedom", model.degrees_of_freedom},
+       {"p", figure_json(model.p)},
+       {"converged", model.converged},
+       {"bootstrap_p", figure_json(model.drawn_p)},
+       {"draws", model.draws}},
+      "similarity choice model, maximum likelihood; biases sum to 1 within a group of "
+      "classes that answers connect in both directions; p of G squared under chi-square "
+      "against the saturated model, and bootstrap_p, to quote, of tables drawn from the "
+      "model, (b+1)/(m+1)",
+      {"luce1963", "townsend1982"});
+}
+
+void put_mean_of_some(Json& object, const MeanEstimate& mean) {
+  object["participants"] = mean.participants;
+  put_mean(object, mean);
+}
+
+Json hits_json(const UnbiasedHits& hits) {
+  Json object;
+  put_mean(object, hits.rate);
+  object["by_chance"] = figure_json(hits.by_chance);
+  return object;
+}
+
+Json dependence_json(const SerialDependence& dependence) {
+  return {{"wrong", dependence.wrong},
+          {"same", dependence.same},
+          {"expected", figure_json(dependence.expected)},
+          {"p", figure_json(dependence.p)}};
+}
+
+Json groups_json(const Breakdown& breakdown) {
+  return array_json(breakdown.groups, [](const GroupAccuracy& one) {
+    Json entry{{"group", one.group}};
+    put_proportion(entry, one.accuracy);
+    entry["wilson"] = interval_json(known(one.wilson, one.accuracy));
+    if (one.mean) put_mean_of_some(entry, *one.mean);
+    return entry;
+  });
+}
+
+Json unbiased_object(const MethodReport& method, const std::vector<std::string>& classes) {
+  if (method.unbiased.empty()) return nullptr;
+  Json object = hits_json(method.unbiased.back());
   put_method(object,
-             "Cochran's Q over occasions (participant, class, n-th presentation); p under "
-             "chi-square takes occasions as independent; permuted_p exchanges methods within "
-             "participants, Monte Carlo over 9,999 deals, (b+1)/(m+1)",
-             {"cochran1950", "phipson2010"});
+             "mean over participants of their unbiased hit rates, the share of a class's "
+             "presentations that were answered right times the share of its answers that were "
+             "right, averaged over classes, with Student's t interval; by_chance: its mean over "
+             "all orders of each participant's presentations, with the same answers",
+             {"wagner1993", "student1908"});
+  object["classes"] = Json::array();
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    Json entry{{"class", classes[i]}};
+    entry.update(hits_json(method.unbiased[i]));
+    object["classes"].push_back(std::move(entry));
+  }
+  return object;
+}
+
+Json order_object(const std::optional<OrderEffects>& order) {
+  if (!order) return nullptr;
+  return with_method(
+      {{"slope",
+        {{"mean", figure_json(order->slope.mean)},
+         {"interval", interval_json(order->slope.known_interval())},
+         {"p", figure_json(order->slope_p)}}},
+       {"class_before", dependence_json(order->class_before)},
+       {"answer_before", dependence_json(order->answer_before)},
+       {"draws", order->draws}},
+      fmt::format("slope: of right answers on a trial's number within blocks, least "
+                  "squares, per trial, mean over participants with Student's t interval; "
+                  "class_before and answer_before: wrong answers that name the class "
+                  "presented, or the answer given, just before; p two-sided, of {} orders "
+                  "that the design could have produced, in which each answer stays with "
+                  "its presentation: twice the smaller tail, each (b+1)/(m+1)",
+                  order->draws),
+      {"student1908", "fischer2014", "phipson2010"});
+}
+
+Json confidence_object(const std::optional<ConfidenceReport>& confidence) {
+  if (!confidence) return nullptr;
+  Json ratings = array_json(confidence->ratings, [](const RatedAccuracy& one) {
+    Json entry{{"rating", one.rating}};
+    put_proportion(entry, one.accuracy);
+    put_mean_of_some(entry, one.mean);
+    return entry;
+  });
+  Json area;
+  put_mean_of_some(area, confidence->area);
+  area["without"] = confidence->without_area;
+  return with_method(
+      {{"ratings", std::move(ratings)}, {"type_2_area", std::move(area)}},
+      "over answers with a rating; means over the participants who gave it, with Student's "
+      "t interval; type_2_area: of participants' own areas, the probability that a right "
+      "answer was rated higher than a wrong one, equal ratings counting half",
+      {"student1908", "fleming2014"});
+}
+
+Json reaction_array(const std::vector<ReactionTimes>& reaction,
+                    const std::vector<std::string>& classes) {
+  Json all = Json::array();
+  for (std::size_t i = 0; i < reaction.size(); ++i) {
+    const bool is_class = i < classes.size();
+    all.push_back({{"class", is_class ? Json(classes[i]) : Json(nullptr)},
+                   {"paused", reaction[i].paused},
+                   {"from_plane_on", quartiles_json(reaction[i].from_plane_on)},
+                   {"from_contact", quartiles_json(reaction[i].from_contact)}});
+  }
+  return all;
+}
+
+Json breakdowns_object(const std::vector<Breakdown>& breakdowns) {
+  Json object = Json::object();
+  for (const Breakdown& one : breakdowns) object[name_of(one.kind)] = groups_json(one);
+  return object;
+}
+
+Json robustness_array(const std::vector<SubsetAccuracy>& subsets) {
+  return array_json(subsets, [](const SubsetAccuracy& one) {
+    Json entry{{"trials", name_of(one.subset)}};
+    put_proportion(entry, one.pooled);
+    put_mean_of_some(entry, one.mean);
+    return entry;
+  });
+}
+
+Json method_object(const MethodReport& method, const std::vector<std::string>& classes) {
+  Json object{{"method", method.method},
+              {"confusion", counts_json(method.confusion)},
+              {"no_response", array_json(up_to(method.confusion.classes()),
+                                         [&](int i) { return method.confusion.no_response(i); })},
+              {"accuracy", classes_json(method, classes)},
+              {"overall", overall_json(method)},
+              {"information_transfer", information_json(method.information)},
+              {"per_participant", participants_json(method, classes)},
+              {"marginals", marginals_json(method.confusion)},
+              {"chance", chance_json(method.chance)},
+              {"d_prime", d_prime_json(method)}};
+  object["best_matching"] = matching_json(method.matching, classes);
+  put_method(object["best_matching"],
+             "accuracy under the exchange of labels that suits the answers best; biased upward; "
+             "participants' swap_p: sign test of answers that agree with the exchange against "
+             "those with the own label, times the number of such exchanges; swap_p_adjusted: false "
+             "discovery rate over all participants and methods",
+             {"kuhn1955", "benjamini1995"});
+  object["choice_model"] = method.choice ? choice_json(*method.choice) : Json(nullptr);
+  object["reaction_time_s"] = reaction_array(method.reaction, classes);
+  object["breakdowns"] = breakdowns_object(method.breakdowns);
+  object["robustness"] = robustness_array(method.robustness);
+  object["unbiased_hits"] = unbiased_object(method, classes);
+  object["order"] = order_object(method.order);
+  object["confidence"] = confidence_object(method.confidence);
   return object;
 }
 
@@ -116,16 +382,22 @@ Json together_json(const MethodsTogether& together) {
 std::string report_json(const StudyReport& report) {
   Json object = head_object(report);
   object["classes"] = report.classes;
-  object["methods"] = Json::array();
-  for (const MethodReport& method : report.methods) {
-    object["methods"].push_back(method_object(method, report.classes));
-  }
+  object["methods"] = array_json(report.methods, [&](const MethodReport& method) {
+    return method_object(method, report.classes);
+  });
   if (report.comparison) object["comparison"] = comparison_json(*report.comparison);
   object["warnings"] = report.warnings;
-  object["pairs"] = pairs_json(report);
+  object["pairs"] =
+      array_json(report.pairs, [&](const MethodPair& pair) { return pair_json(pair, report); });
   if (report.together) object["together"] = together_json(*report.together);
-  object["accuracy_intervals"] = intervals_json();
-  object["reaction_times"] = quantiles_json();
+  object["accuracy_intervals"] = with_method(
+      {},
+      "wilson, clopper_pearson and jeffreys: 95 %, all participants' trials pooled as if "
+      "independent; p is correct / n, with trials without a response as wrong; mean and "
+      "interval: of participants' own accuracies, by Student's t",
+      {"wilson1927", "clopper1934", "brown2001", "student1908"});
+  object["reaction_times"] =
+      with_method({}, "quartiles by definition 7, over trials with a response", {"hyndman1996"});
   object["registration"] = registration_object(report.registration);
   object["collection"] = collection_object(report.collection);
   if (report.cues) object["cues"] = cues_object(*report.cues);

@@ -1,8 +1,8 @@
-#include "protocols/identification/analysis/warnings.hpp"
-
 #include "analysis/outcomes/departures.hpp"
+#include "analysis/report/page/wording.hpp"
 #include "analysis/report/text_figures.hpp"
 #include "analysis/statistics/paired_tests.hpp"
+#include "protocols/identification/analysis/report.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -131,17 +131,14 @@ void warn_of_order(const Outcomes& outcomes, Warnings& warnings) {
       "them as they came.");
 }
 
-using Warnings = std::vector<std::string>;
-
 constexpr int kFewParticipants = 10;
-constexpr double kLevel = 0.05;
 
 /// Warns of the smallest p that n participants can give. All 2^n sign patterns are equally likely,
 /// and Holm multiplies the smallest p by the number of pairs. Powers of two print exactly.
 void warn_of_floor(int n, std::size_t pairs, Warnings& warnings) {
   const double floor = std::ldexp(2.0, -n);
   const double adjusted = std::min(1.0, floor * static_cast<double>(pairs));
-  if (adjusted <= kLevel) return;
+  if (adjusted <= kUsualLevel) return;
   std::string text =
       fmt::format("With {} the sign-flip p cannot fall below {}", counted(n, "participant"), floor);
   if (pairs > 1) text += fmt::format(", nor the least p adjusted by Holm below {}", adjusted);
@@ -209,8 +206,6 @@ void warn_of_few_participants(const StudyReport& report, Warnings& warnings) {
                   report.participants));
 }
 
-using Warnings = std::vector<std::string>;
-
 template <typename Which>
 void warn_of_sessions(const Outcomes& outcomes, const std::string& why, Which which,
                       Warnings& warnings) {
@@ -260,12 +255,9 @@ void warn_of_state(const Outcomes& outcomes, Warnings& warnings) {
 }
 
 void warn_of_trials(const Outcomes& outcomes, Warnings& warnings) {
-  std::set<int> counted_sessions;
-  for (const SessionOutcome& session : outcomes.sessions) {
-    if (session.counted) counted_sessions.insert(session.row.session);
-  }
+  const std::set<int> counting = choices::counted_sessions(outcomes);
   const auto unfinished = [&](const TrialOutcome& trial) {
-    return trial.scored && !trial.counted && counted_sessions.contains(trial.row.session);
+    return trial.scored && !trial.counted && counting.contains(trial.row.session);
   };
   const auto interrupted =
       std::count_if(outcomes.trials.begin(), outcomes.trials.end(), unfinished);
@@ -329,8 +321,13 @@ void warn_of_information(const StudyReport& report, Warnings& warnings) {
 
 }  // namespace
 
-std::vector<std::string> figure_warnings(const Outcomes& outcomes, const StudyReport& report) {
+std::vector<std::string> report_warnings(const Outcomes& outcomes, const StudyReport& report) {
   Warnings warnings;
+  warn_of_state(outcomes, warnings);
+  warn_of_trials(outcomes, warnings);
+  warn_of_time_outs(report, warnings);
+  warn_of_participants(report, warnings);
+  warn_of_information(report, warnings);
   for (const MethodReport& method : report.methods) {
     warn_of_validity(method, warnings);
     warn_of_swapped_labels(method, warnings);
@@ -341,30 +338,11 @@ std::vector<std::string> figure_warnings(const Outcomes& outcomes, const StudyRe
     warn_of_chance(method, warnings);
   }
   warn_of_order(outcomes, warnings);
-  return warnings;
-}
-
-std::vector<std::string> comparison_warnings(const Outcomes& outcomes, const StudyReport& report) {
-  Warnings warnings;
   warn_of_few_participants(report, warnings);
   warn_of_several(report, warnings);
   warn_of_sign_flips(report, warnings);
   warn_of_periods(outcomes, report, warnings);
   warn_of_images(outcomes, report, warnings);
-  return warnings;
-}
-
-std::vector<std::string> report_warnings(const Outcomes& outcomes, const StudyReport& report) {
-  Warnings warnings;
-  warn_of_state(outcomes, warnings);
-  warn_of_trials(outcomes, warnings);
-  warn_of_time_outs(report, warnings);
-  warn_of_participants(report, warnings);
-  warn_of_information(report, warnings);
-  for (const Warnings& more :
-       {figure_warnings(outcomes, report), comparison_warnings(outcomes, report)}) {
-    warnings.insert(warnings.end(), more.begin(), more.end());
-  }
   return warnings;
 }
 

@@ -7,10 +7,17 @@
 namespace touchtrial::study::identification {
 namespace {
 
-/// The common part of both protocols, which differ only in the methods that they present.
-class Identification : public Protocol {
+/// The task of both protocols, which differ only in the methods that they present.
+class Identification final : public Task {
  public:
+  explicit Identification(int min_methods) : min_methods_(min_methods) {}
+
   void check(const JsonValue& file, const Study& study) const override {
+    if (static_cast<int>(study.methods.size()) < min_methods_) {
+      file.refuse_below("/methods",
+                        "has 1 entry; the protocol comparison needs at least 2: add one, or choose "
+                        "the protocol classification");
+    }
     if (const auto obstacle = obstacle_to_order(study)) {
       file.refuse_below("/trials" + obstacle->key, obstacle->what);
     }
@@ -19,57 +26,39 @@ class Identification : public Protocol {
     return static_cast<int>(study.classes.size()) * study.presented_methods() *
            study.trials.repeats;
   }
-  Schedule schedule(const Study& study, const ScheduleDraw& draw) const override {
-    return scheduled(study, draw);
-  }
   std::string rule(const Study& study) const override { return rule_of_schedule(study); }
-  std::vector<Presentation> restarted_block(const Study& study, const ScheduleDraw& draw, int block,
-                                            int restarts_before, int first_trial) const override {
-    return scheduled_again(study, draw, block, restarts_before, first_trial);
-  }
-  std::vector<Choice> choices(const Study& study) const override {
-    std::vector<Choice> classes;
+  Ask ask(const Study& study, const Place& /*place*/) const override {
+    Choose question;
     for (const StudyClass& one : study.classes) {
-      classes.push_back({one.label, static_cast<int>(classes.size())});
+      question.choices.push_back({one.label, static_cast<int>(question.choices.size())});
     }
-    return classes;
+    return {.question = question, .confidence_levels = study.session.confidence_levels};
   }
-  std::optional<int> right_choice(const Study&, const Presentation& shown) const override {
-    return shown.stimulus.class_index;
+  std::unique_ptr<Order> order(const Study& study, const ScheduleDraw& draw) const override {
+    return identifying_order(study, draw);
   }
-  bool may_name_one_key(const Study& /*study*/) const override { return true; }
+
+ private:
+  int min_methods_;
 };
 
-class Classification final : public Identification {
- public:
-  std::string_view name() const noexcept override { return "classification"; }
-  bool presents_all_methods() const noexcept override { return false; }
-};
-
-class Comparison final : public Identification {
- public:
-  std::string_view name() const noexcept override { return "comparison"; }
-  int least_methods() const noexcept override { return 2; }
-  void check(const JsonValue& file, const Study& study) const override {
-    if (study.methods.size() < 2) {
-      file.refuse_below("/methods",
-                        "has 1 entry; the protocol comparison needs at least 2: add one, or choose "
-                        "the protocol classification");
-    }
-    Identification::check(file, study);
-  }
-};
+template <int min_methods>
+std::shared_ptr<const Task> made(const std::optional<JsonValue>& /*section*/) {
+  return std::make_shared<Identification>(min_methods);
+}
 
 }  // namespace
 
 const Protocol& classification() {
-  static const Classification protocol;
-  return protocol;
+  static constexpr Protocol kProtocol{
+      .name = "classification", .section = {}, .read = made<1>, .all_methods = false};
+  return kProtocol;
 }
 
 const Protocol& comparison() {
-  static const Comparison protocol;
-  return protocol;
+  static constexpr Protocol kProtocol{
+      .name = "comparison", .section = {}, .read = made<2>, .min_methods = 2};
+  return kProtocol;
 }
 
 }  // namespace touchtrial::study::identification

@@ -90,19 +90,22 @@ std::vector<bool> random_places(std::size_t places, std::size_t count, RandomStr
   return taken;
 }
 
-/// Inserts catch trials at random places. The first presentation stays first; otherwise every
+/// Inserts catch trials at random places. The first trial stays first; otherwise every
 /// choice of places is equally likely. A catch trial belongs to the block of the presentation
 /// before it. Does not number trials.
 /// \pre `shown` is not empty if `count` > 0
-std::vector<Presentation> with_catch_trials(const std::vector<Presentation>& shown, int count,
-                                            RandomStream& random) {
+std::vector<Trial> with_catch_trials(const std::vector<Trial>& shown, int count,
+                                     RandomStream& random) {
   if (count == 0) return shown;
   const auto caught = static_cast<std::size_t>(count);
-  std::vector<Presentation> all;
+  std::vector<Trial> all;
   auto next = shown.begin();
   for (const bool is_catch : random_places(shown.size() + caught, caught, random)) {
     if (is_catch) {
-      all.push_back({.block = all.back().block, .role = Role::catch_trial, .stimulus = {}});
+      Trial& blank = all.emplace_back();
+      blank.place.block = all[all.size() - 2].place.block;
+      blank.role = Role::catch_trial;
+      blank.planes.push_back({.field = {}, .blank = true});
     } else {
       all.push_back(*next++);
     }
@@ -111,38 +114,40 @@ std::vector<Presentation> with_catch_trials(const std::vector<Presentation>& sho
 }
 
 /// A block's presentations, still without catch trials and trial numbers.
-std::vector<Presentation> presentations_of(const BlockOrder& order, int block,
-                                           ExemplarSupply& exemplars) {
-  std::vector<Presentation> shown;
+std::vector<Trial> presentations_of(const BlockOrder& order, int block, ExemplarSupply& exemplars) {
+  std::vector<Trial> shown;
   for (std::size_t i = 0; i < order.items.size(); ++i) {
     const auto [class_index, method] = order.items[i];
-    shown.push_back({.block = block,
-                     .role = i < order.lead_ins ? Role::lead_in : Role::scored,
-                     .stimulus = {class_index, exemplars.next(class_index, method), method}});
+    Trial& trial = shown.emplace_back();
+    trial.place.block = block;
+    trial.role = i < order.lead_ins ? Role::lead_in : Role::scored;
+    trial.planes.push_back({.field = {class_index, exemplars.next(class_index, method), method}});
+    trial.right = class_index;
   }
   return shown;
 }
 
-void number(std::vector<Presentation>& presentations, int first) {
-  for (Presentation& shown : presentations) shown.trial = first++;
+void number(std::vector<Trial>& trials, int first) {
+  for (Trial& shown : trials) shown.place.trial = first++;
 }
 
 /// Roves gains below the pack's, so that no presentation is stronger than what was prepared. Catch
 /// trials have none.
-void rove(const Study& study, RandomStream random, std::vector<Presentation>& presentations) {
+void rove(const Study& study, RandomStream random, std::vector<Trial>& trials) {
   if (study.trials.rove_db == 0.0) return;
-  for (Presentation& shown : presentations) {
+  for (Trial& shown : trials) {
     if (shown.role == Role::catch_trial) continue;
-    shown.gain_db = study.trials.own_gain_db() + drawn_rove_db(study.trials.rove_db, random);
+    shown.planes.front().gain_db =
+        study.trials.own_gain_db() + drawn_rove_db(study.trials.rove_db, random);
   }
 }
 
 /// Leaves a visit's own blocks, if the study divides its methods between visits. They keep their
 /// numbers, which are those of one long session.
-void keep_visit(const Study& study, int visit, std::vector<Presentation>& shown) {
+void keep_visit(const Study& study, int visit, std::vector<Trial>& shown) {
   if (visit == 0 || study.visits.methods != VisitMethods::divided) return;
   const int blocks = study.presented_methods() / study.visits.count;
-  std::erase_if(shown, [&](const Presentation& one) { return one.block / blocks + 1 != visit; });
+  std::erase_if(shown, [&](const Trial& one) { return one.place.block / blocks + 1 != visit; });
 }
 
 std::vector<int> picture_layout(const Study& study, const ScheduleDraw& draw) {
@@ -160,8 +165,6 @@ void check_order(const Study& study) {
   }
 }
 
-}  // namespace
-
 Schedule scheduled(const Study& study, const ScheduleDraw& draw) {
   check_order(study);
   Schedule schedule;
@@ -170,27 +173,26 @@ Schedule scheduled(const Study& study, const ScheduleDraw& draw) {
   for (const auto& [methods, purpose] : block_plans(study, draw)) {
     const BlockOrder order = make_block_order(study, methods, purpose, draw.secret);
     const auto shown = presentations_of(order, block++, exemplars);
-    schedule.presentations.insert(schedule.presentations.end(), shown.begin(), shown.end());
+    schedule.trials.insert(schedule.trials.end(), shown.begin(), shown.end());
   }
   RandomStream random(draw.secret, "schedule: catch");
-  schedule.presentations =
-      with_catch_trials(schedule.presentations, study.trials.catch_trials, random);
-  rove(study, RandomStream(draw.secret, "schedule: rove"), schedule.presentations);
-  keep_visit(study, draw.visit, schedule.presentations);
-  number(schedule.presentations, 1);
+  schedule.trials = with_catch_trials(schedule.trials, study.trials.catch_trials, random);
+  rove(study, RandomStream(draw.secret, "schedule: rove"), schedule.trials);
+  keep_visit(study, draw.visit, schedule.trials);
+  number(schedule.trials, 1);
   schedule.layout = picture_layout(study, draw);
   return schedule;
 }
 
-std::vector<Presentation> scheduled_again(const Study& study, const ScheduleDraw& draw, int block,
-                                          int restarts_before, int first_trial) {
+std::vector<Trial> scheduled_again(const Study& study, const ScheduleDraw& draw, int block,
+                                   int restarts_before, int first_trial) {
   const std::vector<BlockPlan> plans = block_plans(study, draw);
   if (block < 0 || block >= static_cast<int>(plans.size()) || restarts_before < 0) {
-    throw std::invalid_argument("restarted_block: the study has no such block or restart");
+    throw std::invalid_argument("Order: the schedule has no such block or restart");
   }
   const Schedule first = scheduled(study, draw);
-  const auto caught = std::ranges::count_if(first.presentations, [block](const auto& shown) {
-    return shown.block == block && shown.role == Role::catch_trial;
+  const auto caught = std::ranges::count_if(first.trials, [block](const auto& shown) {
+    return shown.place.block == block && shown.role == Role::catch_trial;
   });
   const std::string restart = ", restart " + std::to_string(restarts_before + 1);
   const auto& [methods, purpose] = plans[static_cast<std::size_t>(block)];
@@ -198,10 +200,30 @@ std::vector<Presentation> scheduled_again(const Study& study, const ScheduleDraw
   const auto shown = presentations_of(
       make_block_order(study, methods, purpose + restart, draw.secret), block, exemplars);
   RandomStream random(draw.secret, "schedule: catch, " + purpose + restart);
-  std::vector<Presentation> again = with_catch_trials(shown, static_cast<int>(caught), random);
+  std::vector<Trial> again = with_catch_trials(shown, static_cast<int>(caught), random);
   rove(study, RandomStream(draw.secret, "schedule: rove, " + purpose + restart), again);
   number(again, first_trial);
   return again;
+}
+
+class IdentifyingOrder final : public Order {
+ public:
+  IdentifyingOrder(const Study& study, const ScheduleDraw& draw)
+      : Order(scheduled(study, draw), draw.secret), study_(study), draw_(draw) {}
+
+  std::vector<Trial> restarted(int block, int restarts_before, int first_trial) const override {
+    return scheduled_again(study_, draw_, block, restarts_before, first_trial);
+  }
+
+ private:
+  const Study& study_;
+  ScheduleDraw draw_;
+};
+
+}  // namespace
+
+std::unique_ptr<Order> identifying_order(const Study& study, const ScheduleDraw& draw) {
+  return std::make_unique<IdentifyingOrder>(study, draw);
 }
 
 std::string rule_of_schedule(const Study& study) {

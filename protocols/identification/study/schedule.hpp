@@ -2,16 +2,19 @@
 /// images, and catch trials. Private to protocols/identification.
 #pragma once
 
-#include "study/schedule.hpp"
+#include "study/order.hpp"
 #include "study/study.hpp"
+
+#include <memory>
+#include <string>
 
 namespace touchtrial::study::identification {
 
-/// The functions of study/schedule.hpp for both protocols of identification.
-[[nodiscard]] Schedule scheduled(const Study& study, const ScheduleDraw& draw);
-[[nodiscard]] std::vector<Presentation> scheduled_again(const Study& study,
-                                                        const ScheduleDraw& draw, int block,
-                                                        int restarts_before, int first_trial);
+/// The order of one participant.
+/// \throws StudyError if it is impossible for the study
+[[nodiscard]] std::unique_ptr<Order> identifying_order(const Study& study,
+                                                       const ScheduleDraw& draw);
+/// The name and version of the rule that draws it.
 [[nodiscard]] std::string rule_of_schedule(const Study& study);
 
 }  // namespace touchtrial::study::identification

@@ -3,6 +3,7 @@
 /// report says".
 #pragma once
 
+#include "analysis/choices/answers.hpp"
 #include "analysis/outcomes/outcomes.hpp"
 #include "analysis/outcomes/study_head.hpp"
 #include "analysis/statistics/descriptive.hpp"
@@ -12,10 +13,17 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace touchtrial::analysis::threshold {
+
+using choices::AgainstGuessing;
+using choices::ChoiceUse;
+using choices::GroupTest;
+using choices::Repetition;
+using choices::RightAnswers;
 
 /// What one estimator says about a track. A censored one has neither slope nor lapse rate.
 struct TrackEstimate {
@@ -48,12 +56,6 @@ struct TrackReport {
   std::optional<double> learning_db{};
 };
 
-/// A mean over participants and the t test of it against 0.
-struct GroupTest {
-  MeanEstimate mean;
-  std::optional<double> p{};  ///< two-sided
-};
-
 /// One class and standard: what participants' thresholds have in common. A participant's threshold
 /// is the mean of the own tracks that are not censored.
 struct StandardReport {
@@ -74,38 +76,6 @@ struct DifferenceReport {
   std::size_t second = 1;
   GroupTest difference;
   std::optional<double> p_holm{};  ///< over all pairs
-};
-
-/// Right answers where there is one guess rate.
-struct RightAnswers {
-  std::string participant;  ///< empty: all of them
-  Proportion answers;
-  Interval interval;               ///< Clopper and Pearson's
-  std::optional<double> p{};       ///< of as many right answers or more by guessing: exact binomial
-  std::optional<double> p_holm{};  ///< over participants
-};
-
-/// The trials outside the tracks: catch trials, or the control block.
-struct OutsideTracks {
-  RightAnswers pooled;
-  std::vector<RightAnswers> people;  ///< those with such a trial
-};
-
-/// One choice: how often it was named, and how often it was right.
-struct ChoiceUse {
-  std::string choice;
-  int named = 0;
-  int targets = 0;
-  GroupTest excess;  ///< share named less share right, over participants
-};
-
-/// How often an answer repeats the one before it, after right or after wrong answers. `expected` is
-/// what a participant's own shares of answers give in any order, so that a preference for a choice
-/// is not taken for repetition.
-struct Repetition {
-  Proportion repeats;  ///< all participants' trials pooled
-  std::optional<double> expected{};
-  GroupTest excess;  ///< share less expected, over participants
 };
 
 /// d' of "same" or "different" at one level. Hits are of the level, false alarms of all trials of
@@ -145,8 +115,8 @@ struct ThresholdReport : StudyHead {
   std::vector<TrackReport> tracks;
   std::vector<StandardReport> standards;
   std::vector<DifferenceReport> differences;
-  std::optional<OutsideTracks> control{};  ///< nothing without a trial of it
-  std::optional<OutsideTracks> catches{};
+  std::optional<AgainstGuessing> control{};  ///< nothing without a trial of it
+  std::optional<AgainstGuessing> catches{};
   std::vector<ChoiceUse> choice_use;
   Repetition after_right;
   Repetition after_wrong;
@@ -183,5 +153,23 @@ struct ThresholdReport : StudyHead {
 [[nodiscard]] procedures::Threshold mean_threshold(const MeanEstimate& mean);
 
 [[nodiscard]] std::string report_json(const ThresholdReport& report);
+
+/// Whether a trial belongs to a track of the study, or to the control block.
+[[nodiscard]] bool in_track(const TrialOutcome& trial) noexcept;
+[[nodiscard]] bool in_control(const TrialOutcome& trial) noexcept;
+
+/// People with their trials that have an answer, of tracks, catch trials and the control block, in
+/// the order in which they were felt.
+/// \param outcomes  must outlive the result
+[[nodiscard]] std::vector<choices::Person> people_of(const Outcomes& outcomes);
+
+/// The tracks with a trial and their estimates, by participant, then by track.
+[[nodiscard]] std::vector<TrackReport> track_reports(const study::Study& study,
+                                                     std::span<const choices::Person> people,
+                                                     bool by_posterior, int jobs);
+
+/// How a reader could misread the numbers, the gravest first.
+/// \param report  complete except for its warnings
+[[nodiscard]] std::vector<std::string> threshold_warnings(const ThresholdReport& report);
 
 }  // namespace touchtrial::analysis::threshold

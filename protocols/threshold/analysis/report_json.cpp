@@ -59,32 +59,21 @@ Json track_json(const ThresholdReport& report, const TrackReport& track) {
           {"learning_db", figure_json(track.learning_db)}};
 }
 
-Json tracks_json(const ThresholdReport& report) {
-  Json all = Json::array();
-  for (const TrackReport& track : report.tracks) all.push_back(track_json(report, track));
-  return all;
-}
-
-Json standards_json(const ThresholdReport& report) {
-  Json all = Json::array();
-  for (const StandardReport& one : report.standards) {
-    const auto label = static_cast<std::size_t>(one.of.class_index);
-    all.push_back(
-        {{"standard", one.words},
-         {"class", label < report.classes.size() ? Json(report.classes[label]) : Json(nullptr)},
-         {"value", figure_json(one.of.value)},
-         {"highest_level", one.levels.empty() ? Json(nullptr) : figure_json(one.levels.back())},
-         {"tracks", one.tracks},
-         {"n", one.mean.participants},
-         {"censored_below", one.censored_below},
-         {"censored_above", one.censored_above},
-         {"mean", figure_json(one.mean.mean)},
-         {"interval", interval_json(one.mean.known_interval())},
-         {"sd", figure_json(one.mean.sd)},
-         {"weber",
-          quantity_json(quantity_of(report.options(), one.of, mean_threshold(one.mean)))}});
-  }
-  return all;
+Json standard_json(const ThresholdReport& report, const StandardReport& one) {
+  const auto label = static_cast<std::size_t>(one.of.class_index);
+  Json object{
+      {"standard", one.words},
+      {"class", label < report.classes.size() ? Json(report.classes[label]) : Json(nullptr)},
+      {"value", figure_json(one.of.value)},
+      {"highest_level", one.levels.empty() ? Json(nullptr) : figure_json(one.levels.back())},
+      {"tracks", one.tracks},
+      {"n", one.mean.participants},
+      {"censored_below", one.censored_below},
+      {"censored_above", one.censored_above}};
+  put_mean(object, one.mean);
+  object["sd"] = figure_json(one.mean.sd);
+  object["weber"] = quantity_json(quantity_of(report.options(), one.of, mean_threshold(one.mean)));
+  return object;
 }
 
 void put_test(Json& object, const std::string& name, const GroupTest& test) {
@@ -94,16 +83,12 @@ void put_test(Json& object, const std::string& name, const GroupTest& test) {
   object["p"] = figure_json(test.p);
 }
 
-Json differences_json(const ThresholdReport& report) {
-  Json all = Json::array();
-  for (const DifferenceReport& one : report.differences) {
-    Json object{{"first", report.standards[one.first].words},
-                {"second", report.standards[one.second].words}};
-    put_test(object, "difference", one.difference);
-    object["p_holm"] = figure_json(one.p_holm);
-    all.push_back(std::move(object));
-  }
-  return all;
+Json difference_json(const ThresholdReport& report, const DifferenceReport& one) {
+  Json object{{"first", report.standards[one.first].words},
+              {"second", report.standards[one.second].words}};
+  put_test(object, "difference", one.difference);
+  object["p_holm"] = figure_json(one.p_holm);
+  return object;
 }
 
 Json right_json(const RightAnswers& one) {
@@ -114,28 +99,23 @@ Json right_json(const RightAnswers& one) {
           {"p", figure_json(one.p)}};
 }
 
-Json outside_json(const std::optional<OutsideTracks>& outside, double guess) {
+Json outside_json(const std::optional<AgainstGuessing>& outside, double guess) {
   if (!outside) return nullptr;
   Json object = right_json(outside->pooled);
   object["guess"] = guess;
-  object["participants"] = Json::array();
-  for (const RightAnswers& one : outside->people) {
+  object["participants"] = array_json(outside->people, [](const RightAnswers& one) {
     Json own{{"participant", one.participant}};
     own.update(right_json(one));
     own["p_holm"] = figure_json(one.p_holm);
-    object["participants"].push_back(std::move(own));
-  }
+    return own;
+  });
   return object;
 }
 
-Json choices_json(const ThresholdReport& report) {
-  Json all = Json::array();
-  for (const ChoiceUse& one : report.choice_use) {
-    Json object{{"choice", one.choice}, {"named", one.named}, {"targets", one.targets}};
-    put_test(object, "difference", one.excess);
-    all.push_back(std::move(object));
-  }
-  return all;
+Json choice_json(const ChoiceUse& one) {
+  Json object{{"choice", one.choice}, {"named", one.named}, {"targets", one.targets}};
+  put_test(object, "difference", one.excess);
+  return object;
 }
 
 Json repetition_json(const Repetition& one) {
@@ -163,24 +143,21 @@ Json level_json(const ThresholdReport& report, const SameDifferentLevel& one) {
 }
 
 Json mean_json(const MeanEstimate& mean) {
-  return {{"participants", mean.participants},
-          {"mean", figure_json(mean.mean)},
-          {"interval", interval_json(mean.known_interval())}};
+  Json object{{"participants", mean.participants}};
+  put_mean(object, mean);
+  return object;
 }
 
 Json same_different_json(const ThresholdReport& report) {
   if (report.has_thresholds()) return nullptr;
-  Json levels = Json::array();
-  for (const SameDifferentLevel& one : report.same_different) {
-    levels.push_back(level_json(report, one));
-  }
-  Json groups = Json::array();
-  for (const SameDifferentGroup& one : report.same_different_groups) {
-    groups.push_back({{"standard", report.standards[one.standard].words},
-                      {"level", one.level},
-                      {"differencing", mean_json(one.differencing)},
-                      {"independent", mean_json(one.independent)}});
-  }
+  Json levels = array_json(report.same_different,
+                           [&](const SameDifferentLevel& one) { return level_json(report, one); });
+  Json groups = array_json(report.same_different_groups, [&](const SameDifferentGroup& one) {
+    return Json{{"standard", report.standards[one.standard].words},
+                {"level", one.level},
+                {"differencing", mean_json(one.differencing)},
+                {"independent", mean_json(one.independent)}};
+  });
   return {{"levels", std::move(levels)}, {"groups", std::move(groups)}};
 }
 
@@ -203,12 +180,15 @@ Json settings_json(const ThresholdReport& report) {
 
 std::string report_json(const ThresholdReport& report) {
   Json members = settings_json(report);
-  members["tracks"] = tracks_json(report);
-  members["standards"] = standards_json(report);
-  members["differences"] = differences_json(report);
+  const auto of_report = [&](auto one_json) {
+    return [&report, one_json](const auto& one) { return one_json(report, one); };
+  };
+  members["tracks"] = array_json(report.tracks, of_report(track_json));
+  members["standards"] = array_json(report.standards, of_report(standard_json));
+  members["differences"] = array_json(report.differences, of_report(difference_json));
   members["control"] = outside_json(report.control, report.guess);
   members["catch"] = outside_json(report.catches, report.guess);
-  members["intervals"] = choices_json(report);
+  members["intervals"] = array_json(report.choice_use, choice_json);
   members["sequence"] = {{"after_right", repetition_json(report.after_right)},
                          {"after_wrong", repetition_json(report.after_wrong)}};
   members["learning"] = Json::object();

@@ -1,11 +1,10 @@
 #include "protocols/threshold/analysis/threshold_analysis.hpp"
 
 #include "core/errors.hpp"
-#include "protocols/threshold/analysis/figures/figures.hpp"
+#include "protocols/threshold/analysis/exports.hpp"
+#include "protocols/threshold/analysis/figures.hpp"
 #include "protocols/threshold/analysis/page/sections.hpp"
 #include "protocols/threshold/analysis/report.hpp"
-#include "protocols/threshold/analysis/tables.hpp"
-#include "protocols/threshold/analysis/threshold_model.hpp"
 
 #include <utility>
 
@@ -53,7 +52,9 @@ class ThresholdAnalysis final : public ProtocolAnalysis {
     return {{"thresholds.csv", thresholds_table(make_report(outcomes), outcomes.simulated)},
             {"tracks.csv", track_trials_table(outcomes)}};
   }
-  std::vector<TrialColumn> trial_columns() const override { return threshold_trial_columns(); }
+  std::vector<TrialColumn> trial_columns(const Outcomes&) const override {
+    return threshold_trial_columns();
+  }
   std::vector<std::filesystem::path> export_model(
       const record::StudyStore& store, const Outcomes& outcomes,
       const std::filesystem::path& folder) const override {

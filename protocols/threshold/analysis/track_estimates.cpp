@@ -1,5 +1,5 @@
 #include "core/parallel.hpp"
-#include "protocols/threshold/analysis/report_parts.hpp"
+#include "protocols/threshold/analysis/report.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +8,7 @@
 namespace touchtrial::analysis::threshold {
 namespace {
 
+using choices::Person;
 using procedures::Censored;
 using procedures::LevelCounts;
 using procedures::Observer;
@@ -36,8 +37,7 @@ std::vector<TrackReport> tracks_of(const Person& person,
     if (track >= tracks.size()) continue;
     if (level >= standards[track / each].track.levels.size()) continue;
     tracks[track].trials.push_back({level, trial->correct()});
-    ++tracks[track].answers.n;
-    tracks[track].answers.correct += trial->correct() ? 1 : 0;
+    tracks[track].answers.add(trial->correct());
   }
   std::erase_if(tracks, [](const TrackReport& track) { return track.trials.empty(); });
   return tracks;

@@ -1,6 +1,6 @@
 #include "analysis/report/page/wording.hpp"
 #include "core/text.hpp"
-#include "protocols/threshold/analysis/report_parts.hpp"
+#include "protocols/threshold/analysis/report.hpp"
 
 #include <algorithm>
 
@@ -12,7 +12,6 @@ namespace {
 using study::threshold::Along;
 using study::threshold::Question;
 
-constexpr double kUsualLevel = 0.05;
 /// Catch trials are at the highest level, where hardly anybody who attends is wrong.
 constexpr double kPoorCatches = 0.8;
 

@@ -82,9 +82,9 @@ ExpectedChange ComparingPopulation::learnt(const PopulationSetting& setting) {
   for (std::size_t standard = 0; standard < standards; ++standard) {
     for (int pass = 0; pass < passes; ++pass) {
       const auto felt = [&](std::optional<std::size_t> level) {
-        const study::Interval interval = study::threshold::interval_at(study, standard, level);
-        return feel_exploration(setting.source.plane_of(interval), setting.source.plane(), learner,
-                                servo,
+        const study::Plane plane = study::threshold::plane_at(study, standard, level);
+        return feel_exploration(setting.source.plane_of(plane, setting.key), setting.source.plane(),
+                                learner, servo,
                                 RandomStream(setting.seed, "subject: interval practice",
                                              (standard << 16U) + static_cast<std::uint64_t>(pass)));
       };
@@ -142,7 +142,9 @@ void ComparingParticipant::interval(const session::IntervalStep& next) {
     felt_.push_back(felt_last());
   }
   hears_only_ = next.hand_off;
-  if (next.interval == 1) ++begun_[next.trial];
+  if (next.interval == 1 && !begun_.insert(next.trial).second && order_) {
+    order_->interrupted({.place = {.trial = next.trial}});
+  }
   trial_ = next.trial;
 }
 
@@ -176,21 +178,20 @@ int ComparingParticipant::given_answer(RandomStream& random) {
         "an observer of a given function is told levels by `simulate` alone; remove "
         "given_function from the subject file, or simulate");
   }
-  study::Presentation shown{.trial = trial_, .interruptions = begun_[trial_] - 1, .stimulus = {}};
-  order_->choose(shown);
-  const study::ChosenLevel chosen = shown.chosen.value();
+  const study::Trial shown = order_->at({.place = {.trial = trial_}});
+  const int target = shown.right.value();
   const GivenFunction& given = *subject_.given_function;
   const procedures::ParameterGrid& grid = options_.track.grid;
   const double own =
       RandomStream(seed_, "subject: given threshold", static_cast<std::uint64_t>(number_)).normal();
   const procedures::Observer observer{grid.shape, given.threshold + given.spread * own, given.slope,
                                       grid.guess, given.lapse};
-  const double level = options_.track.levels[static_cast<std::size_t>(chosen.level)];
+  const double level = options_.track.levels[static_cast<std::size_t>(shown.level.value().level)];
   const bool right = random.uniform() < procedures::shares_at(observer, level).correct;
   const auto others = static_cast<std::uint64_t>(labels_.size() - 1);
   const auto wrong = static_cast<int>(random.below(others));
-  const int position = right ? chosen.target : wrong + (wrong >= chosen.target ? 1 : 0);
-  order_->answer(shown, position);
+  const int position = right ? target : wrong + (wrong >= target ? 1 : 0);
+  order_->answered(shown, Chosen{position});
   return position;
 }
 

@@ -10,8 +10,8 @@
 #include "protocols/threshold/study/threshold.hpp"
 
 #include <cstdint>
-#include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,7 +38,7 @@ class ComparingParticipant final : public SimulatedParticipant {
   void see_pictures(const std::vector<std::string>& labels) override { labels_ = labels; }
   void interval(const session::IntervalStep& next) override;
   void rest() override { condition_.rest(trials_); }
-  void follow(std::unique_ptr<study::AdaptiveOrder> order) override { order_ = std::move(order); }
+  void follow(std::unique_ptr<study::Order> order) override { order_ = std::move(order); }
 
  protected:
   [[nodiscard]] ParticipantAnswer choose(const engine::FeltFeatures& felt,
@@ -65,9 +65,9 @@ class ComparingParticipant final : public SimulatedParticipant {
   std::vector<std::string> labels_;
   std::vector<engine::FeltFeatures> felt_;  ///< of the trial's earlier intervals
   bool hears_only_ = false;
-  std::unique_ptr<study::AdaptiveOrder> order_;
-  int trial_ = 0;               ///< number in the schedule
-  std::map<int, int> begun_{};  ///< how often, by that number
+  std::unique_ptr<study::Order> order_;
+  int trial_ = 0;          ///< number in the schedule
+  std::set<int> begun_{};  ///< by that number
   int trials_ = 0;
 };
 

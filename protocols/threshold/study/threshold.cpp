@@ -4,7 +4,10 @@
 #include "core/strict_json.hpp"
 #include "protocols/threshold/study/threshold_section.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -14,7 +17,6 @@
 namespace touchtrial::study::threshold {
 namespace {
 
-constexpr int kTrackBlock = 0;
 constexpr int kControlBlock = 1;
 
 /// How many fields there are for a standard along the order: its own, and one a level.
@@ -29,31 +31,31 @@ class TrialDraw {
   TrialDraw(const Study& study, const Digest& secret) : study_(study), secret_(secret) {}
 
   /// Fills a trial at the highest level of a standard that is drawn.
-  void fill_easily(Presentation& place, std::string_view purpose, std::uint64_t index,
+  void fill_easily(Trial& trial, std::string_view purpose, std::uint64_t index,
                    RandomStream& random) const {
     const std::vector<Standard> standards = standards_of(study_);
     const auto nth = static_cast<std::size_t>(random.below(standards.size()));
     const std::size_t top = levels_of(options_of(study_), standards[nth]).size() - 1;
-    place.chosen = {0, static_cast<int>(top), 0};
-    fill(place, purpose, index, nth, top);
+    trial.level = {0, static_cast<int>(top)};
+    fill(trial, purpose, index, nth, top);
   }
 
-  /// Fills the intervals, and sets the target.
-  void fill(Presentation& place, std::string_view purpose, std::uint64_t index,
-            std::size_t nth_standard, std::size_t level) const {
+  /// Fills the planes, and says which answer is right.
+  void fill(Trial& trial, std::string_view purpose, std::uint64_t index, std::size_t nth_standard,
+            std::size_t level) const {
     const ThresholdOptions& options = options_of(study_);
     RandomStream random(secret_, purpose, index);
     const auto choices = static_cast<std::uint64_t>(
         options.question == Question::same_different ? 2 : options.intervals);
     const auto target = static_cast<int>(random.below(choices));
     const bool swapped = random.below(2) == 1;
-    const Interval reference = interval_at(study_, nth_standard, std::nullopt);
-    const Interval signal = interval_at(study_, nth_standard, level);
-    place.chosen->target = target;
-    place.intervals.clear();
+    const Plane reference = plane_at(study_, nth_standard, std::nullopt);
+    const Plane signal = plane_at(study_, nth_standard, level);
+    trial.right = target;
+    trial.planes.clear();
     for (int i = 0; i < options.intervals; ++i) {
-      place.intervals.push_back(has_signal(i, target, swapped) ? signal : reference);
-      vary(place.intervals.back(), random);
+      trial.planes.push_back(has_signal(i, target, swapped) ? signal : reference);
+      vary(trial.planes.back(), random);
     }
   }
 
@@ -71,59 +73,83 @@ class TrialDraw {
   }
 
   /// Draws exemplar and gain.
-  void vary(Interval& interval, RandomStream& random) const {
+  void vary(Plane& plane, RandomStream& random) const {
     const ThresholdOptions& options = options_of(study_);
     const auto exemplar_of = [&](const StimulusIndex& of) {
       const auto images = study_.classes[static_cast<std::size_t>(of.class_index)].images.size();
       return static_cast<int>(random.below(images));
     };
-    interval.stimulus.exemplar = exemplar_of(interval.stimulus);
-    if (interval.other) interval.other->exemplar = exemplar_of(*interval.other);
+    plane.field.exemplar = exemplar_of(plane.field);
+    if (plane.mix) plane.mix->other.exemplar = exemplar_of(plane.mix->other);
     const double rove_db = drawn_rove_db(options.rove_db, random);
-    if (interval.blank || options.rove_db == 0.0) return;
-    interval.gain_db += rove_db;
-    if (options.along != Along::gain) interval.gain_db -= options.rove_db / 2.0;
+    if (plane.blank || options.rove_db == 0.0) return;
+    plane.gain_db += rove_db;
+    if (options.along != Along::gain) plane.gain_db -= options.rove_db / 2.0;
   }
 
   const Study& study_;
   Digest secret_;
 };
 
-class ThresholdOrder final : public AdaptiveOrder {
+/// The places of the tracks' trials, then those of the controls.
+Schedule places_of(const Study& study) {
+  const ThresholdOptions& options = options_of(study);
+  const int of_tracks = study.task->scored_trials(study) + options.catch_trials;
+  Schedule schedule;
+  for (int i = 0; i < of_tracks + options.control_trials; ++i) {
+    Trial& trial = schedule.trials.emplace_back();
+    trial.place.trial = i + 1;
+    if (i < of_tracks) continue;
+    trial.place.block = kControlBlock;
+    trial.place.hand_off = true;
+    trial.role = Role::control;
+  }
+  schedule.layout.resize(choices_of(study).size());
+  std::iota(schedule.layout.begin(), schedule.layout.end(), 0);
+  return schedule;
+}
+
+class ThresholdOrder final : public Order {
  public:
   ThresholdOrder(const Study& study, const ScheduleDraw& draw)
-      : study_(study),
+      : Order(places_of(study), draw.secret),
+        study_(study),
         trials_(study_, block_secret(draw)),
         catches_(block_secret(draw)),
         block_(block_settings(study_), block_secret(draw)) {}
 
-  void choose(Presentation& place) const override {
+  Trial at(const Trial& scheduled) const override {
     const ThresholdOptions& options = options_of(study_);
     const auto tracks_each = static_cast<std::size_t>(options.tracks_each);
     constexpr std::uint64_t kMaxTrials = 1U << 20U;
-    const auto index = static_cast<std::uint64_t>(place.trial) +
-                       kMaxTrials * static_cast<std::uint64_t>(place.interruptions);
+    const auto times = interruptions_.find(scheduled.place.trial);
+    const auto index = static_cast<std::uint64_t>(scheduled.place.trial) +
+                       kMaxTrials * (times == interruptions_.end() ? 0 : times->second);
+    Trial trial = scheduled;
     const std::optional<procedures::Presentation> next = block_.next();
     if (next && next->track) {
-      place.role = Role::scored;
-      place.chosen = {static_cast<int>(*next->track) + 1, static_cast<int>(next->level), 0};
-      return trials_.fill(place, "threshold: trial", index, *next->track / tracks_each,
-                          next->level);
+      trial.role = Role::scored;
+      trial.level = {static_cast<int>(*next->track) + 1, static_cast<int>(next->level)};
+      trials_.fill(trial, "threshold: trial", index, *next->track / tracks_each, next->level);
+      return trial;
     }
-    place.role = next ? Role::catch_trial : Role::control;
+    trial.role = next ? Role::catch_trial : Role::control;
     RandomStream random(catches_, "threshold: standard", index);
-    trials_.fill_easily(place, "threshold: trial", index, random);
+    trials_.fill_easily(trial, "threshold: trial", index, random);
+    return trial;
   }
 
-  void answer(const Presentation& shown, int choice) override {
-    if (!shown.hand_off) block_.answer(choice == shown.chosen->target);
+  void answered(const Trial& shown, const Answer& answer) override {
+    if (!shown.place.hand_off) block_.answer(schedule().choice_of(answer) == shown.right);
   }
+  void interrupted(const Trial& shown) override { ++interruptions_[shown.place.trial]; }
 
  private:
-  Study study_;
+  const Study& study_;
   TrialDraw trials_;
   Digest catches_;
   procedures::Block block_;
+  std::map<int, std::uint64_t> interruptions_;  ///< by trial
 };
 
 std::string question_key(const ThresholdOptions& options) {
@@ -133,153 +159,141 @@ std::string question_key(const ThresholdOptions& options) {
   return options.along == Along::pitch ? "threshold_coarser" : "threshold_stronger";
 }
 
-class Threshold final : public Protocol {
+class ThresholdTask final : public study::Task {
  public:
-  std::string_view name() const noexcept override { return "threshold"; }
-  std::string_view section() const noexcept override { return "threshold"; }
-  int least_classes() const noexcept override { return 1; }
+  explicit ThresholdTask(ThresholdOptions options) : options_(std::move(options)) {}
 
-  std::shared_ptr<const ProtocolOptions> read(
-      const std::optional<JsonValue>& section) const override {
-    if (section) return read_section(*section);
-    return std::make_shared<ThresholdOptions>();
-  }
-  std::string options_in_clear(const Study& study) const override {
-    return section_json(options_of(study));
-  }
-  /// Along the order, every level needs a field of its own.
-  void complete(const JsonValue& file, Study& study) const override {
-    const ThresholdOptions& options = options_of(study);
-    if (options.track.levels.empty()) {
+  [[nodiscard]] const ThresholdOptions& options() const noexcept { return options_; }
+
+  void check(const JsonValue& file, const Study& study) const override {
+    if (options_.track.levels.empty()) {
       file.refuse_below("/threshold", "is missing; a threshold needs at least task and levels");
     }
     if (study.methods.size() != 1) {
       file.refuse_below("/methods", fmt::format("has {} entries; a threshold is of one method",
                                                 study.methods.size()));
     }
-    if (options.along != Along::order) return;
-    const StudyMethod own = study.methods.front();
-    if (own.method != engine::Method::fixed) {
+    if (options_.along == Along::order && study.methods.front().method != engine::Method::fixed) {
       file.refuse_below("/methods/0/name", "must be \"fixed\", whose order the levels change");
     }
-    study.methods.clear();
-    for (const double standard : options.standards) {
-      const auto add = [&](double order) {
-        StudyMethod& made = study.methods.emplace_back(own);
-        made.order = order;
-        made.label = fmt::format("order {}-{:.5f}", study.methods.size(), order);
-      };
-      add(standard);
-      for (const double level : options.track.levels) {
-        const double order = comparison_at(options, {0, standard}, level);
-        add(std::min(order, std::nextafter(1.0, 0.0)));  // refused by `check` with its place
-      }
-    }
-  }
-  void check(const JsonValue& file, const Study& study) const override {
     check_section(file, study);
   }
-  int scored_trials(const Study& study) const override {
-    const ThresholdOptions& options = options_of(study);
-    return static_cast<int>(standards_of(study).size()) * options.tracks_each *
-           options.track.trials;
-  }
-  Schedule schedule(const Study& study, const ScheduleDraw& /*draw*/) const override {
-    const ThresholdOptions& options = options_of(study);
-    const int of_tracks = scored_trials(study) + options.catch_trials;
-    Schedule schedule;
-    for (int i = 0; i < of_tracks + options.control_trials; ++i) {
-      Presentation& place = schedule.presentations.emplace_back();
-      place.trial = i + 1;
-      if (i < of_tracks) continue;
-      place.block = kControlBlock;
-      place.role = Role::control;
-      place.hand_off = true;
-    }
-    schedule.layout.resize(choices(study).size());
-    std::iota(schedule.layout.begin(), schedule.layout.end(), 0);
-    return schedule;
-  }
-  std::string rule(const Study& study) const override {
+  std::string in_clear() const override { return section_json(options_); }
+  std::string rule(const Study& /*study*/) const override {
     return "touchtrial threshold 1: levels by the procedure's answers, ties within 1e-9 to the "
            "smallest; draws by BLAKE2b(participant's secret, purpose, trial); " +
-           section_json(options_of(study));
+           section_json(options_);
   }
-  std::unique_ptr<AdaptiveOrder> adaptive_order(const Study& study,
-                                                const ScheduleDraw& draw) const override {
+  int scored_trials(const Study& study) const override {
+    return static_cast<int>(standards_of(study).size()) * options_.tracks_each *
+           options_.track.trials;
+  }
+  Fields fields(const Study& study) const override {
+    return {
+        .methods = methods(study.methods.front()), .mixtures = mixtures(study), .levelled = true};
+  }
+
+  Ask ask(const Study& study, const Place& place) const override {
+    Ask ask{.exploring = InContact{options_.interval_s, options_.windows},
+            .planes = options_.intervals,
+            .question = Choose{question_key(options_), choices()},
+            .confidence_levels = study.session.confidence_levels,
+            .feedback = options_.feedback && !place.hand_off};
+    if (place.hand_off) ask.exploring = Played{options_.interval_s};
+    return ask;
+  }
+  std::unique_ptr<Order> order(const Study& study, const ScheduleDraw& draw) const override {
     return std::make_unique<ThresholdOrder>(study, draw);
   }
-  StimulusIndex stimulus_of(const Study& study, const ChosenLevel& chosen) const override {
-    const ThresholdOptions& options = options_of(study);
-    const int standard = std::max(0, chosen.track - 1) / options.tracks_each;
-    const auto nth = std::min(static_cast<std::size_t>(standard), standards_of(study).size() - 1);
-    const auto top = options.track.levels.size() - 1;
-    return interval_at(study, nth,
-                       std::min(static_cast<std::size_t>(std::max(0, chosen.level)), top))
-        .stimulus;
+  Practice practice(const Study& study, const ScheduleDraw& draw, int round) const override {
+    const TrialDraw trials(study, block_secret(draw));
+    Practice practice{
+        .labels = {},
+        .trials = std::vector<Trial>(static_cast<std::size_t>(options_.practice_trials)),
+        .criterion = options_.practice_criterion,
+        .rounds = options_.practice_rounds};
+    for (const Choice& choice : choices()) practice.labels.push_back(choice.label);
+    for (std::size_t i = 0; i < practice.trials.size(); ++i) {
+      const auto index = static_cast<std::uint64_t>(round) * 1000 + i;
+      RandomStream random(block_secret(draw), "threshold: practice standard", index);
+      practice.trials[i].place.trial = static_cast<int>(i) + 1;
+      practice.trials[i].role = Role::practice;
+      trials.fill_easily(practice.trials[i], "threshold: practice", index, random);
+    }
+    return practice;
   }
-  std::vector<Choice> choices(const Study& study) const override {
-    const ThresholdOptions& options = options_of(study);
-    if (options.question == Question::same_different) return {{"same"}, {"different"}};
+  StimulusIndex about(const Study& study, const Level& level) const override {
+    const int standard = std::max(0, level.track - 1) / options_.tracks_each;
+    const auto nth = std::min(static_cast<std::size_t>(standard), standards_of(study).size() - 1);
+    const auto top = options_.track.levels.size() - 1;
+    return plane_at(study, nth, std::min(static_cast<std::size_t>(std::max(0, level.level)), top))
+        .field;
+  }
+
+ private:
+  [[nodiscard]] std::vector<Choice> choices() const {
+    if (options_.question == Question::same_different) return {{"same"}, {"different"}};
     std::vector<Choice> all = {{"first"}, {"second"}};
-    if (options.intervals == 3) all.push_back({"third"});
+    if (options_.intervals == 3) all.push_back({"third"});
     return all;
   }
-  std::optional<int> right_choice(const Study& /*study*/,
-                                  const Presentation& shown) const override {
-    if (!shown.chosen) return std::nullopt;
-    return shown.chosen->target;
+  /// Along the order, every level needs a field of its own.
+  /// \param own  the study file's method, or one of those that this made of it
+  [[nodiscard]] std::vector<StudyMethod> methods(const StudyMethod& own) const {
+    if (options_.along != Along::order) return {own};
+    std::vector<StudyMethod> all;
+    const auto add = [&](double order) {
+      StudyMethod& made = all.emplace_back(own);
+      made.order = std::min(order, std::nextafter(1.0, 0.0));  // `check` refuses larger ones
+      made.label = fmt::format("order {}-{:.5f}", all.size(), made.order);
+    };
+    for (const double standard : options_.standards) {
+      add(standard);
+      for (const double level : options_.track.levels) {
+        add(comparison_at(options_, {0, standard}, level));
+      }
+    }
+    return all;
   }
-  std::optional<IntervalPlan> interval_plan(const Study& study) const override {
-    const ThresholdOptions& options = options_of(study);
-    return IntervalPlan{.count = options.intervals,
-                        .seconds = options.interval_s,
-                        .windows = options.windows,
-                        .question = question_key(options),
-                        .feedback = options.feedback,
-                        .practice_criterion = options.practice_criterion,
-                        .practice_rounds = options.practice_rounds};
-  }
-  std::vector<Interval> mixtures(const Study& study) const override {
-    const ThresholdOptions& options = options_of(study);
-    std::vector<Interval> all;
-    if (options.along != Along::blend) return all;
-    for (std::size_t level = 0; level < options.track.levels.size(); ++level) {
-      const Interval mixed = interval_at(study, 0, level);
+  [[nodiscard]] std::vector<Plane> mixtures(const Study& study) const {
+    std::vector<Plane> all;
+    if (options_.along != Along::blend) return all;
+    for (std::size_t level = 0; level < options_.track.levels.size(); ++level) {
+      const Plane mixed = plane_at(study, 0, level);
       for (std::size_t a = 0; a < study.classes[0].images.size(); ++a) {
         for (std::size_t b = 0; b < study.classes[1].images.size(); ++b) {
-          Interval& one = all.emplace_back(mixed);
-          one.stimulus.exemplar = static_cast<int>(a);
-          one.other->exemplar = static_cast<int>(b);
+          Plane& one = all.emplace_back(mixed);
+          one.field.exemplar = static_cast<int>(a);
+          one.mix->other.exemplar = static_cast<int>(b);
         }
       }
     }
     return all;
   }
-  std::vector<Presentation> practice_trials(const Study& study, const ScheduleDraw& draw,
-                                            int round) const override {
-    const ThresholdOptions& options = options_of(study);
-    const TrialDraw trials(study, block_secret(draw));
-    std::vector<Presentation> all(static_cast<std::size_t>(options.practice_trials));
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      const auto index = static_cast<std::uint64_t>(round) * 1000 + i;
-      RandomStream random(block_secret(draw), "threshold: practice standard", index);
-      all[i].trial = static_cast<int>(i) + 1;
-      trials.fill_easily(all[i], "threshold: practice", index, random);
-    }
-    return all;
-  }
+
+  ThresholdOptions options_;
 };
+
+std::shared_ptr<const study::Task> read_task(const std::optional<JsonValue>& section) {
+  return std::make_shared<ThresholdTask>(section ? read_section(*section) : ThresholdOptions{});
+}
 
 }  // namespace
 
 const ThresholdOptions& options_of(const Study& study) {
-  return static_cast<const ThresholdOptions&>(*study.options);
+  return static_cast<const ThresholdTask&>(*study.task).options();
+}
+
+Study with_options(const Study& study, const ThresholdOptions& options) {
+  Study changed = study;
+  changed.task = std::make_shared<ThresholdTask>(options);
+  return changed;
 }
 
 const Protocol& protocol() {
-  static const Threshold protocol;
-  return protocol;
+  static constexpr Protocol kProtocol{
+      .name = "threshold", .section = "threshold", .read = read_task, .min_classes = 1};
+  return kProtocol;
 }
 
 std::vector<Standard> standards_of(const Study& study) {
@@ -309,33 +323,31 @@ std::string words_of(const Study& study, const Standard& standard) {
   return label;
 }
 
-Interval interval_at(const Study& study, std::size_t nth_standard,
-                     std::optional<std::size_t> level) {
+Plane plane_at(const Study& study, std::size_t nth_standard, std::optional<std::size_t> level) {
   const ThresholdOptions& options = options_of(study);
   const Standard standard = standards_of(study)[nth_standard];
-  Interval interval;
-  interval.stimulus.class_index = standard.class_index;
+  Plane plane;
+  plane.field.class_index = standard.class_index;
   const double at = level ? options.track.levels[*level] : 0.0;
   const double amount = level ? comparison_at(options, standard, at) : standard.value;
   switch (options.along) {
     case Along::gain:
-      interval.blank = options.task == Task::detection && !level;
-      interval.gain_db = interval.blank ? 0.0 : amount;
+      plane.blank = options.task == Task::detection && !level;
+      plane.gain_db = plane.blank ? 0.0 : amount;
       break;
     case Along::pitch:
-      interval.pitch_factor = level ? amount : 1.0;
+      plane.pitch = level ? amount : 1.0;
       break;
     case Along::order:
-      interval.stimulus.method =
+      plane.field.method =
           static_cast<int>(nth_standard % options.standards.size()) * fields_of_standard(options) +
           (level ? 1 + static_cast<int>(*level) : 0);
       break;
     case Along::blend:
-      interval.other = StimulusIndex{1, 0, 0};
-      interval.share = level ? std::min(amount, 1.0) : 0.0;
+      plane.mix = Mix{{1, 0, 0}, level ? std::min(amount, 1.0) : 0.0};
       break;
   }
-  return interval;
+  return plane;
 }
 
 std::vector<double> levels_of(const ThresholdOptions& options, const Standard& standard) {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "protocols/procedures/tracks.hpp"
-#include "study/interval_plan.hpp"
 #include "study/protocol.hpp"
 #include "study/study.hpp"
 
@@ -41,13 +40,13 @@ struct Standard {
 };
 
 /// The study file's "threshold".
-struct ThresholdOptions final : ProtocolOptions {
+struct ThresholdOptions {
   Task task = Task::detection;
   Question question = Question::which_interval;
   Along along = Along::gain;
   int intervals = 2;        ///< 2 or 3; odd_one_out 3, same_different 2
-  double interval_s = 2.5;  ///< IntervalPlan::seconds
-  IntervalWindows windows{};
+  double interval_s = 2.5;  ///< InContact::seconds
+  HandRange windows{};
   /// Of every track, with the levels of all. Detection: dB re the pack's gain, at most 0.
   /// Discrimination: 20 log10(dA / A), A being the standard's amplitude, pitch or order; of a
   /// blend, dA the share and A = 1.
@@ -65,6 +64,8 @@ struct ThresholdOptions final : ProtocolOptions {
 
 /// \pre the study's protocol is this one
 [[nodiscard]] const ThresholdOptions& options_of(const Study& study);
+/// The study with other options, which are not checked.
+[[nodiscard]] Study with_options(const Study& study, const ThresholdOptions& options);
 
 /// The protocol "threshold".
 [[nodiscard]] const Protocol& protocol();
@@ -78,11 +79,11 @@ struct ThresholdOptions final : ProtocolOptions {
 /// \return for instance "bark", "bark, standard -12 dB", "bark, order 0.5", "bark to cloth"
 [[nodiscard]] std::string words_of(const Study& study, const Standard& standard);
 
-/// What an interval presents, before exemplars are chosen and gains roved.
+/// The plane of a level, before exemplars are chosen and gains roved.
 /// \param nth_standard  index into standards_of
 /// \param level  index into the levels; nothing: the standard, or the blank plane
-[[nodiscard]] Interval interval_at(const Study& study, std::size_t nth_standard,
-                                   std::optional<std::size_t> level);
+[[nodiscard]] Plane plane_at(const Study& study, std::size_t nth_standard,
+                             std::optional<std::size_t> level);
 
 /// The levels of a standard's tracks: of all levels, from the lowest, those whose comparisons do
 /// not exceed the pack's gain.

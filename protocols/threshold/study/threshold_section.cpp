@@ -62,10 +62,10 @@ int read_count(const JsonValue& place, std::int64_t low, std::int64_t high) {
   return static_cast<int>(place.integer(low, high));
 }
 
-IntervalWindows read_windows(const JsonValue& place) {
+HandRange read_windows(const JsonValue& place) {
   const JsonObject object =
       place.object({"slowest_mm_s", "fastest_mm_s", "lightest_n", "strongest_n"});
-  IntervalWindows windows;
+  HandRange windows;
   const auto read = [&](std::string_view key, double& value, double most) {
     if (const auto member = object.find(key)) value = member->number({0.0, most});
   };
@@ -202,37 +202,37 @@ std::string_view name_of(Along along) {
   return name_in(kAlongNames, along);
 }
 
-std::shared_ptr<const ThresholdOptions> read_section(const JsonValue& section) {
+ThresholdOptions read_section(const JsonValue& section) {
   const JsonObject object =
       section.object({"task", "question", "along", "intervals", "interval_s", "windows",
                       "procedure", "trials", "tracks", "levels", "standards", "up_down", "blocked",
                       "grid", "catch", "rove_db", "feedback", "practice", "control"});
-  auto options = std::make_shared<ThresholdOptions>();
-  options->task = object.at("task").choice(kTaskNames);
-  if (const auto m = object.find("question")) options->question = m->choice(kQuestionNames);
-  if (const auto m = object.find("along")) options->along = m->choice(kAlongNames);
-  settle_question(object, *options);
-  if (const auto m = object.find("interval_s")) options->interval_s = m->number({0.25, 60.0});
-  if (const auto m = object.find("windows")) options->windows = read_windows(*m);
-  read_tracks(object, *options);
-  const bool has_standards = options->task == Task::discrimination &&
-                             (options->along == Along::gain || options->along == Along::order);
+  ThresholdOptions options;
+  options.task = object.at("task").choice(kTaskNames);
+  if (const auto m = object.find("question")) options.question = m->choice(kQuestionNames);
+  if (const auto m = object.find("along")) options.along = m->choice(kAlongNames);
+  settle_question(object, options);
+  if (const auto m = object.find("interval_s")) options.interval_s = m->number({0.25, 60.0});
+  if (const auto m = object.find("windows")) options.windows = read_windows(*m);
+  read_tracks(object, options);
+  const bool has_standards = options.task == Task::discrimination &&
+                             (options.along == Along::gain || options.along == Along::order);
   if (has_standards) {
-    const NumberRange range = options->along == Along::gain ? NumberRange{-100.0, 0.0}
-                                                            : NumberRange{0.0, 1.0, true, true};
-    options->standards = read_values(object.at("standards"), range, false);
+    const NumberRange range =
+        options.along == Along::gain ? NumberRange{-100.0, 0.0} : NumberRange{0.0, 1.0, true, true};
+    options.standards = read_values(object.at("standards"), range, false);
   } else {
-    options->standards = {0.0};
+    options.standards = {0.0};
     if (const auto m = object.find("standards")) {
       m->refuse("belongs to discrimination along gain or order; remove it");
     }
   }
-  if (const auto m = object.find("tracks")) options->tracks_each = read_count(*m, 1, 8);
-  if (const auto m = object.find("catch")) options->catch_trials = read_count(*m, 0, 1000);
-  if (const auto m = object.find("rove_db")) options->rove_db = m->number({0.0, 40.0});
-  if (const auto m = object.find("feedback")) options->feedback = m->truth();
-  if (const auto m = object.find("practice")) read_practice(*m, *options);
-  if (const auto m = object.find("control")) options->control_trials = read_count(*m, 0, 500);
+  if (const auto m = object.find("tracks")) options.tracks_each = read_count(*m, 1, 8);
+  if (const auto m = object.find("catch")) options.catch_trials = read_count(*m, 0, 1000);
+  if (const auto m = object.find("rove_db")) options.rove_db = m->number({0.0, 40.0});
+  if (const auto m = object.find("feedback")) options.feedback = m->truth();
+  if (const auto m = object.find("practice")) read_practice(*m, options);
+  if (const auto m = object.find("control")) options.control_trials = read_count(*m, 0, 500);
   return options;
 }
 

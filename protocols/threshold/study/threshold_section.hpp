@@ -4,13 +4,12 @@
 #include "core/strict_json.hpp"
 #include "protocols/threshold/study/threshold.hpp"
 
-#include <memory>
 #include <string>
 
 namespace touchtrial::study::threshold {
 
 /// \throws StudyError with the place of a value that is not accepted
-[[nodiscard]] std::shared_ptr<const ThresholdOptions> read_section(const JsonValue& section);
+[[nodiscard]] ThresholdOptions read_section(const JsonValue& section);
 
 /// What the reader sees only with the whole study: classes, methods, trials, ceilings.
 /// \throws StudyError with the place and the remedy

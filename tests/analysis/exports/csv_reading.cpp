@@ -121,8 +121,9 @@ record::TrialRow trial_row_of(const CsvRow& row) {
   if (!row.at("reaction_time_s").empty()) {
     trial.answered_at = trial.presented_at + time_of(row.at("reaction_time_s"));
   }
-  trial.position = maybe<int>(row.at("position"));
-  trial.first_position = maybe<int>(row.at("first_position"));
+  if (const auto position = maybe<int>(row.at("position"))) {
+    trial.answer = Chosen{*position, maybe<int>(row.at("first_position"))};
+  }
   trial.confidence = maybe<int>(row.at("confidence"));
   trial.valid = is_set(row.at("valid_in_clear"));
   trial.overruns = number_of<std::int64_t>(row.at("overruns"));
@@ -165,6 +166,7 @@ void read_trials(analysis::Outcomes& outcomes, const std::filesystem::path& file
     trial.counted = is_set(row.at("counted"));
     if (kind != "catch") {
       trial.stimulus = stimulus_of(outcomes, row);
+      trial.has_stimulus = true;
       trial.right = trial.stimulus.class_index;
     }
     if (!row.at("response").empty()) {

@@ -30,10 +30,10 @@ const std::vector<std::string> kNoFaults;
 
 void fill(FakeStudy& study) {
   study.add({.participant = "P-01", .enrolment = 1, .answers = FakeStudy::confusing(0, 1)});
-  study.add(
-      {.participant = "Z_2+", .enrolment = 2, .answers = [](const study::Presentation& shown) {
-         return shown.trial == 7 ? std::nullopt : std::optional(shown.stimulus.class_index);
-       }});
+  study.add({.participant = "Z_2+", .enrolment = 2, .answers = [](const study::Trial& shown) {
+               return shown.place.trial == 7 ? std::nullopt
+                                             : std::optional(shown.field().class_index);
+             }});
   study.add({.participant = "P03", .enrolment = 3, .complete = false, .stop_after = 2});
 }
 

@@ -105,9 +105,9 @@ TEST_CASE("With the key the safety record has what was typed, also of erased peo
 
 TEST_CASE("The safety record says where the largest force of an open session comes from") {
   FakeStudy study({.simulated = false});
-  const auto felt = [](const study::Presentation& shown) {
+  const auto felt = [](const study::Trial& shown) {
     record::Trace trace;
-    trace.samples.assign(20, {{0.0, 0.0, -0.5}, {0.0, 0.0, 1.04 + 0.5 * (shown.trial % 2)}});
+    trace.samples.assign(20, {{0.0, 0.0, -0.5}, {0.0, 0.0, 1.04 + 0.5 * (shown.place.trial % 2)}});
     return trace;
   };
   const auto add = [&](const std::string& participant, int enrolment, int presentations) {

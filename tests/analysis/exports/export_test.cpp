@@ -16,8 +16,9 @@ namespace {
 
 void fill(FakeStudy& study) {
   study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::confusing(0, 1)});
-  study.add({.participant = "P02", .enrolment = 2, .answers = [](const study::Presentation& shown) {
-               return shown.trial == 7 ? std::nullopt : std::optional(shown.stimulus.class_index);
+  study.add({.participant = "P02", .enrolment = 2, .answers = [](const study::Trial& shown) {
+               return shown.place.trial == 7 ? std::nullopt
+                                             : std::optional(shown.field().class_index);
              }});
 }
 

@@ -52,10 +52,10 @@ void check_round_trip(FakeStudy& study) {
 
 /// Answers that are sometimes wrong, in a way that depends on the participant.
 FakeAnswers imperfect(int participant) {
-  return [=](const study::Presentation& shown) -> std::optional<int> {
-    if ((shown.trial + participant) % 7 == 0) return std::nullopt;
-    if ((shown.trial * participant) % 3 == 0) return (shown.stimulus.class_index + 1) % 3;
-    return shown.stimulus.class_index;
+  return [=](const study::Trial& shown) -> std::optional<int> {
+    if ((shown.place.trial + participant) % 7 == 0) return std::nullopt;
+    if ((shown.place.trial * participant) % 3 == 0) return (shown.field().class_index + 1) % 3;
+    return shown.field().class_index;
   };
 }
 
@@ -112,9 +112,9 @@ TEST_CASE("How a study was collected is the same from its CSV files, in words an
   felt.servo = record::ServoHealth{999.75, 1.5, 40.25, 80.125, 1e3 / 3.0, 2, 17};
   felt.before_trials = [](record::SessionRecorder& recorder) {
     recorder.practised(milliseconds(10),
-                       {.round = 1, .presentation = 1, .position = 0, .correct = false});
+                       {.round = 1, .presentation = 1, .answer = Chosen{0}, .correct = false});
     recorder.practised(milliseconds(20),
-                       {.round = 2, .presentation = 1, .position = 0, .correct = true});
+                       {.round = 2, .presentation = 1, .answer = Chosen{0}, .correct = true});
     recorder.deviated(milliseconds(40), {"no-masking-noise", "no \"sound\" card,\nnone"});
     recorder.deviated(milliseconds(45), {"practice-not-passed", ""});
     recorder.resumed(milliseconds(70), {.after = "program-ended", .away_s = 60.0});

@@ -69,7 +69,7 @@ TEST_CASE("A session's record holds practice, deviations, resumptions and statio
   session.servo = record::ServoHealth{.rate_hz = 998.0, .lateness_p99_us = 40.0};
   session.before_trials = [](record::SessionRecorder& recorder) {
     const auto practise = [&](milliseconds at, int round, int presentation, bool correct) {
-      recorder.practised(at, {round, presentation, 0, correct});
+      recorder.practised(at, {round, presentation, Chosen{0}, correct});
     };
     practise(milliseconds(10), 1, 1, false);
     practise(milliseconds(20), 2, 1, true);
@@ -126,7 +126,7 @@ TEST_CASE("Without the key a record lacks what a session's people said and answe
   FakeStudy study(study::identification::classification());
   FakeSession session = session_of("P01", 1);
   session.before_trials = [](record::SessionRecorder& recorder) {
-    recorder.practised(milliseconds(10), {1, 1, 0, true});
+    recorder.practised(milliseconds(10), {1, 1, Chosen{0}, true});
     recorder.deviated(milliseconds(40), {"no-masking-noise", "no sound card"});
   };
   study.add(session);
@@ -146,7 +146,7 @@ TEST_CASE("Practice that did not reach its criterion is reported") {
   FakeStudy study(study::identification::classification());
   FakeSession session = session_of("P01", 1);
   session.before_trials = [](record::SessionRecorder& recorder) {
-    recorder.practised(milliseconds(10), {1, 1, 0, false});
+    recorder.practised(milliseconds(10), {1, 1, Chosen{0}, false});
     recorder.deviated(milliseconds(20), {"practice-not-passed", "0 of 1"});
   };
   study.add(session);

@@ -42,8 +42,9 @@ TEST_CASE("load_outcomes turns positions back into the classes that were meant")
 
 TEST_CASE("A trial without a response counts and is wrong") {
   FakeStudy study(study::identification::classification());
-  study.add({.participant = "P01", .answers = [](const study::Presentation& shown) {
-               return shown.trial == 3 ? std::nullopt : std::optional(shown.stimulus.class_index);
+  study.add({.participant = "P01", .answers = [](const study::Trial& shown) {
+               return shown.place.trial == 3 ? std::nullopt
+                                             : std::optional(shown.field().class_index);
              }});
   study.close_and_unblind();
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());

@@ -17,8 +17,9 @@ namespace {
 
 /// Three sessions: one right but for a time-out, one not valid, one stopped after four trials.
 void fill(FakeStudy& study) {
-  study.add({.participant = "P01", .enrolment = 1, .answers = [](const study::Presentation& shown) {
-               return shown.trial == 3 ? std::nullopt : std::optional(shown.stimulus.class_index);
+  study.add({.participant = "P01", .enrolment = 1, .answers = [](const study::Trial& shown) {
+               return shown.place.trial == 3 ? std::nullopt
+                                             : std::optional(shown.field().class_index);
              }});
   study.add({.participant = "P02", .enrolment = 2, .valid = false, .interrupt_trial = 2});
   study.add({.participant = "P03", .enrolment = 3, .complete = false, .stop_after = 4});
@@ -77,7 +78,7 @@ TEST_CASE("A quality report counts interruptions, repeated or not, pauses and no
 
 TEST_CASE("A quality report names who presses one key, and how answers are spread stays sealed") {
   FakeStudy study(study::identification::classification());
-  const auto first = [](const study::Presentation&) { return 0; };
+  const auto first = [](const study::Trial&) { return 0; };
   study.add({.participant = "P01", .enrolment = 1, .answers = first, .one_key = true});
   study.add({.participant = "P02", .enrolment = 2});
   const auto sessions = [](const analysis::Collection& collection) {

@@ -31,8 +31,8 @@ constexpr const char* kWeek = R"({"visits": {"count": 2, "least_days": 7}})";
 
 /// The first `right` of a session's 12 trials are right, the others wrong.
 FakeAnswers right_in_visit(int right) {
-  return [right](const study::Presentation& shown) {
-    return std::optional((shown.stimulus.class_index + (shown.trial <= right ? 0 : 1)) % 3);
+  return [right](const study::Trial& shown) {
+    return std::optional((shown.field().class_index + (shown.place.trial <= right ? 0 : 1)) % 3);
   };
 }
 

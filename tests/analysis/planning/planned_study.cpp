@@ -2,6 +2,7 @@
 
 #include "analysis/planning/answer_model.hpp"
 #include "protocols/simulation/felt_decision.hpp"
+#include "study/protocol.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "analysis/planning/power_runs.hpp"
+#include "analysis/planning/power_plan.hpp"
 #include "analysis/planning/subject_fit.hpp"
 #include "support/catch.hpp"
 

@@ -37,59 +37,62 @@ Digest digest_of(const ScheduleDraw& draw) {
   return FieldHasher().add("adaptive order of a test").add(ByteView(draw.secret)).finish();
 }
 
-/// Two choices; the right one is drawn for each trial.
-class BlockOrder final : public AdaptiveOrder {
+/// Two choices, and the right one is drawn for each trial.
+class BlockOrder final : public Order {
  public:
-  explicit BlockOrder(const Digest& secret)
-      : block_(two_tracks(), secret), targets_(secret.front(), "targets") {
+  explicit BlockOrder(const ScheduleDraw& draw)
+      : Order(places(), draw.secret),
+        block_(two_tracks(), digest_of(draw)),
+        targets_(digest_of(draw).front(), "targets") {
     target_ = static_cast<int>(targets_.below(2));
   }
-  void choose(Presentation& presentation) const override {
+  Trial at(const Trial& scheduled) const override {
     const auto next = block_.next();
     REQUIRE(next);
-    presentation.role = next->track ? Role::scored : Role::catch_trial;
-    presentation.chosen = {next->track ? static_cast<int>(*next->track) + 1 : 0,
-                           static_cast<int>(next->level), target_};
+    return {.place = scheduled.place,
+            .role = next->track ? Role::scored : Role::catch_trial,
+            .planes = {{}, {}},
+            .right = target_,
+            .level = Level{next->track ? static_cast<int>(*next->track) + 1 : 0,
+                           static_cast<int>(next->level)}};
   }
-  void answer(const Presentation&, int choice) override {
-    block_.answer(choice == target_);
+  void answered(const Trial&, const Answer& answer) override {
+    block_.answer(schedule().choice_of(answer) == target_);
     target_ = static_cast<int>(targets_.below(2));
   }
 
  private:
+  static Schedule places() {
+    // Positions are not choices: the second choice stands first.
+    Schedule schedule{{}, {1, 0}};
+    for (int i = 0; i < 26; ++i) schedule.trials.push_back({.place = {.trial = i + 1}});
+    return schedule;
+  }
+
   procedures::Block block_;
   RandomStream targets_;
   int target_ = 0;
 };
 
-class TwoTracks final : public Protocol {
+class TwoTracks final : public Task {
  public:
-  std::string_view name() const noexcept override { return "two-tracks"; }
   void check(const JsonValue&, const Study&) const override {}
   int scored_trials(const Study&) const override { return 24; }
-  Schedule schedule(const Study&, const ScheduleDraw&) const override {
-    // Positions are not choices: the second choice stands first.
-    Schedule schedule{{}, {1, 0}};
-    for (int i = 0; i < 26; ++i) schedule.presentations.push_back({.trial = i + 1, .stimulus = {}});
-    return schedule;
-  }
-  std::unique_ptr<AdaptiveOrder> adaptive_order(const Study&,
-                                                const ScheduleDraw& draw) const override {
-    return std::make_unique<BlockOrder>(digest_of(draw));
-  }
   std::string rule(const Study&) const override { return "two-tracks 1"; }
-  std::vector<Choice> choices(const Study&) const override { return {{"first"}, {"second"}}; }
-  std::optional<int> right_choice(const Study&, const Presentation& shown) const override {
-    return shown.chosen->target;
+  Ask ask(const Study&, const Place&) const override {
+    return {.planes = 2, .question = Choose{.title = {}, .choices = {{"first"}, {"second"}}}};
+  }
+  std::unique_ptr<Order> order(const Study&, const ScheduleDraw& draw) const override {
+    return std::make_unique<BlockOrder>(draw);
   }
 };
 
-/// A study of the protocol, and sessions of its first participant.
+/// A study of the task, and sessions of its first participant.
 class AdaptiveLaboratory {
  public:
   explicit AdaptiveLaboratory(OnInterruption policy = OnInterruption::repeat)
       : study_(tiny_.key().study), draw_(tiny_.key().draw_of(1, Draws::rehearsal)) {
-    study_.protocol = &protocol_;
+    study_.task = std::make_shared<TwoTracks>();
     study_.trials.on_interruption = policy;
   }
 
@@ -102,9 +105,9 @@ class AdaptiveLaboratory {
     return session;
   }
   [[nodiscard]] session::Session fresh(BufferedEvents& events) const {
-    return session::Session(study::make_schedule(study_, draw_), study_.trials,
-                            record::SessionRecorder(1, SecretKey{}, events), {},
-                            study::adaptive_order(study_, draw_));
+    return session::Session(study::make_order(study_, draw_), study_.trials,
+                            record::SessionRecorder(1, SecretKey{}, events),
+                            session::seal_with(tiny_.key()));
   }
   /// \throws VerificationError at the first event that cannot follow
   void check(const std::vector<Event>& events) const {
@@ -115,14 +118,13 @@ class AdaptiveLaboratory {
 
  private:
   TinyStudy tiny_;
-  TwoTracks protocol_;
   Study study_;
   ScheduleDraw draw_;
 };
 
 /// Right whenever the level is at least 6; at lower ones always the first choice.
-int position_for(const ChosenLevel& chosen) {
-  const int choice = chosen.level >= 6 ? chosen.target : 0;
+int position_for(const Trial& shown) {
+  const int choice = shown.level.value().level >= 6 ? shown.right.value() : 0;
   return choice == 1 ? 0 : 1;
 }
 
@@ -132,16 +134,16 @@ seconds end_of(const session::Session& session) {
 
 void answer_current(session::Session& session) {
   seconds now = end_of(session);
-  const ChosenLevel chosen = session.current()->chosen.value();
+  const Trial shown = *session.current();
   session.present(now += seconds(1));
   session.contact(now += seconds(1));
   session.end_exploring(now += seconds(1));
-  session.choose(position_for(chosen));
+  session.choose(position_for(shown));
   session.confirm(now + seconds(1));
 }
 
-bool answered_right(const ChosenLevel& chosen) {
-  return position_for(chosen) == (chosen.target == 1 ? 0 : 1);
+bool answered_right(const Trial& shown) {
+  return position_for(shown) == (shown.right == 1 ? 0 : 1);
 }
 
 TEST_CASE("a session presents what its procedure chooses after the answers so far") {
@@ -150,12 +152,13 @@ TEST_CASE("a session presents what its procedure chooses after the answers so fa
   session::Session session = lab.begun(events);
   std::vector<procedures::RecordedTrial> record;
   while (session.current() != nullptr) {
-    const ChosenLevel chosen = session.current()->chosen.value();
-    const bool is_catch = chosen.track == 0;
-    CHECK(is_catch == (session.current()->role == Role::catch_trial));
-    record.push_back({{is_catch ? std::nullopt : std::optional<std::size_t>(chosen.track - 1),
-                       static_cast<std::size_t>(chosen.level)},
-                      answered_right(chosen)});
+    const Trial& shown = *session.current();
+    const auto [track, level] = shown.level.value();
+    const bool is_catch = track == 0;
+    CHECK(is_catch == (shown.role == Role::catch_trial));
+    record.push_back({{is_catch ? std::nullopt : std::optional<std::size_t>(track - 1),
+                       static_cast<std::size_t>(level)},
+                      answered_right(shown)});
     answer_current(session);
   }
   CHECK(session.phase() == session::SessionPhase::finished);
@@ -168,8 +171,8 @@ TEST_CASE("a session that ends anywhere is taken up at the same levels") {
   const AdaptiveLaboratory lab;
   BufferedEvents events;
   session::Session session = lab.begun(events);
-  std::vector<std::size_t> ends;          // of events, before each trial
-  std::vector<Presentation> before_each;  // what came next there
+  std::vector<std::size_t> ends;   // of events, before each trial
+  std::vector<Trial> before_each;  // what came next there
   while (session.current() != nullptr) {
     ends.push_back(events.events.size());
     before_each.push_back(*session.current());
@@ -187,7 +190,8 @@ TEST_CASE("a session that ends anywhere is taken up at the same levels") {
       again.take_up(again.last() + seconds(9), {.after = "end", .away_s = 9.0});
       // Another trial number, and the same track, level and target.
       REQUIRE(again.current() != nullptr);
-      CHECK(again.current()->chosen == before_each[i].chosen);
+      CHECK(again.current()->level == before_each[i].level);
+      CHECK(again.current()->right == before_each[i].right);
     }
   }
 }
@@ -197,11 +201,12 @@ TEST_CASE("an interrupted trial comes again at its level, and the record still h
   BufferedEvents events;
   session::Session session = lab.begun(events);
   for (int i = 0; i < 5; ++i) answer_current(session);
-  const Presentation interrupted = *session.current();
+  const Trial interrupted = *session.current();
   session.present(end_of(session) + seconds(1));
   session.interrupt(end_of(session) + seconds(1), "comfort stop");
-  CHECK(session.current()->chosen == interrupted.chosen);
-  CHECK(session.current()->trial != interrupted.trial);
+  CHECK(session.current()->level == interrupted.level);
+  CHECK(session.current()->right == interrupted.right);
+  CHECK(session.current()->place.trial != interrupted.place.trial);
   while (session.current() != nullptr) answer_current(session);
   CHECK_NOTHROW(lab.check(as_recorded(events.events, SecretKey{})));
 }
@@ -232,11 +237,12 @@ TEST_CASE("the check names the first trial that the procedure would not have pre
                       holds_text(trial));
     CHECK_THROWS_WITH(lab.check(altered([](AnswerBody& body) { body.track.reset(); })),
                       holds_text("presented no level"));
-    CHECK_THROWS_WITH(lab.check(altered([](AnswerBody& body) { body.position = 2; })),
-                      holds_text("position 2, which there is not"));
+    CHECK_THROWS_WITH(lab.check(altered([](AnswerBody& body) { body.answer = Chosen{2}; })),
+                      holds_text(trial) && holds_text("position 2"));
     // Another answer is possible by itself, and shows in what came later, if anything did.
     try {
-      lab.check(altered([](AnswerBody& body) { body.position = 1 - *body.position; }));
+      lab.check(
+          altered([](AnswerBody& body) { body.answer = Chosen{1 - *position_of(body.answer)}; }));
     } catch (const VerificationError& error) {
       ++told;
       CHECK_THAT(std::string(error.what()), holds_text("where the procedure chooses"));

@@ -4,6 +4,7 @@
 #include "core/random.hpp"
 #include "protocols/session/session.hpp"
 #include "protocols/session/tiny_study.hpp"
+#include "study/protocol.hpp"
 #include "study/study_key.hpp"
 #include "support/as_recorded.hpp"
 #include "support/catch.hpp"
@@ -73,15 +74,9 @@ class Ordeal {
 
  private:
   session::Session fresh() {
-    return session::Session(
-        study::make_schedule(key_.study, draw_), key_.study.trials,
-        record::SessionRecorder(1, SecretKey{}, events_),
-        {.draw =
-             [this](int block, int before, int first) {
-               return study::restarted_block(key_.study, draw_, block, before, first);
-             },
-         .secret = [](const std::vector<study::Presentation>&) { return std::string("[]"); }},
-        study::adaptive_order(key_.study, draw_));
+    return session::Session(study::make_order(key_.study, draw_), key_.study.trials,
+                            record::SessionRecorder(1, SecretKey{}, events_),
+                            [](const std::vector<study::Trial>&) { return std::string("[]"); });
   }
   seconds now() { return seconds(++clock_); }
 
@@ -91,7 +86,7 @@ class Ordeal {
     if (happens(10)) return be_killed();
     if (happens(10)) return session_->interrupt(now(), "comfort stop");
     if (happens(10)) return pause_while_exploring();
-    const bool may_time_out = !study::adaptive_order(key_.study, draw_);
+    const bool may_time_out = !study::make_order(key_.study, draw_)->is_adaptive();
     if (may_time_out && happens(8)) {
       session_->time_out(now());
       if (!session_->in_presentation()) return;

@@ -2,6 +2,7 @@
 #include "analysis/outcomes/outcomes.hpp"
 #include "analysis/text_matching.hpp"
 #include "analysis/verification/verification.hpp"
+#include "study/protocol.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -40,11 +41,11 @@ class RestartedSession {
     answer(1);
     recorder_.presented(at_ += seconds(1), 2, 0);
     recorder_.interrupted(at_, 2, "comfort stop");
-    const int first = static_cast<int>(begun_.presentations.size()) + 1;
-    const auto again = study::restarted_block(key_.study, key_.draw_of(1, study::Draws::rehearsal),
-                                              0, restarts_before, first);
+    const int first = static_cast<int>(begun_.trials.size()) + 1;
+    const auto again = study::make_order(key_.study, key_.draw_of(1, study::Draws::rehearsal))
+                           ->restarted(0, restarts_before, first);
     recorder_.block_restarted(at_, 0, first, study::block_to_json(again, key_));
-    for (const study::Presentation& one : again) answer(one.trial);
+    for (const study::Trial& one : again) answer(one.place.trial);
     if (old_number_again) answer(3);
     recorder_.closed(at_, true);
     study.store().add_session(events_, record::wrap_participant_key(key_.investigator_box, 1, own_),
@@ -55,7 +56,7 @@ class RestartedSession {
   void answer(int trial) {
     at_ += seconds(10);
     recorder_.presented(at_, trial, 0);
-    recorder_.answered(at_, {trial, 0, std::nullopt, std::nullopt});
+    recorder_.answered(at_, {trial, Chosen{0}, std::nullopt});
   }
 
   const study::StudyKey& key_;

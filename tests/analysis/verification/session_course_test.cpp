@@ -3,6 +3,7 @@
 #include "analysis/fake_study.hpp"
 #include "analysis/text_matching.hpp"
 #include "analysis/verification/verification.hpp"
+#include "study/protocol.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -42,7 +43,7 @@ class ToldSession {
     return *this;
   }
   ToldSession& answer(int trial) {
-    recorder_.answered(later(), {trial, 0, std::nullopt, std::nullopt});
+    recorder_.answered(later(), {trial, Chosen{0}, std::nullopt});
     return *this;
   }
   ToldSession& show(int trial) { return present(trial).answer(trial); }
@@ -67,8 +68,8 @@ class ToldSession {
   }
   ToldSession& restart_block() {
     const study::StudyKey& key = study_.key();
-    const auto again = study::restarted_block(key.study, key.draw_of(1, study::Draws::rehearsal), 0,
-                                              0, count() + 1);
+    const auto again = study::make_order(key.study, key.draw_of(1, study::Draws::rehearsal))
+                           ->restarted(0, 0, count() + 1);
     recorder_.block_restarted(later(), 0, count() + 1, study::block_to_json(again, key));
     return *this;
   }
@@ -90,13 +91,13 @@ class ToldSession {
     return schedule;
   }
   [[nodiscard]] study::Schedule schedule() const { return schedule_; }
-  [[nodiscard]] int count() const { return static_cast<int>(schedule_.presentations.size()); }
+  [[nodiscard]] int count() const { return static_cast<int>(schedule_.trials.size()); }
   [[nodiscard]] int catch_trial() const {
-    const auto& all = schedule_.presentations;
+    const auto& all = schedule_.trials;
     return std::find_if(
                all.begin(), all.end(),
-               [](const study::Presentation& one) { return one.role == study::Role::catch_trial; })
-        ->trial;
+               [](const study::Trial& one) { return one.role == study::Role::catch_trial; })
+        ->place.trial;
   }
 
  private:
@@ -143,10 +144,11 @@ TEST_CASE("verify_study accepts catch trials in their places, and nothing else t
   CHECK(contains(check.detail, "14 presentations where they were due"));
   const int trial = whole.catch_trial();
   study::Schedule tampered = whole.schedule();
-  for (study::Presentation& one : tampered.presentations) {
-    if (one.trial != trial) continue;
+  for (study::Trial& one : tampered.trials) {
+    if (one.place.trial != trial) continue;
     one.role = study::Role::scored;
-    one.stimulus = tampered.presentations.front().stimulus;
+    one.planes = tampered.trials.front().planes;
+    one.right = tampered.trials.front().right;
   }
   check_told({{kCatching, [&](ToldSession& s) { s.open().show_from(1, trial); },
                "was presented where trial " + std::to_string(trial)},

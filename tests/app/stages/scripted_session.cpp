@@ -220,17 +220,19 @@ class Script final : public session::Participant,
     reply.took = kThought;
     const bool again = step.may_explore_again && answers_ == 1 && !has_felt_again_;
     if (again) is_again_ = has_felt_again_ = reply.explore_again = true;
+    Chosen chosen;
     if (!again) {
-      reply.position = (5 * answers_ + 1) % choices_;
-      if (answers_ % 3 == 2) reply.first_position = (reply.position + 1) % choices_;
+      chosen.position = (5 * answers_ + 1) % choices_;
+      if (answers_ % 3 == 2) chosen.first_position = (chosen.position + 1) % choices_;
+      reply.answer = chosen;
       if (step.confidence_levels > 0) reply.confidence = 1 + answers_ % step.confidence_levels;
       if (!step.practice) ++answers_;
     }
     write({{"is", again ? "again" : "answer"},
            {"practice", step.practice},
            {"ms", kThought.count()},
-           {"position", reply.position},
-           {"first", reply.first_position ? json(*reply.first_position) : json(nullptr)},
+           {"position", chosen.position},
+           {"first", chosen.first_position ? json(*chosen.first_position) : json(nullptr)},
            {"confidence", reply.confidence ? json(*reply.confidence) : json(nullptr)}});
   }
 
@@ -301,27 +303,17 @@ class Script final : public session::Participant,
 };
 
 /// Practice as the study has it, on blank planes where a trial has one.
-std::optional<session::PracticeTextures> practice_of(const study::Study& study,
-                                                     const study::ScheduleDraw& draw,
-                                                     const session::StimulusSource& source) {
-  session::PracticeTextures textures;
-  textures.plane = source.plane();
-  textures.plan.criterion = 2;
-  textures.plan.rounds = 1;
-  textures.presentations = 2;
-  const bool has_intervals = study.protocol->interval_plan(study).has_value();
-  textures.round = [&study, &draw, &source, has_intervals](int number) {
-    session::PracticeRound round;
-    if (has_intervals) {
-      for (const auto& choice : study.protocol->choices(study))
-        round.labels.push_back(choice.label);
-      round.trials = study.protocol->practice_trials(study, draw, number);
-    } else {
-      round = {{"sand", "cork"}, {&source.flat(), &source.flat()}, {0, 1}};
-    }
-    return round;
-  };
-  return textures;
+study::Practice scripted_practice(const study::Study& study, const study::ScheduleDraw& draw,
+                                  int round) {
+  if (study::ask_of(study).planes > 1) return study::practice_of(study, draw, round);
+  study::Practice practice{.labels = {"sand", "cork"}, .trials = {}, .criterion = 2, .rounds = 1};
+  for (const int right : {0, 1}) {
+    practice.trials.push_back({.place = {.trial = right + 1},
+                               .role = study::Role::practice,
+                               .planes = {{.field = {}, .blank = true}},
+                               .right = right});
+  }
+  return practice;
 }
 
 }  // namespace
@@ -342,7 +334,9 @@ void run_scripted(const app::RunOptions& options, const Deed& deed,
                 {"visit", options.visit}});
   session::SessionTexts texts = app::session_texts(study.key.study);
   texts.day_sheet.resize(2);
-  const auto practice = practice_of(study.key.study, entered.draw, source);
+  const auto practice = [&](int round) {
+    return scripted_practice(study.key.study, entered.draw, round);
+  };
   const session::SessionTally tally =
       session::run_session(*entered.session, {.key = study.key,
                                               .source = source,
@@ -352,7 +346,7 @@ void run_scripted(const app::RunOptions& options, const Deed& deed,
                                               .devices = script,
                                               .experimenter = script,
                                               .texts = texts,
-                                              .practice = &*practice});
+                                              .practice = practice});
   script.write({{"is", "end"}, {"left", tally.left.has_value()}});
 }
 

@@ -11,83 +11,70 @@
 #include "study/study.hpp"
 
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <span>
+#include <utility>
 
 namespace touchtrial::example {
 namespace {
 
-using study::Presentation;
 using study::Role;
 using study::ScheduleDraw;
 using study::Study;
+using study::Trial;
 
 constexpr int kTexture = 0;  // indices into the choices
 constexpr int kSmooth = 1;
 
-// 1. What the study file says, what is presented, and what counts as an answer.
+// 1. What the study file says, what is presented, and what is asked.
 
-struct PresenceOptions final : study::ProtocolOptions {
-  int each = 10;  ///< presentations of the texture, and as many of the smooth wall
-};
-
-const PresenceOptions& options_of(const Study& study) {
-  return static_cast<const PresenceOptions&>(*study.options);
-}
-
-class Presence final : public study::Protocol {
+class PresenceTask final : public study::Task {
  public:
-  std::string_view name() const noexcept override { return "presence"; }
-  std::string_view section() const noexcept override { return "presence"; }
-  std::string instruction() const override {
-    return "In each trial you feel a texture or a smooth wall. Say which it was.";
-  }
-  bool presents_all_methods() const noexcept override { return false; }
+  /// \param each  trials with the texture, and as many with the smooth wall
+  explicit PresenceTask(int each) : each_(each) {}
 
-  std::shared_ptr<const study::ProtocolOptions> read(
-      const std::optional<JsonValue>& section) const override {
-    auto options = std::make_shared<PresenceOptions>();
-    if (section) {
-      const JsonObject object = section->object({"each"});
-      if (const auto each = object.find("each")) {
-        options->each = static_cast<int>(each->integer(1, 500));
-      }
-    }
-    return options;
-  }
-  std::string options_in_clear(const Study& study) const override {
-    return R"({"each": )" + std::to_string(options_of(study).each) + "}";
-  }
   void check(const JsonValue& file, const Study& study) const override {
     if (study.trials.catch_trials > 0) {
       file.refuse_below("/trials/catch", "must be 0: half of the trials are smooth already");
     }
   }
-  int scored_trials(const Study& study) const override { return options_of(study).each; }
+  std::string in_clear() const override { return R"({"each": )" + std::to_string(each_) + "}"; }
+  std::string rule(const Study&) const override {
+    return "presence 1; each=" + std::to_string(each_);
+  }
+  int scored_trials(const Study&) const override { return each_; }
 
-  study::Schedule schedule(const Study& study, const ScheduleDraw& draw) const override {
-    study::Schedule schedule{{}, {kTexture, kSmooth}};
-    const int each = options_of(study).each;
-    for (int i = 0; i < 2 * each; ++i) {
-      schedule.presentations.push_back(
-          {.role = i < each ? Role::scored : Role::catch_trial, .stimulus = {}});
-    }
+  study::Ask ask(const Study& study, const study::Place&) const override {
+    return {.question =
+                study::Choose{.title = "What did you feel?", .choices = {{"texture"}, {"smooth"}}},
+            .confidence_levels = study.session.confidence_levels};
+  }
+  std::unique_ptr<study::Order> order(const Study&, const ScheduleDraw& draw) const override {
+    const Trial textured{.planes = {{.field = {}}}, .right = kTexture};
+    const Trial smooth{.role = Role::catch_trial, .planes = {{.field = {}, .blank = true}}};
+    study::Schedule schedule{.trials = {}, .layout = {kTexture, kSmooth}};
+    schedule.trials.insert(schedule.trials.end(), each_, textured);
+    schedule.trials.insert(schedule.trials.end(), each_, smooth);
     RandomStream random(draw.secret, "presence");
-    shuffle(std::span<Presentation>(schedule.presentations), random);
-    for (int i = 0; i < 2 * each; ++i) {
-      schedule.presentations[static_cast<std::size_t>(i)].trial = i + 1;
-    }
-    return schedule;
+    shuffle(std::span<Trial>(schedule.trials), random);
+    int number = 0;
+    for (Trial& trial : schedule.trials) trial.place.trial = ++number;
+    return std::make_unique<study::Order>(std::move(schedule), draw.secret);
   }
-  std::string rule(const Study& study) const override {
-    return "presence 1; each=" + std::to_string(options_of(study).each);
-  }
-  std::vector<study::Choice> choices(const Study&) const override {
-    return {{"texture"}, {"smooth"}};
-  }
-  std::optional<int> right_choice(const Study&, const Presentation&) const override {
-    return kTexture;  // asked of presentations with a stimulus alone
-  }
+
+ private:
+  int each_;
 };
+
+std::shared_ptr<const study::Task> read_task(const std::optional<JsonValue>& section) {
+  int each = 10;
+  if (section) {
+    const JsonObject object = section->object({"each"});
+    if (const auto given = object.find("each")) each = static_cast<int>(given->integer(1, 500));
+  }
+  return std::make_shared<PresenceTask>(each);
+}
 
 // 2. How a simulated participant answers.
 
@@ -174,11 +161,12 @@ class PresenceAnalysis final : public analysis::ProtocolAnalysis {
 }  // namespace
 
 void register_presence() {
-  static const Presence protocol;
+  static constexpr study::Protocol kProtocol{
+      .name = "presence", .section = "presence", .read = read_task, .all_methods = false};
   static const PresenceAnalysis analysis;
-  study::add_protocol(protocol);
-  simulation::add_population(protocol.name(), make_presence);
-  analysis::add_analysis(protocol.name(), analysis);
+  study::add_protocol(kProtocol);
+  simulation::add_population(kProtocol.name, make_presence);
+  analysis::add_analysis(kProtocol.name, analysis);
 }
 
 }  // namespace touchtrial::example

@@ -2,6 +2,7 @@
 #include "add_a_protocol/presence.hpp"
 
 #include "analysis/exports/export_tables.hpp"
+#include "analysis/planning/planner.hpp"
 #include "analysis/report/results.hpp"
 #include "analysis/verification/verification.hpp"
 #include "core/errors.hpp"
@@ -116,16 +117,22 @@ TEST_CASE("the example refuses what needs a choice between classes") {
   CHECK_NOTHROW(study::require_choice_of_classes(TinyStudy().key().study, "power"));
 }
 
+TEST_CASE("a protocol without a planner has no power") {
+  const TinyStudy example({.protocol = "presence"});
+  CHECK_THROWS_WITH(planning::planner_of(example.key().study, "`power`"),
+                    holds_text("the protocol presence has no `power`; give a study of another"));
+}
+
 TEST_CASE("a restarted block of the example presents the same again in another order") {
   const TinyStudy tiny({.protocol = "presence", .section = R"({"each": 20})"});
   const study::Study& study = tiny.key().study;
-  const study::ScheduleDraw draw = tiny.key().draw_of(1, study::Draws::rehearsal);
-  const auto first = study::make_schedule(study, draw).presentations;
-  const auto again = study::restarted_block(study, draw, 0, 0, 41);
+  const auto order = study::make_order(study, tiny.key().draw_of(1, study::Draws::rehearsal));
+  const std::vector<study::Trial>& first = order->schedule().trials;
+  const std::vector<study::Trial> again = order->restarted(0, 0, 41);
   REQUIRE(again.size() == first.size());
-  CHECK(again.front().trial == 41);
-  const auto scored = [](const std::vector<study::Presentation>& shown) {
-    return std::ranges::count(shown, study::Role::scored, &study::Presentation::role);
+  CHECK(again.front().place.trial == 41);
+  const auto scored = [](const std::vector<study::Trial>& trials) {
+    return std::ranges::count(trials, study::Role::scored, &study::Trial::role);
   };
   CHECK(scored(again) == scored(first));
 }

@@ -5,6 +5,7 @@
 #include "protocols/session/tiny_study.hpp"
 #include "protocols/simulation/simulation.hpp"
 #include "study/order_test_support.hpp"
+#include "study/protocol.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -38,12 +39,12 @@ TEST_CASE("the gains of a whole study stand in its table once it is unblinded, a
     const study::Schedule schedule = study::make_schedule(
         study.key().study,
         study.key().draw_of(static_cast<int>(row) / 40 + 1, study::Draws::rehearsal));
-    const study::Presentation& shown = schedule.presentations.at(row % 40);
-    CHECK(gain_db == shown.gain_db);
+    const study::Trial& shown = schedule.trials.at(row % 40);
+    CHECK(gain_db == shown.planes.front().gain_db);
     CHECK(gain_db >= -6.0);
     CHECK(gain_db <= 0.0);
     gains_db.push_back(gain_db);
-    ++by_class_and_half[{shown.stimulus.class_index, gain_db < -3.0}];
+    ++by_class_and_half[{shown.field().class_index, gain_db < -3.0}];
   }
   std::ranges::sort(gains_db);
   double farthest = 0.0;  // Kolmogorov and Smirnov's statistic

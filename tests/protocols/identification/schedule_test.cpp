@@ -1,6 +1,7 @@
 
 #include "core/errors.hpp"
 #include "study/order_test_support.hpp"
+#include "study/protocol.hpp"
 #include "study/random_orders.hpp"
 #include "study/study_examples.hpp"
 #include "support/catch.hpp"
@@ -18,10 +19,14 @@ study::Study seeded(json document, std::uint64_t seed) {
   return parsed(document);
 }
 
+std::string rule_of(const study::Study& study) {
+  return study.task->rule(study);
+}
+
 std::vector<int> classes_of(const study::Schedule& schedule) {
   std::vector<int> classes;
-  for (const study::Presentation& shown : schedule.presentations) {
-    classes.push_back(shown.stimulus.class_index);
+  for (const study::Trial& shown : schedule.trials) {
+    classes.push_back(shown.field().class_index);
   }
   return classes;
 }
@@ -29,9 +34,9 @@ std::vector<int> classes_of(const study::Schedule& schedule) {
 /// How often each class and method is scored.
 std::map<std::pair<int, int>, int> scored_counts(const study::Schedule& schedule) {
   std::map<std::pair<int, int>, int> counts;
-  for (const study::Presentation& shown : schedule.presentations) {
+  for (const study::Trial& shown : schedule.trials) {
     if (shown.role == study::Role::lead_in) continue;
-    ++counts[{shown.stimulus.class_index, shown.stimulus.method}];
+    ++counts[{shown.field().class_index, shown.field().method}];
   }
   return counts;
 }
@@ -56,8 +61,8 @@ TEST_CASE("orders de-bruijn and uniform, lead-ins and exemplars are the same on 
   const study::Schedule cycle = schedule_of(seeded(document, 7), 2);
   CHECK(classes_of(cycle) == std::vector<int>{0, 2, 1, 1, 0, 1, 2, 2, 0, 0});
   std::vector<int> exemplars;
-  for (const study::Presentation& shown : cycle.presentations) {
-    exemplars.push_back(shown.stimulus.exemplar);
+  for (const study::Trial& shown : cycle.trials) {
+    exemplars.push_back(shown.field().exemplar);
   }
   CHECK(exemplars == std::vector<int>{1, 0, 1, 2, 0, 0, 2, 1, 2, 0});
   document["trials"] = {{"order", "uniform"}, {"repeats", 3}, {"lead_in", 2}};
@@ -69,10 +74,10 @@ TEST_CASE("a shuffled schedule presents every class equally often to every parti
   const study::Study study = seeded(study_of(5), 3);
   for (int enrolment = 1; enrolment <= 50; ++enrolment) {
     const study::Schedule schedule = schedule_of(study, enrolment);
-    REQUIRE(schedule.presentations.size() == 25);
+    REQUIRE(schedule.trials.size() == 25);
     for (std::size_t i = 0; i < 25; ++i) {
-      CHECK(schedule.presentations[i].trial == static_cast<int>(i) + 1);
-      CHECK(schedule.presentations[i].role == study::Role::scored);
+      CHECK(schedule.trials[i].place.trial == static_cast<int>(i) + 1);
+      CHECK(schedule.trials[i].role == study::Role::scored);
     }
     const auto counts = scored_counts(schedule);
     CHECK(counts.size() == 5);
@@ -110,7 +115,7 @@ TEST_CASE("uniform draws have the same number of trials, each class equally like
   bool unbalanced = false;
   for (int enrolment = 1; enrolment <= 3200; ++enrolment) {
     const study::Schedule schedule = schedule_of(study, enrolment);
-    REQUIRE(schedule.presentations.size() == 8);
+    REQUIRE(schedule.trials.size() == 8);
     const std::vector<int> classes = classes_of(schedule);
     ++first_and_last[{classes.front(), classes.back()}];
     unbalanced = unbalanced || scored_counts(schedule) != scored_counts(schedule_of(study, 1));
@@ -127,16 +132,16 @@ TEST_CASE("a de-bruijn schedule has every transition once, after one lead-in") {
   std::set<std::vector<int>> orders;
   for (int enrolment = 1; enrolment <= 30; ++enrolment) {
     const study::Schedule schedule = schedule_of(study, enrolment);
-    REQUIRE(schedule.presentations.size() == 26);
+    REQUIRE(schedule.trials.size() == 26);
     const std::vector<int> classes = classes_of(schedule);
     orders.insert(classes);
     std::set<std::pair<int, int>> transitions;
     for (std::size_t i = 1; i < classes.size(); ++i) {
       transitions.emplace(classes[i - 1], classes[i]);
-      CHECK(schedule.presentations[i].role == study::Role::scored);
+      CHECK(schedule.trials[i].role == study::Role::scored);
     }
     CHECK(transitions.size() == 25);
-    CHECK(schedule.presentations[0].role == study::Role::lead_in);
+    CHECK(schedule.trials[0].role == study::Role::lead_in);
     for (const auto& [item, count] : scored_counts(schedule)) CHECK(count == 5);
   }
   CHECK(orders.size() == 30);
@@ -154,17 +159,17 @@ TEST_CASE("lead-ins open each block, are not scored, and leave the scored order 
   const study::Schedule without = schedule_of(seeded(document, 15), 3);
   document["trials"] = {{"lead_in", 2}};
   const study::Schedule with = schedule_of(seeded(document, 15), 3);
-  REQUIRE(with.presentations.size() == without.presentations.size() + 4);
+  REQUIRE(with.trials.size() == without.trials.size() + 4);
   std::vector<study::StimulusIndex> scored;
-  for (std::size_t i = 0; i < with.presentations.size(); ++i) {
-    const study::Presentation& shown = with.presentations[i];
+  for (std::size_t i = 0; i < with.trials.size(); ++i) {
+    const study::Trial& shown = with.trials[i];
     const bool opens_block = i % 22 < 2;
     CHECK((shown.role == study::Role::lead_in) == opens_block);
-    CHECK(shown.block == static_cast<int>(i) / 22);
-    if (!opens_block) scored.push_back(shown.stimulus);
+    CHECK(shown.place.block == static_cast<int>(i) / 22);
+    if (!opens_block) scored.push_back(shown.field());
   }
   std::vector<study::StimulusIndex> expected;
-  for (const study::Presentation& shown : without.presentations) expected.push_back(shown.stimulus);
+  for (const study::Trial& shown : without.trials) expected.push_back(shown.field());
   CHECK(scored == expected);
 }
 
@@ -173,8 +178,8 @@ TEST_CASE("blocks by method follow the Williams row of the enrolment") {
   for (int enrolment = 1; enrolment <= 6; ++enrolment) {
     const study::Schedule schedule = schedule_of(study, enrolment);
     const std::vector<int> row = study::williams_row(2, enrolment);
-    for (const study::Presentation& shown : schedule.presentations) {
-      CHECK(shown.stimulus.method == row[static_cast<std::size_t>(shown.block)]);
+    for (const study::Trial& shown : schedule.trials) {
+      CHECK(shown.field().method == row[static_cast<std::size_t>(shown.place.block)]);
     }
     for (const auto& [item, count] : scored_counts(schedule)) CHECK(count == 5);
   }
@@ -191,15 +196,15 @@ TEST_CASE("a mixed block has every class and method equally often, interleaved")
   json document = comparison_of(4);
   document["trials"] = {{"blocks", "mixed"}};
   const study::Schedule schedule = schedule_of(seeded(document, 18), 1);
-  REQUIRE(schedule.presentations.size() == 40);
+  REQUIRE(schedule.trials.size() == 40);
   const auto counts = scored_counts(schedule);
   CHECK(counts.size() == 8);
   for (const auto& [item, count] : counts) CHECK(count == 5);
   int changes = 0;
   for (std::size_t i = 1; i < 40; ++i) {
-    CHECK(schedule.presentations[i].block == 0);
-    const auto& [before, now] = std::pair(schedule.presentations[i - 1], schedule.presentations[i]);
-    changes += before.stimulus.method != now.stimulus.method ? 1 : 0;
+    CHECK(schedule.trials[i].place.block == 0);
+    const auto& [before, now] = std::pair(schedule.trials[i - 1], schedule.trials[i]);
+    changes += before.field().method != now.field().method ? 1 : 0;
   }
   CHECK(changes > 5);
 }
@@ -211,8 +216,8 @@ TEST_CASE("all images of a class are used before any repeats, for each method an
   std::set<std::vector<int>> decks;
   for (int enrolment = 1; enrolment <= 10; ++enrolment) {
     std::map<std::pair<int, int>, std::vector<int>> dealt;
-    for (const study::Presentation& shown : schedule_of(study, enrolment).presentations) {
-      dealt[{shown.stimulus.class_index, shown.stimulus.method}].push_back(shown.stimulus.exemplar);
+    for (const study::Trial& shown : schedule_of(study, enrolment).trials) {
+      dealt[{shown.field().class_index, shown.field().method}].push_back(shown.field().exemplar);
     }
     CHECK(dealt.size() == 6);
     for (const auto& [item, exemplars] : dealt) {
@@ -283,19 +288,19 @@ TEST_CASE("williams_row follows the published square of four") {
 }
 
 TEST_CASE("the schedule rule names everything that decides a schedule but the seed") {
-  const std::string rule = study::schedule_rule(seeded(study_of(5), 1));
-  CHECK(rule == study::schedule_rule(seeded(study_of(5), 2)));
+  const std::string rule = rule_of(seeded(study_of(5), 1));
+  CHECK(rule == rule_of(seeded(study_of(5), 2)));
   CHECK(rule.find("touchtrial schedule 2: ") == 0);
   CHECK(rule.find("classes=5; exemplars=1,1,1,1,1; methods=1; repeats=5; order=shuffled; "
                   "blocks=by-method; lead_in=0") != std::string::npos);
-  std::set<std::string> rules = {rule, study::schedule_rule(parsed(study_of(4))),
-                                 study::schedule_rule(parsed(study_of(5, 2))),
-                                 study::schedule_rule(parsed(comparison_of(5)))};
+  std::set<std::string> rules = {rule, rule_of(parsed(study_of(4))),
+                                 rule_of(parsed(study_of(5, 2))),
+                                 rule_of(parsed(comparison_of(5)))};
   const json changes = {{"repeats", 4}, {"order", "uniform"}, {"blocks", "mixed"}, {"lead_in", 1}};
   for (const auto& [key, value] : changes.items()) {
     json document = study_of(5);
     document["trials"][key] = value;
-    rules.insert(study::schedule_rule(parsed(document)));
+    rules.insert(rule_of(parsed(document)));
   }
   CHECK(rules.size() == 8);
 }

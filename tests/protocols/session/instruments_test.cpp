@@ -5,6 +5,7 @@
 #include "protocols/session/exploration.hpp"
 #include "protocols/session/tiny_study.hpp"
 #include "record/payload_json.hpp"
+#include "study/protocol.hpp"
 #include "support/as_recorded.hpp"
 #include "support/catch.hpp"
 
@@ -36,9 +37,9 @@ struct KeptMarks final : session::Instruments {
 /// A session whose inputs the test gives.
 struct Course {
   Course()
-      : session(study::make_schedule(study.key().study,
-                                     study.key().draw_of(1, study::Draws::rehearsal)),
-                study.key().study.trials, record::SessionRecorder(1, key, events)) {
+      : session(
+            study::make_order(study.key().study, study.key().draw_of(1, study::Draws::rehearsal)),
+            study.key().study.trials, record::SessionRecorder(1, key, events)) {
     record::SessionOpening opening{.participant = "P001", .enrolment = 1};
     session.open(now(), opening, "{}");
     session.calibrate(now());
@@ -64,7 +65,7 @@ TEST_CASE("instruments are told of events and trials, and of nothing that was pr
   KeptMarks kept;
   session::SessionMarks marks(&kept, course.session, 1000.0);
   marks.begin();
-  const int trial = course.session.current()->trial;
+  const int trial = course.session.current()->place.trial;
   course.session.present(course.now());
   const Clock::time_point began = Clock::now();
   marks.plane_is_on(began);

@@ -13,6 +13,9 @@
 #include "support/fault_vfs.hpp"
 
 #include <map>
+#include <memory>
+#include <string>
+#include <utility>
 
 namespace touchtrial {
 namespace {
@@ -98,9 +101,9 @@ struct KilledSession {
         record::wrap_participant_key(key.investigator_box, 1, lab.participant_key);
     NotingSink sink(again ? store.continue_session(1) : store.begin_session(1, wrapped),
                     acknowledged);
-    const study::Schedule schedule =
-        study::make_schedule(key.study, key.draw_of(1, study::Draws::rehearsal));
-    session::Session session(schedule, key.study.trials,
+    auto order = study::make_order(key.study, key.draw_of(1, study::Draws::rehearsal));
+    const std::string schedule = study::schedule_to_json(order->schedule(), key);
+    session::Session session(std::move(order), key.study.trials,
                              record::SessionRecorder(1, lab.participant_key, sink));
     session::VirtualSessionClock clock;
     if (again) {
@@ -108,7 +111,7 @@ struct KilledSession {
       clock = session::VirtualSessionClock(session.last() + std::chrono::seconds(30));
       session.take_up(clock.now(), {.after = "program-ended", .away_s = 30.0});
     } else {
-      session.open({}, opening(), study::schedule_to_json(schedule, key));
+      session.open({}, opening(), schedule);
     }
     Restless participant(starts);
     session::VirtualExplorer explorer;
@@ -139,17 +142,18 @@ void require_kept(const std::vector<record::Event>& stored,
 
 /// Requires that the stylus felt the plane at its own roved gain. The servo's ramp at the beginning
 /// scales the whole force, which keeps its direction.
-void require_felt(const record::StudyStore& store, const study::Presentation& shown) {
+void require_felt(const record::StudyStore& store, const study::Trial& shown) {
   const Laboratory& lab = laboratory();
-  const auto box = store.sealed_trace(1, shown.trial);
+  const auto box = store.sealed_trace(1, shown.place.trial);
   REQUIRE(box);
   const record::Trace trace = record::unsealed_trace(*box, lab.participant_key).value();
   const auto strongest = std::ranges::max_element(
       trace.samples, {}, [](const record::TraceSample& sample) { return norm(sample.force_n); });
   const Vec3 felt_n = strongest->force_n;
   engine::Bristle touch;
-  const Vec3 wanted_n = lab.source.model(lab.study.key().code_of(shown.stimulus), shown.gain_db)
-                            .force_n(strongest->position_mm, {}, touch);
+  const Vec3 wanted_n =
+      lab.source.model(lab.study.key().code_of(shown.field()), shown.planes.front().gain_db)
+          .force_n(strongest->position_mm, {}, touch);
   REQUIRE(std::hypot(wanted_n.x, wanted_n.y) > 0.0);
   REQUIRE(norm((1.0 / norm(felt_n)) * felt_n - (1.0 / norm(wanted_n)) * wanted_n) < 0.01);
 }
@@ -162,11 +166,11 @@ void require_complete(const KilledSession& session) {
   REQUIRE(store.sessions().at(0).state == record::SessionState::completed);
   require_kept(store.events(1), session.acknowledged);
   std::map<int, int> class_of_trial;
-  for (const study::Presentation& one :
+  for (const study::Trial& one :
        study::make_schedule(laboratory().study.key().study,
                             laboratory().study.key().draw_of(1, study::Draws::rehearsal))
-           .presentations) {
-    class_of_trial[one.trial] = one.stimulus.class_index;
+           .trials) {
+    class_of_trial[one.place.trial] = one.field().class_index;
     require_felt(store, one);
   }
   std::map<int, int> answered;

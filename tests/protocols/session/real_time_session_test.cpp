@@ -64,9 +64,9 @@ class PersonAtStation : public simulation::PromptParticipant {
 struct Laboratory {
   explicit Laboratory(const session::RealTimeOptions& options = as_fast_as_it_goes())
       : explorer(options),
-        session(study::make_schedule(study.key().study,
-                                     study.key().draw_of(1, study::Draws::rehearsal)),
-                study.key().study.trials, record::SessionRecorder(1, participant_key, events)) {}
+        session(
+            study::make_order(study.key().study, study.key().draw_of(1, study::Draws::rehearsal)),
+            study.key().study.trials, record::SessionRecorder(1, participant_key, events)) {}
 
   session::SessionTally run(session::Participant& participant,
                             session::Experimenter& experimenter = session::no_experimenter()) {
@@ -113,7 +113,7 @@ TEST_CASE("a real-time session stores every answer, every sample and the servo's
   REQUIRE(answers.size() == 5);
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const record::Event answer = as_recorded(answers[i], lab.participant_key);
-    CHECK(record::answer_from_json(answer.body).position == lab.person.named[i]);
+    CHECK(position_of(record::answer_from_json(answer.body).answer) == lab.person.named[i]);
   }
   REQUIRE(lab.events.traces.size() == 5);
   for (const record::Event& stored : lab.all(record::EventKind::trace_stored)) {
@@ -354,7 +354,7 @@ TEST_CASE("a real-time session on the machine's own clock records how late its t
   session::AlwaysReady devices;
   record::BufferedEvents events;
   session::Session session(
-      study::make_schedule(study.key().study, study.key().draw_of(1, study::Draws::rehearsal)),
+      study::make_order(study.key().study, study.key().draw_of(1, study::Draws::rehearsal)),
       study.key().study.trials, record::SessionRecorder(1, SecretKey{}, events));
   record::SessionOpening opening{.participant = "P001", .enrolment = 1};
   session.open(clock.now(), opening, "{}");

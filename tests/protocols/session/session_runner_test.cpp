@@ -62,7 +62,7 @@ Ran ran_session(const Run& run, const std::string& trials = R"({"repeats": 1})",
   const StimulusSource source(study.pack(), study.key().study.rendering);
   Ran ran;
   Session session(
-      study::make_schedule(study.key().study, study.key().draw_of(1, study::Draws::rehearsal)),
+      study::make_order(study.key().study, study.key().draw_of(1, study::Draws::rehearsal)),
       study.key().study.trials, record::SessionRecorder(1, SecretKey{}, ran.events));
   record::SessionOpening opening{.participant = "P001", .enrolment = 1};
   session.open({}, opening, "{}");
@@ -246,27 +246,33 @@ class Reluctant final : public DeviceSupply {
   int wanted_ = 0;
 };
 
+/// A round of planes without texture, of which the first choice is always right.
+study::Practice blank_practice(int trials) {
+  study::Practice practice{
+      .labels = {"sand", "cork"}, .trials = {}, .criterion = trials, .rounds = 1};
+  for (int i = 0; i < trials; ++i) {
+    practice.trials.push_back({.place = {.trial = i + 1},
+                               .role = study::Role::practice,
+                               .planes = {{.field = {}, .blank = true}},
+                               .right = 0});
+  }
+  return practice;
+}
+
 Ran run_diary(Diary& diary, Explorer& explorer, DeviceSupply& devices,
               const std::string& trials = R"({"repeats": 1})", int practice = 0) {
   VirtualSessionClock clock;
   return ran_session(
-      [&](Session& session, const study::StudyKey& of_study, const StimulusSource& source) {
-        study::StudyKey key = of_study;
-        key.study.trials.practice = practice;
-        key.study.practice.criterion = practice;
-        key.study.practice.rounds = 1;
-        const PracticeTextures textures{
-            source.plane(), practice, key.study.practice, [&](int) {
-              return PracticeRound{{"sand", "cork"}, {&source.flat(), &source.flat()}, {0, 0}};
-            }};
-        return session::run_session(session, {.key = key,
-                                              .source = source,
-                                              .participant = diary,
-                                              .clock = clock,
-                                              .explorer = explorer,
-                                              .devices = devices,
-                                              .experimenter = diary,
-                                              .practice = practice > 0 ? &textures : nullptr});
+      [&](Session& session, const study::StudyKey& key, const StimulusSource& source) {
+        return session::run_session(session,
+                                    {.key = key,
+                                     .source = source,
+                                     .participant = diary,
+                                     .clock = clock,
+                                     .explorer = explorer,
+                                     .devices = devices,
+                                     .experimenter = diary,
+                                     .practice = [&](int) { return blank_practice(practice); }});
       },
       trials);
 }

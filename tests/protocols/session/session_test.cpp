@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <memory>
 
 #include <nlohmann/json.hpp>
 
@@ -33,17 +34,21 @@ class FickleSink final : public record::EventSink {
 study::Schedule schedule_of(int trials) {
   study::Schedule schedule;
   for (int i = 0; i < trials; ++i) {
-    schedule.presentations.push_back(
-        {.trial = i + 1, .block = i / 2, .stimulus = {.class_index = i % 3}});
+    schedule.trials.push_back(
+        {.place = {.trial = i + 1, .block = i / 2}, .planes = {{.field = {.class_index = i % 3}}}});
   }
   schedule.layout = {2, 0, 1};
   return schedule;
 }
 
+std::unique_ptr<study::Order> order_of(int trials) {
+  return std::make_unique<study::Order>(schedule_of(trials), SecretKey{});
+}
+
 /// A session in which everything before the first trial is done, at 3 s.
 struct Laboratory {
   explicit Laboratory(int trials = 3, const study::TrialOptions& options = {})
-      : session(schedule_of(trials), options, record::SessionRecorder(1, SecretKey{}, sink)) {
+      : session(order_of(trials), options, record::SessionRecorder(1, SecretKey{}, sink)) {
     opening.participant = "P001";
     opening.enrolment = 1;
     session.open(seconds(1), opening, "{}");
@@ -207,7 +212,7 @@ TEST_CASE("an interrupted trial is repeated after all others, under its number")
   CHECK(lab.last_body().at("reason") == "comfort stop");
   std::vector<int> trials;
   while (lab.session.phase() == Phase::ready) {
-    trials.push_back(lab.session.current()->trial);
+    trials.push_back(lab.session.current()->place.trial);
     lab.run_trial(0);
   }
   CHECK(trials == std::vector<int>{2, 3, 1});
@@ -224,7 +229,7 @@ TEST_CASE("a presentation that makes room for a pause is the next one, whatever 
     lab.session.resume(lab.now += seconds(9));
     std::vector<int> trials;
     while (lab.session.phase() == Phase::ready) {
-      trials.push_back(lab.session.current()->trial);
+      trials.push_back(lab.session.current()->place.trial);
       lab.run_trial(0);
     }
     CHECK(trials == std::vector<int>{1, 2, 3});
@@ -276,7 +281,7 @@ TEST_CASE("a trial can be interrupted while the participant answers; its evidenc
   lab.session.end_exploring(seconds(5));
   lab.session.choose(1);
   lab.session.interrupt(seconds(6), "comfort stop: a cramp");
-  CHECK(lab.session.current()->trial == 2);
+  CHECK(lab.session.current()->place.trial == 2);
   lab.now = seconds(6);
   lab.run_trial(0);
   lab.run_trial(0);
@@ -368,13 +373,8 @@ TEST_CASE("a session that was stopped closes as incomplete") {
   CHECK(lab.last_body().at("complete") == false);
 }
 
-session::BlockDrawing two_trials_again() {
-  return {[](int block, int, int first_trial) {
-            return std::vector<study::Presentation>{
-                {.trial = first_trial, .block = block, .stimulus = {.class_index = 2}},
-                {.trial = first_trial + 1, .block = block, .stimulus = {.class_index = 1}}};
-          },
-          [](const std::vector<study::Presentation>&) { return std::string("{}"); }};
+session::SealBlock no_secret() {
+  return [](const std::vector<study::Trial>&) { return std::string("{}"); };
 }
 
 study::TrialOptions restarting_blocks() {
@@ -383,14 +383,14 @@ study::TrialOptions restarting_blocks() {
 
 TEST_CASE("an interrupted trial restarts its block, under new numbers, if the study says so") {
   FickleSink sink;
-  session::Session session(schedule_of(4), restarting_blocks(),
-                           record::SessionRecorder(1, SecretKey{}, sink), two_trials_again());
+  session::Session session(order_of(4), restarting_blocks(),
+                           record::SessionRecorder(1, SecretKey{}, sink), no_secret());
   session.open({}, {}, "{}");
   session.calibrate({});
   session.instruct({});
   std::vector<int> trials;
   for (int i = 0; session.phase() == Phase::ready; ++i) {
-    trials.push_back(session.current()->trial);
+    trials.push_back(session.current()->place.trial);
     session.present({});
     if (i == 1) {
       session.interrupt({}, "device lost");
@@ -401,7 +401,7 @@ TEST_CASE("an interrupted trial restarts its block, under new numbers, if the st
     session.confirm({});
   }
   CHECK(trials == std::vector<int>{1, 2, 5, 6, 3, 4});
-  CHECK_THROWS_AS(session::Session(schedule_of(4), restarting_blocks(),
+  CHECK_THROWS_AS(session::Session(order_of(4), restarting_blocks(),
                                    record::SessionRecorder(1, SecretKey{}, sink)),
                   std::invalid_argument);
 }
@@ -436,14 +436,14 @@ std::vector<int> killed_after(std::size_t kept, const study::TrialOptions& optio
       }
     }
   };
-  session::Session session(schedule_of(4), options, record::SessionRecorder(1, SecretKey{}, first),
-                           two_trials_again());
+  session::Session session(order_of(4), options, record::SessionRecorder(1, SecretKey{}, first),
+                           no_secret());
   session.open({}, {}, "{}");
   run(session, first, kept);
 
   FickleSink second;
-  session::Session again(schedule_of(4), options, record::SessionRecorder(1, SecretKey{}, second),
-                         two_trials_again());
+  session::Session again(order_of(4), options, record::SessionRecorder(1, SecretKey{}, second),
+                         no_secret());
   const std::vector<record::Event> so_far = as_recorded(first.stored.events, SecretKey{});
   again.restore(so_far);
   CHECK(again.last() == so_far.back().at);
@@ -490,10 +490,10 @@ TEST_CASE("resuming a session ends its pause, and asks nothing twice") {
   lab.session.tick(seconds(3), "curtain");
   lab.session.deviate(seconds(3), {"no-masking-noise", "no headphones"});
   lab.session.question(seconds(3), "handedness", "{}");
-  lab.session.practise(seconds(3), {1, 1, 2, true});
+  lab.session.practise(seconds(3), {1, 1, Chosen{2}, true});
   lab.session.pause(seconds(4), "telephone");
   FickleSink sink;
-  session::Session again(schedule_of(3), {}, record::SessionRecorder(1, SecretKey{}, sink));
+  session::Session again(order_of(3), {}, record::SessionRecorder(1, SecretKey{}, sink));
   again.restore(as_recorded(lab.sink.stored.events, SecretKey{}));
   CHECK(again.phase() == Phase::paused);
   again.take_up(seconds(5), {"program-ended", 1.0, "1"});
@@ -510,8 +510,9 @@ TEST_CASE("events that do not fit the schedule are refused") {
   lab.session.present(seconds(4));
   FickleSink sink;
   study::Schedule other = schedule_of(1);
-  other.presentations.front().trial = 2;
-  session::Session again(other, {}, record::SessionRecorder(1, SecretKey{}, sink));
+  other.trials.front().place.trial = 2;
+  session::Session again(std::make_unique<study::Order>(other, SecretKey{}), {},
+                         record::SessionRecorder(1, SecretKey{}, sink));
   CHECK_THROWS_WITH(again.restore(as_recorded(lab.sink.stored.events, SecretKey{})),
                     holds_text("verify"));
 }
@@ -522,7 +523,7 @@ std::string end_of(int answers, int at_1, bool may_name_one_key) {
   Laboratory lab(answers);
   for (int trial = 1; trial <= 5; ++trial) lab.run_trial(trial <= at_1 ? 1 : 0);
   FickleSink sink;
-  session::Session again(schedule_of(answers), {}, record::SessionRecorder(1, SecretKey{}, sink));
+  session::Session again(order_of(answers), {}, record::SessionRecorder(1, SecretKey{}, sink));
   again.restore(as_recorded(lab.sink.stored.events, SecretKey{}));
   std::chrono::nanoseconds now = again.last();
   again.take_up(now, {"program-ended", 1.0, "1"});

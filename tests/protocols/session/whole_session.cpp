@@ -64,9 +64,10 @@ session::SessionTally WholeSession::run(session::DeviceStation& station,
   const std::unique_ptr<record::EventSink> sink = store.begin_session(
       1, record::wrap_participant_key(study.key().investigator_box, 1, participant_key),
       [] { return kUtc; });
-  const study::Schedule schedule =
-      study::make_schedule(study.key().study, study.key().draw_of(1, study::Draws::rehearsal));
-  session::Session session(schedule, study.key().study.trials,
+  auto order =
+      study::make_order(study.key().study, study.key().draw_of(1, study::Draws::rehearsal));
+  const std::string schedule = study::schedule_to_json(order->schedule(), study.key());
+  session::Session session(std::move(order), study.key().study.trials,
                            record::SessionRecorder(1, participant_key, *sink));
   record::SessionOpening opening{.participant = "P001",
                                  .enrolment = 1,
@@ -74,7 +75,7 @@ session::SessionTally WholeSession::run(session::DeviceStation& station,
                                  .seal = study::study_seal(study.key())};
   session::describe_station(opening, station.info(), explorer.scheduling(), device::kServoRateHz,
                             "");
-  session.open({}, opening, study::schedule_to_json(schedule, study.key()));
+  session.open({}, opening, schedule);
   session::VirtualSessionClock clock;
   MarkedLine line(instrument.settings);
   return session::run_session(session, {.key = study.key(),
@@ -97,7 +98,7 @@ record::InterruptionDetail WholeSession::check(const std::vector<int>& named, in
   std::vector<int> stored;
   for (const record::Event& event : all(record::EventKind::answered)) {
     const record::Event answer = as_recorded(event, participant_key);
-    stored.push_back(record::answer_from_json(answer.body).position.value());
+    stored.push_back(position_of(record::answer_from_json(answer.body).answer).value());
   }
   CHECK(stored == named);
 

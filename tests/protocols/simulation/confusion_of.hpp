@@ -51,8 +51,9 @@ using Confusion = std::map<std::pair<int, int>, int>;
   Confusion confusion;
   for (const record::TrialRow& row : opened_trials(store, key)) {
     const study::Schedule& schedule = schedules[row.session];
-    const int presented = schedule.presentations.at(row.trial - 1).stimulus.class_index;
-    if (row.position) ++confusion[{presented, schedule.layout.at(*row.position)}];
+    const int presented = schedule.trials.at(row.trial - 1).field().class_index;
+    if (position_of(row.answer))
+      ++confusion[{presented, schedule.layout.at(*position_of(row.answer))}];
   }
   return confusion;
 }

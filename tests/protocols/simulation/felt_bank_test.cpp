@@ -6,6 +6,7 @@
 #include "protocols/simulation/felt_decision.hpp"
 #include "protocols/simulation/felt_knowledge.hpp"
 #include "protocols/simulation/simulation.hpp"
+#include "study/protocol.hpp"
 #include "support/catch.hpp"
 
 #include <cmath>
@@ -75,15 +76,17 @@ TEST_CASE("answers to trials that are felt without a session equal those of sess
         simulation::see(labels_of(schedule, design), subject, individual, knowledge);
     const simulation::FeltDecision decision(individual, knowledge);
     std::uint64_t nth = 0;
-    for (const study::Presentation& shown : schedule.presentations) {
-      const simulation::LabelledField& field = fields.all.all()[places.place_of(shown.stimulus)];
-      const engine::FeltFeatures felt = simulation::feel_trial(
-          field, shown.gain_db, fields.all.plane(), design, subject, kSeed, number, ++nth);
+    for (const study::Trial& shown : schedule.trials) {
+      const simulation::LabelledField& field = fields.all.all()[places.place_of(shown.field())];
+      const engine::FeltFeatures felt =
+          simulation::feel_trial(field, shown.planes.front().gain_db, fields.all.plane(), design,
+                                 subject, kSeed, number, ++nth);
       RandomStream random =
           simulation::stream_of_trial(kSeed, simulation::kAnswerPurpose, number, nth);
       REQUIRE(row < rows.size());
       INFO("participant " << number << ", presentation " << nth);
-      REQUIRE(rows[row].position.value() == decision.answer(felt, pictures, random).position);
+      REQUIRE(position_of(rows[row].answer).value() ==
+              decision.answer(felt, pictures, random).position);
       ++row;
     }
   }

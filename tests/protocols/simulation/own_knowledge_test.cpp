@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/random.hpp"
+#include "engine/perception/felt_features.hpp"
 #include "protocols/session/tiny_study.hpp"
 #include "support/catch.hpp"
 

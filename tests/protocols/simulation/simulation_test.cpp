@@ -36,7 +36,7 @@ record::StudyStore simulated(TinyStudy& study, const simulation::SubjectModel& s
 std::vector<int> answers_of(const record::StudyStore& store, const study::StudyKey& key) {
   std::vector<int> answers;
   for (const record::TrialRow& row : opened_trials(store, key))
-    answers.push_back(row.position.value_or(-1));
+    answers.push_back(position_of(row.answer).value_or(-1));
   return answers;
 }
 
@@ -78,7 +78,7 @@ TEST_CASE("on smooth planes every subject is at chance") {
   // 17 times or more once in 10^6.
   std::map<int, std::map<int, int>> answers;
   for (const record::TrialRow& row : opened_trials(store, study.key())) {
-    ++answers[row.session][row.position.value()];
+    ++answers[row.session][position_of(row.answer).value()];
   }
   REQUIRE(answers.size() == 20);
   for (const auto& [session, count] : answers) {
@@ -247,7 +247,7 @@ TEST_CASE("an exploration beyond the limit times out, and the study says whether
   store.for_each(record::EventKind::timed_out, [&](const record::Event&) { ++timed_out; });
   CHECK(timed_out == 5);
   for (const record::TrialRow& row : opened_trials(store, study.key())) {
-    CHECK(row.position.has_value() == fades);
+    CHECK(position_of(row.answer).has_value() == fades);
     CHECK(row.samples == 900);
   }
   CHECK(store.sessions().front().state == record::SessionState::completed);

@@ -19,9 +19,9 @@ namespace {
 constexpr int kPeople = 128;
 constexpr double kExploreLimitS = 10.0;
 
-int stimulus_of(const study::Presentation& presentation) {
-  const bool is_blank = presentation.role == study::Role::catch_trial;
-  return is_blank ? kStimuli - 1 : presentation.stimulus.class_index;
+int stimulus_of(const study::Trial& trial) {
+  const bool is_blank = trial.role == study::Role::catch_trial;
+  return is_blank ? kStimuli - 1 : trial.field().class_index;
 }
 
 /// Somebody who is mostly right, and differs from texture to texture in how long they explore and
@@ -44,8 +44,7 @@ class Person final : public simulation::PromptParticipant {
   void see_pictures(const std::vector<std::string>&) override {}
   void feel(const device::ServoSample&) noexcept override {}
   [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override {
-    const study::Presentation& presented = schedule_.presentations.at(begun_++);
-    stimulus_ = stimulus_of(presented);
+    stimulus_ = stimulus_of(schedule_.trials.at(begun_++));
     simulation::SubjectModel subject = subject_;
     if (!is_at_the_edge_) {
       subject.explore_s *= (0.92 + 0.032 * stimulus_) * std::exp(0.04 * random_.normal());
@@ -112,9 +111,9 @@ void run_session(const study::StudyKey& study, const session::StimulusSource& so
                  record::StudyStore& store) {
   record::BufferedEvents events;
   const SecretKey key = SeededEntropy(22).secret("participant " + std::to_string(number));
-  const study::Schedule schedule =
-      study::make_schedule(study.study, study.draw_of(number, study::Draws::rehearsal));
-  session::Session session(schedule, study.study.trials,
+  auto order = study::make_order(study.study, study.draw_of(number, study::Draws::rehearsal));
+  const study::Schedule schedule = order->schedule();
+  session::Session session(std::move(order), study.study.trials,
                            record::SessionRecorder(number, key, events));
   record::SessionOpening opening{.participant = "P" + std::to_string(number),
                                  .enrolment = number,
@@ -143,8 +142,7 @@ Truth opened(const record::StudyStore& store, const study::StudyKey& key) {
   constexpr int kMeasuredPeople = 16;
   for (const record::SessionRow& session : store.sessions()) {
     const SecretKey own = key_of_session(store, key, session.session);
-    for (const study::Presentation& shown :
-         schedule_of_session(store, key, session.session).presentations) {
+    for (const study::Trial& shown : schedule_of_session(store, key, session.session).trials) {
       truth.stimuli.push_back(stimulus_of(shown));
     }
     for (const record::Event& stored : store.events(session.session)) {
@@ -172,7 +170,7 @@ Truth opened(const record::StudyStore& store, const study::StudyKey& key) {
     }
   }
   for (const record::TrialRow& row : opened_trials(store, key)) {
-    truth.leaks["answer"].push_back(row.position.value());
+    truth.leaks["answer"].push_back(position_of(row.answer).value());
     const std::chrono::duration<double> took = row.answered_at.value() - row.presented_at;
     truth.leaks["time of the answer"].push_back(took.count());
   }

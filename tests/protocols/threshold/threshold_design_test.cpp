@@ -55,22 +55,21 @@ study::ScheduleDraw draw_of(std::uint64_t seed) {
   return {.secret = SeededEntropy(seed).secret("threshold_design_test")};
 }
 
-/// All presentations of a participant whose answers are right where `is_right` says so.
+/// All trials of a participant whose answers are right where `is_right` says so.
 template <typename IsRight>
-std::vector<study::Presentation> presented(const study::Study& study,
-                                           const study::ScheduleDraw& draw, IsRight is_right) {
-  const auto order = study::adaptive_order(study, draw);
-  std::vector<study::Presentation> all;
-  for (study::Presentation place : study::make_schedule(study, draw).presentations) {
-    order->choose(place);
-    all.push_back(place);
-    const int target = place.chosen->target;
-    order->answer(place, is_right(place) ? target : (target == 0 ? 1 : 0));
+std::vector<study::Trial> presented(const study::Study& study, const study::ScheduleDraw& draw,
+                                    IsRight is_right) {
+  const auto order = study::make_order(study, draw);
+  std::vector<study::Trial> all;
+  for (const study::Trial& scheduled : order->schedule().trials) {
+    const study::Trial& shown = all.emplace_back(order->at(scheduled));
+    const int right = shown.right.value();
+    order->answered(shown, Chosen{is_right(shown) ? right : (right == 0 ? 1 : 0)});
   }
   return all;
 }
 
-const auto kAlwaysRight = [](const study::Presentation&) { return true; };
+const auto kAlwaysRight = [](const study::Trial&) { return true; };
 
 }  // namespace
 
@@ -129,13 +128,13 @@ TEST_CASE("of two intervals the target alone has the texture, each equally often
   const study::Study study = study_of(detection_file());
   std::map<int, int> targets;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    for (const study::Presentation& shown : presented(study, draw_of(seed), kAlwaysRight)) {
-      REQUIRE(shown.intervals.size() == 2);
-      const auto target = static_cast<std::size_t>(shown.chosen->target);
-      CHECK_FALSE(shown.intervals[target].blank);
-      CHECK(shown.intervals[1 - target].blank);
-      CHECK(shown.intervals[target].gain_db == -40.0 + shown.chosen->level);
-      ++targets[shown.chosen->target];
+    for (const study::Trial& shown : presented(study, draw_of(seed), kAlwaysRight)) {
+      REQUIRE(shown.planes.size() == 2);
+      const auto target = static_cast<std::size_t>(shown.right.value());
+      CHECK_FALSE(shown.planes[target].blank);
+      CHECK(shown.planes[1 - target].blank);
+      CHECK(shown.planes[target].gain_db == -40.0 + shown.level->level);
+      ++targets[shown.right.value()];
     }
   }
   CHECK(targets[0] + targets[1] == 600);
@@ -147,12 +146,12 @@ TEST_CASE("the comparison is stronger by the level's share of the standard, up t
   const auto& options = study::threshold::options_of(study);
   CHECK(study::threshold::comparison_at(options, {0, -6.0}, 0.0) ==
         Approx(-6.0 + 20.0 * std::log10(2.0)));
-  for (const study::Presentation& shown : presented(study, draw_of(3), kAlwaysRight)) {
-    const auto target = static_cast<std::size_t>(shown.chosen->target);
-    const double standard = shown.chosen->track == 1 ? -18.0 : -6.0;
-    const double level = -30.0 + 2.0 * shown.chosen->level;
-    CHECK(shown.intervals[1 - target].gain_db == standard);
-    CHECK(shown.intervals[target].gain_db ==
+  for (const study::Trial& shown : presented(study, draw_of(3), kAlwaysRight)) {
+    const auto target = static_cast<std::size_t>(shown.right.value());
+    const double standard = shown.level->track == 1 ? -18.0 : -6.0;
+    const double level = -30.0 + 2.0 * shown.level->level;
+    CHECK(shown.planes[1 - target].gain_db == standard);
+    CHECK(shown.planes[target].gain_db ==
           Approx(standard + 20.0 * std::log10(1.0 + std::pow(10.0, level / 20.0))));
   }
 }
@@ -166,9 +165,9 @@ TEST_CASE("a track has the levels up to its own standard's ceiling, and no other
   REQUIRE(block.tracks.size() == 2);
   CHECK(block.tracks[0].levels.back() == 16.0);  // 20 log10(10^(18/20) - 1) = 16.83
   CHECK(block.tracks[1].levels.back() == -1.0);  // 20 log10(10^(6/20) - 1) = -0.04
-  for (const study::Presentation& shown :
-       presented(study, draw_of(4), [](const study::Presentation&) { return false; })) {
-    for (const study::Interval& one : shown.intervals) CHECK(one.gain_db <= 1e-9);
+  for (const study::Trial& shown :
+       presented(study, draw_of(4), [](const study::Trial&) { return false; })) {
+    for (const study::Plane& one : shown.planes) CHECK(one.gain_db <= 1e-9);
   }
 }
 
@@ -184,16 +183,16 @@ TEST_CASE("along the order every level has a method, and either kind is odd equa
   int standards_odd = 0;
   int all = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    for (const study::Presentation& shown : presented(study, draw_of(seed), kAlwaysRight)) {
+    for (const study::Trial& shown : presented(study, draw_of(seed), kAlwaysRight)) {
       std::map<int, int> methods;
-      for (const study::Interval& one : shown.intervals) ++methods[one.stimulus.method];
+      for (const study::Plane& one : shown.planes) ++methods[one.field.method];
       REQUIRE(methods.size() == 2);
-      const auto target = static_cast<std::size_t>(shown.chosen->target);
-      CHECK(methods[shown.intervals[target].stimulus.method] == 1);
-      standards_odd += shown.intervals[target].stimulus.method == 0 ? 1 : 0;
+      const auto target = static_cast<std::size_t>(shown.right.value());
+      CHECK(methods[shown.planes[target].field.method] == 1);
+      standards_odd += shown.planes[target].field.method == 0 ? 1 : 0;
       ++all;
       std::set<double> gains;
-      for (const study::Interval& one : shown.intervals) {
+      for (const study::Plane& one : shown.planes) {
         CHECK(one.gain_db <= 0.0);
         CHECK(one.gain_db >= -3.0);
         gains.insert(one.gain_db);
@@ -211,12 +210,12 @@ TEST_CASE("same or different: half of the trials differ, and both kinds of pairs
   file["threshold"]["trials"] = 140;
   const study::Study study = study_of(file);
   std::map<std::pair<int, bool>, int> seen;
-  for (const study::Presentation& shown : presented(study, draw_of(5), kAlwaysRight)) {
-    const double standard = shown.chosen->track == 1 ? -18.0 : -6.0;
-    const bool first = shown.intervals[0].gain_db > standard;
-    const bool second = shown.intervals[1].gain_db > standard;
-    CHECK((first != second) == (shown.chosen->target == 1));
-    ++seen[{shown.chosen->target, first}];
+  for (const study::Trial& shown : presented(study, draw_of(5), kAlwaysRight)) {
+    const double standard = shown.level->track == 1 ? -18.0 : -6.0;
+    const bool first = shown.planes[0].gain_db > standard;
+    const bool second = shown.planes[1].gain_db > standard;
+    CHECK((first != second) == (shown.right.value() == 1));
+    ++seen[{shown.right.value(), first}];
   }
   for (const auto& [kind, count] : seen) CHECK(std::abs(count - 70) < 30);
   CHECK(seen.size() == 4);
@@ -226,21 +225,26 @@ TEST_CASE("levels follow the answers, and a trial that comes again has the same 
   const study::Study study = study_of(detection_file());
   const auto low = presented(study, draw_of(1), kAlwaysRight);
   const auto high =
-      presented(study, draw_of(1), [](const study::Presentation& p) { return p.trial % 2 == 0; });
-  CHECK(low.front().chosen->level == high.front().chosen->level);
-  CHECK(low.back().chosen->level < high.back().chosen->level);
+      presented(study, draw_of(1), [](const study::Trial& p) { return p.place.trial % 2 == 0; });
+  CHECK(low.front().level->level == high.front().level->level);
+  CHECK(low.back().level->level < high.back().level->level);
 
-  const auto order = study::adaptive_order(study, draw_of(1));
-  study::Presentation fifth{.trial = 5, .stimulus = {}};
-  study::Presentation again{.trial = 6, .stimulus = {}};
+  const auto order = study::make_order(study, draw_of(1));
+  const study::Trial first = order->at(order->schedule().trials.front());
+  CHECK(order->at(order->schedule().trials.front()) == first);
   std::set<int> differing;
-  for (int trial = 6; trial < 40; ++trial) {
-    order->choose(fifth);
-    again.trial = trial;
-    order->choose(again);
-    CHECK(again.chosen->level == fifth.chosen->level);
-    differing.insert(again.chosen->target);
+  std::set<int> of_others;
+  for (std::size_t i = 1; i < 35; ++i) {
+    const study::Trial other = order->at(order->schedule().trials[i]);
+    CHECK(other.level == first.level);
+    of_others.insert(other.right.value());
+    order->interrupted(first);
+    const study::Trial again = order->at(order->schedule().trials.front());
+    CHECK(again.place == first.place);
+    CHECK(again.level == first.level);
+    differing.insert(again.right.value());
   }
+  CHECK(of_others.size() == 2);
   CHECK(differing.size() == 2);  // what was felt before the interruption tells nothing
 }
 
@@ -254,10 +258,10 @@ TEST_CASE("catch trials are at the highest level, and control trials come last w
   REQUIRE(all.size() == 75);
   int caught = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    CHECK(all[i].hand_off == (i >= 66));
-    CHECK(all[i].block == (i >= 66 ? 1 : 0));
+    CHECK(all[i].place.hand_off == (i >= 66));
+    CHECK(all[i].place.block == (i >= 66 ? 1 : 0));
     if (all[i].role == study::Role::catch_trial) ++caught;
-    if (all[i].role != study::Role::scored) CHECK(all[i].chosen->level == 40);
+    if (all[i].role != study::Role::scored) CHECK(all[i].level->level == 40);
   }
   CHECK(caught == 6);
 }
@@ -314,7 +318,7 @@ TEST_CASE("the studies of thresholds that ship can be read, and say what they pr
     CHECK(study.trials.break_after_min == 8.0);
     CHECK(study::threshold::options_of(study).control_trials > 0);
     CHECK(study::threshold::options_of(study).practice_trials > 0);
-    CHECK(json::parse(study.protocol->options_in_clear(study)).size() == 19);
+    CHECK(json::parse(study.task->in_clear()).size() == 19);
   }
 }
 

@@ -7,7 +7,7 @@
 #include "analysis/verification/verification.hpp"
 #include "core/errors.hpp"
 #include "protocols/session/commitment.hpp"
-#include "protocols/session/interval_run.hpp"
+#include "protocols/session/plane_run.hpp"
 #include "protocols/session/stimulus_source.hpp"
 #include "protocols/simulation/simulation.hpp"
 #include "protocols/threshold/study/threshold.hpp"
@@ -181,12 +181,12 @@ TEST_CASE("a plane's forces are those of the prepared field times its gain, abou
   options.rendering = R"({"model": ")" + model + R"("})";
   const TinyStudy study(options);
   const session::StimulusSource source(study.pack(), study.key());
-  study::Interval interval;
-  const engine::RenderingModel whole = source.plane_of(interval);
-  interval.gain_db = -20.0;
-  const engine::RenderingModel weak = source.plane_of(interval);
-  interval.blank = true;
-  const engine::RenderingModel blank = source.plane_of(interval);
+  study::Plane plane;
+  const engine::RenderingModel whole = source.plane_of(plane, study.key());
+  plane.gain_db = -20.0;
+  const engine::RenderingModel weak = source.plane_of(plane, study.key());
+  plane.blank = true;
+  const engine::RenderingModel blank = source.plane_of(plane, study.key());
   double sum_whole = 0.0;
   double sum_weak = 0.0;
   double normal_n = 0.0;
@@ -217,8 +217,8 @@ TEST_CASE("an interval's clock runs in contact and inside the windows alone, aft
   const engine::RenderingOptions rendering;
   const engine::TextureField field = engine::make_texture_field(Plane<double>(60, 60), rendering);
   const engine::RenderingModel model(field.view(), rendering, {});
-  const study::IntervalWindows windows;
-  session::IntervalForce force(model, 0.4, windows, 3);
+  const study::HandRange range;
+  session::IntervalForce force(model, 0.4, range, 3);
   const auto tick = [&force](double z_mm, double speed_mm_s) {
     return force.force_n({.position_mm = {5.0, 5.0, z_mm}, .velocity_mm_s = {speed_mm_s, 0, 0}});
   };

@@ -1,12 +1,12 @@
 #include "protocols/identification/analysis/cues/cue_report.hpp"
 
 #include "analysis/outcomes/outcomes.hpp"
+#include "analysis/outcomes/recorded_pack.hpp"
 #include "analysis/report/text_figures.hpp"
 #include "core/named.hpp"
 #include "protocols/identification/analysis/cues/cue_statistics.hpp"
 #include "protocols/identification/analysis/cues/felt_trials.hpp"
 #include "protocols/identification/analysis/cues/ideal_observer.hpp"
-#include "protocols/identification/analysis/cues/study_plane.hpp"
 
 #include <algorithm>
 #include <array>
@@ -120,20 +120,20 @@ void put_participants(MethodCues& cues, const std::vector<ParticipantAnswers>& a
   cues.human_confusion = no_answers(classes);
   cues.no_response.assign(static_cast<std::size_t>(classes), 0);
   for (const ParticipantAnswers& one : all) {
-    cues.trials += one.trials();
-    cues.participants.push_back(one.participant());
-    cues.participant_trials.push_back(one.trials());
+    cues.trials += one.trials;
+    cues.participants.push_back(one.participant);
+    cues.participant_trials.push_back(one.trials);
     cues.human_accuracy.push_back(one.human_accuracy());
-    add_counts(cues.human_confusion, one.human());
-    for (int i = 0; i < classes; ++i) cues.no_response[i] += one.no_response(i);
+    add_counts(cues.human_confusion, one.human);
+    for (int i = 0; i < classes; ++i) cues.no_response[i] += one.no_response[i];
   }
   cues.human_mean = participant_mean(cues.human_accuracy);
 }
 
 int fewest_of_a_class(const std::vector<ParticipantAnswers>& all) {
-  int fewest = all.front().trials();
+  int fewest = all.front().trials;
   for (const ParticipantAnswers& one : all) {
-    for (int i = 0; i < one.classes(); ++i) fewest = std::min(fewest, one.presented(i));
+    fewest = std::min(fewest, std::ranges::min(one.presented));
   }
   return fewest;
 }
@@ -142,12 +142,12 @@ ObserverFigures observer_figures(std::size_t observer, const std::vector<Partici
                                  const CueStatistics& statistics) {
   ObserverFigures result;
   result.cue = kCues[observer];
-  result.confusion = no_answers(all.front().classes());
+  result.confusion = no_answers(all.front().classes);
   result.matched_confusion = result.confusion;
   for (const ParticipantAnswers& one : all) {
     result.accuracy.push_back(one.available(observer));
-    add_counts(result.confusion, one.ideal(observer));
-    add_counts(result.matched_confusion, one.matched(observer));
+    add_counts(result.confusion, one.ideal[observer]);
+    add_counts(result.matched_confusion, one.matched[observer]);
   }
   result.mean = participant_mean(result.accuracy);
   result.efficiency = statistics.efficiency[observer];
@@ -173,9 +173,7 @@ MethodCues method_cues(const FeltStudy& study, int method, const std::string& la
       cue_statistics(all, static_cast<std::uint64_t>(method), study.jobs);
   for (std::size_t observer = 0; observer < kCues.size(); ++observer) {
     cues.observers.push_back(observer_figures(observer, all, statistics));
-    cues.observers.back().matched_noise = answers[observer].matched_noise;
-    cues.observers.back().matched_accuracy = answers[observer].matched_accuracy;
-    cues.observers.back().wanted_accuracy = answers[observer].wanted_accuracy;
+    static_cast<MatchingNoise&>(cues.observers.back()) = answers[observer];
   }
   cues.match = statistics.match;
   if (cues.match && !observer_of(cues, cues.match->best).is_as_uncertain()) {

@@ -38,8 +38,16 @@ struct CueFigure {
 /// need not be whole numbers.
 using AnswerCounts = std::vector<std::vector<double>>;
 
+/// The noise that makes an observer right as often as participants.
+struct MatchingNoise {
+  /// Of each felt log intensity; 0 if the observer is not right more often even without noise.
+  double matched_noise = 0.0;
+  double matched_accuracy = 0.0;  ///< share right with it, of the trials that set it
+  double wanted_accuracy = 0.0;   ///< participants' share right in these trials
+};
+
 /// One observer's answers to one method's trials.
-struct ObserverFigures {
+struct ObserverFigures : MatchingNoise {
   Cue cue = Cue::rms;
   AnswerCounts confusion;          ///< from all judged trials
   std::vector<double> accuracy;    ///< in the order of MethodCues::participants
@@ -49,11 +57,6 @@ struct ObserverFigures {
   /// Mean over presented classes of the Jensen-Shannon divergence between participants' and
   /// observer's answers, bits: 0 if they confuse alike, at most 1. By the jackknife.
   CueFigure divergence;
-  /// Noise of each felt log intensity at which the observer is right as often as the
-  /// participants; 0 if the observer is not right more often even without noise.
-  double matched_noise = 0.0;
-  double matched_accuracy = 0.0;   ///< share right with that noise, of trials with a response
-  double wanted_accuracy = 0.0;    ///< participants' share right in the same trials
   AnswerCounts matched_confusion;  ///< confusion with that noise
   CueFigure matched_divergence;    ///< divergence with that noise
 

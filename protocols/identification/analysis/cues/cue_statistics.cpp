@@ -38,14 +38,14 @@ class Sums {
         cells_(static_cast<std::size_t>(classes) * static_cast<std::size_t>(classes)),
         values_(1 + kObservers + (1 + 2 * kObservers) * cells_, 0.0) {}
 
-  explicit Sums(const ParticipantAnswers& one) : Sums(one.classes()) {
+  explicit Sums(const ParticipantAnswers& one) : Sums(one.classes) {
     participants_ = 1;
     values_[0] = one.human_accuracy();
-    std::ranges::copy(one.human(), values_.begin() + answers_at(0));
+    std::ranges::copy(one.human, values_.begin() + answers_at(0));
     for (std::size_t i = 0; i < kObservers; ++i) {
       values_[1 + i] = one.available(i);
-      std::ranges::copy(one.ideal_of_answered(i), values_.begin() + answers_at(1 + i));
-      std::ranges::copy(one.matched_of_answered(i),
+      std::ranges::copy(one.ideal_of_answered[i], values_.begin() + answers_at(1 + i));
+      std::ranges::copy(one.matched_of_answered[i],
                         values_.begin() + answers_at(kFirstMatched + i));
     }
   }
@@ -258,7 +258,7 @@ std::optional<double> answer_divergence(std::span<const double> a, std::span<con
 CueStatistics cue_statistics(std::span<const ParticipantAnswers> participants, std::uint64_t index,
                              int jobs) {
   if (participants.empty()) return {};
-  const int classes = participants.front().classes();
+  const int classes = participants.front().classes;
   std::vector<Sums> each;
   Sums together(classes);
   for (const ParticipantAnswers& one : participants) together.add(each.emplace_back(one));
@@ -276,37 +276,37 @@ CueStatistics cue_statistics(std::span<const ParticipantAnswers> participants, s
   return statistics;
 }
 
-ParticipantAnswers::ParticipantAnswers(std::string participant, int classes)
-    : participant_(std::move(participant)), classes_(classes) {
-  const auto side = static_cast<std::size_t>(classes);
-  presented_.resize(side, 0);
-  no_response_.resize(side, 0);
-  human_.resize(side * side, 0.0);
-  for (auto* counts : {&ideal_, &matched_, &ideal_of_answered_, &matched_of_answered_}) {
-    counts->fill(human_);
+ParticipantAnswers::ParticipantAnswers(std::string name, int class_count)
+    : participant(std::move(name)),
+      classes(class_count),
+      presented(static_cast<std::size_t>(class_count), 0),
+      no_response(presented),
+      human(presented.size() * presented.size(), 0.0) {
+  for (auto* counts : {&ideal, &matched, &ideal_of_answered, &matched_of_answered}) {
+    counts->fill(human);
   }
 }
 
 void ParticipantAnswers::add(const JudgedTrial& trial) {
-  const int row = trial.presented * classes_;
-  ++trials_;
-  ++presented_[trial.presented];
+  const int row = trial.presented * classes;
+  ++trials;
+  ++presented[trial.presented];
   if (trial.response) {
-    human_[row + *trial.response] += 1.0;
-    human_right_ += *trial.response == trial.presented ? 1.0 : 0.0;
+    human[row + *trial.response] += 1.0;
+    human_right += *trial.response == trial.presented ? 1.0 : 0.0;
   } else {
-    ++no_response_[trial.presented];
+    ++no_response[trial.presented];
   }
   const auto add_shares = [&](FlatCounts& counts, const AnswerShares& shares) {
-    for (int answer = 0; answer < classes_; ++answer) counts[row + answer] += shares[answer];
+    for (int answer = 0; answer < classes; ++answer) counts[row + answer] += shares[answer];
   };
   for (std::size_t observer = 0; observer < kCues.size(); ++observer) {
-    right_[observer] += trial.ideal[observer][trial.presented];
-    add_shares(ideal_[observer], trial.ideal[observer]);
-    add_shares(matched_[observer], trial.matched[observer]);
+    right[observer] += trial.ideal[observer][trial.presented];
+    add_shares(ideal[observer], trial.ideal[observer]);
+    add_shares(matched[observer], trial.matched[observer]);
     if (!trial.response) continue;
-    add_shares(ideal_of_answered_[observer], trial.ideal[observer]);
-    add_shares(matched_of_answered_[observer], trial.matched[observer]);
+    add_shares(ideal_of_answered[observer], trial.ideal[observer]);
+    add_shares(matched_of_answered[observer], trial.matched[observer]);
   }
 }
 

@@ -27,63 +27,33 @@ struct JudgedTrial {
   std::array<AnswerShares, kCues.size()> matched;  ///< the same, as uncertain as participants
 };
 
-/// The answers of one participant, and of the observers in the participant's place.
-class ParticipantAnswers {
- public:
-  ParticipantAnswers(std::string participant, int classes);
+/// The answers of one participant, and of the observers in the participant's place, whose members
+/// are in the order of kCues.
+struct ParticipantAnswers {
+  ParticipantAnswers(std::string name, int class_count);
 
   void add(const JudgedTrial& trial);
 
-  [[nodiscard]] const std::string& participant() const noexcept { return participant_; }
-  [[nodiscard]] int classes() const noexcept { return classes_; }
-  [[nodiscard]] int trials() const noexcept { return trials_; }
-  /// The number of trials of a class.
-  [[nodiscard]] int presented(int class_index) const noexcept { return presented_[class_index]; }
-  /// The number of trials of a class without a response.
-  [[nodiscard]] int no_response(int class_index) const noexcept {
-    return no_response_[class_index];
-  }
-
   /// The participant's accuracy in all trials; trials without a response are wrong.
-  /// \pre trials() > 0
-  [[nodiscard]] double human_accuracy() const noexcept { return human_right_ / trials_; }
+  /// \pre trials > 0
+  [[nodiscard]] double human_accuracy() const noexcept { return human_right / trials; }
   /// The observer's accuracy in all trials.
-  /// \param observer  in the order of kCues
   [[nodiscard]] double available(std::size_t observer) const noexcept {
-    return right_[observer] / trials_;
+    return right[observer] / trials;
   }
 
-  /// The participant's answers in the trials with a response.
-  [[nodiscard]] const FlatCounts& human() const noexcept { return human_; }
-  /// The observer's answers in all trials.
-  /// \param observer  in the order of kCues
-  [[nodiscard]] const FlatCounts& ideal(std::size_t observer) const noexcept {
-    return ideal_[observer];
-  }
-  [[nodiscard]] const FlatCounts& matched(std::size_t observer) const noexcept {
-    return matched_[observer];
-  }
-  /// The observer's answers in the trials with a response, for comparison with human().
-  [[nodiscard]] const FlatCounts& ideal_of_answered(std::size_t observer) const noexcept {
-    return ideal_of_answered_[observer];
-  }
-  [[nodiscard]] const FlatCounts& matched_of_answered(std::size_t observer) const noexcept {
-    return matched_of_answered_[observer];
-  }
-
- private:
-  std::string participant_;
-  int classes_;
-  int trials_ = 0;
-  double human_right_ = 0.0;
-  std::array<double, kCues.size()> right_{};
-  std::vector<int> presented_;
-  std::vector<int> no_response_;
-  FlatCounts human_;
-  std::array<FlatCounts, kCues.size()> ideal_;
-  std::array<FlatCounts, kCues.size()> matched_;
-  std::array<FlatCounts, kCues.size()> ideal_of_answered_;
-  std::array<FlatCounts, kCues.size()> matched_of_answered_;
+  std::string participant;
+  int classes;
+  int trials = 0;
+  std::vector<int> presented;    ///< trials of each class
+  std::vector<int> no_response;  ///< those of them without a response
+  double human_right = 0.0;
+  std::array<double, kCues.size()> right{};
+  FlatCounts human;                                        ///< in the trials with a response
+  std::array<FlatCounts, kCues.size()> ideal;              ///< in all trials
+  std::array<FlatCounts, kCues.size()> matched;            ///< in all trials
+  std::array<FlatCounts, kCues.size()> ideal_of_answered;  ///< in those with a response, to compare
+  std::array<FlatCounts, kCues.size()> matched_of_answered;
 };
 
 /// The Jensen-Shannon divergence of two distributions that are given as counts.

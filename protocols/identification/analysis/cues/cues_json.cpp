@@ -16,7 +16,9 @@ Json cue_figure_json(const CueFigure& figure) {
 }
 
 Json mean_json(const MeanEstimate& mean) {
-  return {{"mean", figure_json(mean.mean)}, {"interval", interval_json(mean.known_interval())}};
+  Json object;
+  put_mean(object, mean);
+  return object;
 }
 
 Json participants_json(const MethodCues& cues) {
@@ -36,23 +38,21 @@ Json participants_json(const MethodCues& cues) {
 }
 
 Json observers_json(const MethodCues& cues) {
-  Json all = Json::array();
-  for (const ObserverFigures& one : cues.observers) {
-    all.push_back({{"cue", name_of(one.cue)},
-                   {"title", title_of(one.cue)},
-                   {"available", mean_json(one.mean)},
-                   {"efficiency", cue_figure_json(one.efficiency)},
-                   {"efficiency_above_chance", cue_figure_json(one.corrected_efficiency)},
-                   {"divergence_bits", cue_figure_json(one.divergence)},
-                   {"confusion", one.confusion},
-                   {"matched",
-                    {{"noise", one.matched_noise},
-                     {"divergence_bits", cue_figure_json(one.matched_divergence)},
-                     {"confusion", one.matched_confusion},
-                     {"accuracy", one.matched_accuracy},
-                     {"as_uncertain_as_participants", one.is_as_uncertain()}}}});
-  }
-  return all;
+  return array_json(cues.observers, [](const ObserverFigures& one) {
+    return Json{{"cue", name_of(one.cue)},
+                {"title", title_of(one.cue)},
+                {"available", mean_json(one.mean)},
+                {"efficiency", cue_figure_json(one.efficiency)},
+                {"efficiency_above_chance", cue_figure_json(one.corrected_efficiency)},
+                {"divergence_bits", cue_figure_json(one.divergence)},
+                {"confusion", one.confusion},
+                {"matched",
+                 {{"noise", one.matched_noise},
+                  {"divergence_bits", cue_figure_json(one.matched_divergence)},
+                  {"confusion", one.matched_confusion},
+                  {"accuracy", one.matched_accuracy},
+                  {"as_uncertain_as_participants", one.is_as_uncertain()}}}};
+  });
 }
 
 Json match_json(const std::optional<CueMatch>& match) {
@@ -108,8 +108,7 @@ nlohmann::ordered_json cues_object(const CueReport& report) {
   put_stamp(object, report.simulated);
   object["classes"] = report.classes;
   object["chance"] = report.chance;
-  object["methods"] = Json::array();
-  for (const MethodCues& cues : report.methods) object["methods"].push_back(method_json(cues));
+  object["methods"] = array_json(report.methods, method_json);
   object["by"] = by_json();
   object["plane_from"] = report.plane_source;
   object["warnings"] = report.warnings;

@@ -1,12 +1,12 @@
 #include "protocols/identification/analysis/cues/exploration_path.hpp"
 
+#include "analysis/outcomes/recorded_pack.hpp"
 #include "analysis/statistics/descriptive.hpp"
 #include "core/errors.hpp"
 #include "core/text.hpp"
 #include "engine/image_file.hpp"
 #include "engine/rendering/cubic_spline.hpp"
 #include "protocols/identification/analysis/cues/felt_trials.hpp"
-#include "protocols/identification/analysis/cues/study_plane.hpp"
 
 #include <algorithm>
 #include <array>
@@ -132,7 +132,6 @@ std::vector<PathPoint> thinned_path(const record::Trace& trace, int count) {
     points.push_back({{at.position_mm.x, at.position_mm.y},
                       {at.force_n.x, at.force_n.y},
                       tangential_rms_n(samples.subspan(i, std::min(step, samples.size() - i))),
-                      at.force_n.z,
                       at.force_n.z > 0.0});
   }
   return points;

@@ -23,8 +23,7 @@ struct PathPoint {
   Vec2 position_mm;  ///< from the top-left corner of the plane; y runs downwards
   Vec2 force_n;      ///< tangential, as sent to the device: texture and friction, if any
   double tangential_rms_n = 0.0;  ///< rms tangential force until the next point
-  double normal_n = 0.0;
-  bool in_contact = false;  ///< the normal force is above zero
+  bool in_contact = false;        ///< the normal force is above zero
 };
 
 /// The texture as a grey picture with stretched contrast.

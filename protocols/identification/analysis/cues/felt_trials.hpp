@@ -1,16 +1,21 @@
-/// \file Opens the traces of many trials, and computes the felt features of each. Source:
-/// docs/method.md, "Felt features".
+/// \file Opens the traces of many trials, and computes the felt features of each; and the plane on which
+/// they were felt, from the files of the study that still exist. Source: docs/method.md, "Felt
+/// features".
 #pragma once
 
 #include "analysis/outcomes/outcomes.hpp"
 #include "core/plane_geometry.hpp"
+#include "engine/pack/pack.hpp"
 #include "engine/perception/felt_features.hpp"
 #include "record/study_store.hpp"
 #include "study/study_key.hpp"
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace touchtrial::analysis::identification {
@@ -57,5 +62,16 @@ struct FeltTrials {
                                           const study::StudyKey& key,
                                           std::span<const TrialOutcome* const> trials,
                                           double pitch_mm, int jobs = 0);
+
+struct StudyPlane {
+  PlaneGeometry geometry;
+  std::string source;  ///< in words: "the study's pack"
+};
+
+/// The part of the plane that all stimuli share; a session asks its participant to explore it. The
+/// size comes from the pack's headers, otherwise from the study's images.
+/// \return nothing if neither can be read
+[[nodiscard]] std::optional<StudyPlane> study_plane(const study::StudyKey& key,
+                                                    const std::optional<engine::Pack>& pack);
 
 }  // namespace touchtrial::analysis::identification

@@ -2,7 +2,6 @@
 
 #include "core/parallel.hpp"
 #include "core/random.hpp"
-#include "engine/perception/felt_classifier.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -96,13 +95,6 @@ std::vector<AnswerShares> answers_at(const Observer& observer,
   return answers;
 }
 
-/// The noise, and the shares of right answers of the observer with it and of the participants.
-struct MatchingNoise {
-  double noise = 0.0;
-  double reached = 0.0;
-  double wanted = 0.0;
-};
-
 MatchingNoise matching_noise(const Observer& observer, std::span<const ObservedTrial> trials,
                              std::span<const std::optional<int>> responses,
                              const std::vector<std::size_t>& places, int jobs) {
@@ -126,82 +118,54 @@ MatchingNoise matching_noise(const Observer& observer, std::span<const ObservedT
 
 }  // namespace
 
-/// The trials as a classifier learns them, with stimuli as its labels.
-struct Observer::Lessons {
-  Lessons(Cue cue, std::span<const ObservedTrial> trials, int classes);
-
-  /// Tells whether another trial has this trial's class.
-  [[nodiscard]] bool can_judge(std::size_t trial) const {
-    return trials_of_class[class_of_label[label[trial]]] >= 2;
-  }
-  [[nodiscard]] engine::FeltClassifier without(std::size_t trial, double noise) const;
-  /// The class of the stimulus that most likely caused a percept.
-  [[nodiscard]] AnswerShares answer(const engine::FeltClassifier& classifier,
-                                    std::span<const double> percept) const;
-
-  std::vector<int> label;                     ///< by trial
-  std::vector<std::vector<double>> features;  ///< by trial
-  std::vector<int> class_of_label;
-  std::vector<int> trials_of_class;
-  std::optional<engine::FeltStatistics> statistics;  ///< of all trials; nothing without trials
-};
-
-Observer::Lessons::Lessons(Cue cue, std::span<const ObservedTrial> trials, int classes)
-    : trials_of_class(static_cast<std::size_t>(classes), 0) {
+Observer::Observer(Cue cue, std::span<const ObservedTrial> trials, int classes) {
+  check(trials, classes);
+  trials_of_class_.assign(static_cast<std::size_t>(classes), 0);
   std::map<std::pair<int, int>, int> label_of;
   for (const ObservedTrial& trial : trials) {
     const auto [known, is_new] = label_of.try_emplace({trial.class_index, trial.exemplar},
-                                                      static_cast<int>(class_of_label.size()));
-    if (is_new) class_of_label.push_back(trial.class_index);
-    label.push_back(known->second);
-    features.push_back(cue_features(cue, trial.felt));
-    ++trials_of_class[trial.class_index];
+                                                      static_cast<int>(class_of_label_.size()));
+    if (is_new) class_of_label_.push_back(trial.class_index);
+    label_.push_back(known->second);
+    features_.push_back(cue_features(cue, trial.felt));
+    ++trials_of_class_[trial.class_index];
   }
   if (trials.empty()) return;
-  statistics.emplace(static_cast<int>(class_of_label.size()), features.front().size());
-  for (std::size_t i = 0; i < label.size(); ++i) statistics->learn(label[i], features[i]);
+  statistics_.emplace(static_cast<int>(class_of_label_.size()), features_.front().size());
+  for (std::size_t i = 0; i < label_.size(); ++i) statistics_->learn(label_[i], features_[i]);
 }
 
-engine::FeltClassifier Observer::Lessons::without(std::size_t trial, double noise) const {
-  engine::FeltStatistics others = *statistics;
-  others.forget(label[trial], features[trial]);
+engine::FeltClassifier Observer::without(std::size_t trial, double noise) const {
+  engine::FeltStatistics others = *statistics_;
+  others.forget(label_[trial], features_[trial]);
   return {others, noise};
 }
 
-AnswerShares Observer::Lessons::answer(const engine::FeltClassifier& classifier,
-                                       std::span<const double> percept) const {
+AnswerShares Observer::answer(const engine::FeltClassifier& classifier,
+                              std::span<const double> percept) const {
   const std::vector<double> logs = classifier.log_likelihoods(percept);
-  std::vector<double> support(trials_of_class.size(), -std::numeric_limits<double>::infinity());
+  std::vector<double> support(trials_of_class_.size(), -std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < logs.size(); ++i) {
-    double& best = support[class_of_label[i]];
+    double& best = support[class_of_label_[i]];
     best = std::max(best, logs[i]);
   }
   return shares_of(support);
 }
 
-Observer::Observer(Cue cue, std::span<const ObservedTrial> trials, int classes) {
-  check(trials, classes);
-  lessons_ = std::make_unique<const Lessons>(cue, trials, classes);
-}
-
-Observer::~Observer() = default;
-Observer::Observer(Observer&&) noexcept = default;
-Observer& Observer::operator=(Observer&&) noexcept = default;
-
 AnswerShares Observer::ideal_answer(std::size_t trial) const {
-  if (!lessons_->can_judge(trial)) return {};
-  return lessons_->answer(lessons_->without(trial, 0.0), lessons_->features[trial]);
+  if (!can_judge(trial)) return {};
+  return answer(without(trial, 0.0), features_[trial]);
 }
 
 AnswerShares Observer::noisy_answer(std::size_t trial, double noise) const {
-  if (!lessons_->can_judge(trial)) return {};
-  const engine::FeltClassifier classifier = lessons_->without(trial, noise);
+  if (!can_judge(trial)) return {};
+  const engine::FeltClassifier classifier = without(trial, noise);
   RandomStream random(0, "cues: noise of the sense", trial);
-  AnswerShares mean(lessons_->trials_of_class.size(), 0.0);
+  AnswerShares mean(trials_of_class_.size(), 0.0);
   for (int draw = 0; draw < kNoisyPercepts; ++draw) {
-    std::vector<double> percept = lessons_->features[trial];
+    std::vector<double> percept = features_[trial];
     for (double& feature : percept) feature += noise * random.normal();
-    const AnswerShares shares = lessons_->answer(classifier, percept);
+    const AnswerShares shares = answer(classifier, percept);
     for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += shares[i] / kNoisyPercepts;
   }
   return mean;
@@ -227,11 +191,8 @@ ObserverAnswers observer_answers(Cue cue, std::span<const ObservedTrial> trials,
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
   ObserverAnswers answers;
   answers.ideal = answers_at(observer, all, 0.0, jobs);
-  const MatchingNoise found =
+  static_cast<MatchingNoise&>(answers) =
       matching_noise(observer, trials, responses, places_for_noise(answers.ideal, responses), jobs);
-  answers.matched_noise = found.noise;
-  answers.matched_accuracy = found.reached;
-  answers.wanted_accuracy = found.wanted;
   answers.matched = answers.matched_noise > 0.0
                         ? answers_at(observer, all, answers.matched_noise, jobs)
                         : answers.ideal;

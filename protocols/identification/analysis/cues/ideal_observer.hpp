@@ -2,11 +2,11 @@
 /// answer, either with certainty or with the participants' uncertainty. Source: docs/statistics.md.
 #pragma once
 
+#include "engine/perception/felt_classifier.hpp"
 #include "engine/perception/felt_features.hpp"
 #include "protocols/identification/analysis/cues/cue_report.hpp"
 
 #include <cstddef>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -44,9 +44,6 @@ class Observer {
   /// \param classes  number of classes, >= 1
   /// \throws std::invalid_argument if a class or exemplar is out of range, or a feature not finite
   Observer(Cue cue, std::span<const ObservedTrial> trials, int classes);
-  ~Observer();
-  Observer(Observer&&) noexcept;
-  Observer& operator=(Observer&&) noexcept;
 
   /// Cost: about 10 us with 23 features and 5 stimuli.
   [[nodiscard]] AnswerShares ideal_answer(std::size_t trial) const;
@@ -58,17 +55,27 @@ class Observer {
   [[nodiscard]] AnswerShares noisy_answer(std::size_t trial, double noise) const;
 
  private:
-  struct Lessons;
-  std::unique_ptr<const Lessons> lessons_;
+  /// Tells whether another trial has this trial's class.
+  [[nodiscard]] bool can_judge(std::size_t trial) const {
+    return trials_of_class_[class_of_label_[label_[trial]]] >= 2;
+  }
+  [[nodiscard]] engine::FeltClassifier without(std::size_t trial, double noise) const;
+  /// The class of the stimulus that most likely caused a percept.
+  [[nodiscard]] AnswerShares answer(const engine::FeltClassifier& classifier,
+                                    std::span<const double> percept) const;
+
+  // The trials as a classifier learns them, with stimuli as its labels.
+  std::vector<int> label_;                     ///< by trial
+  std::vector<std::vector<double>> features_;  ///< by trial
+  std::vector<int> class_of_label_;
+  std::vector<int> trials_of_class_;
+  std::optional<engine::FeltStatistics> statistics_;  ///< of all trials; nothing without trials
 };
 
 /// One observer's answers by trial. The shares are empty where a trial cannot be judged.
-struct ObserverAnswers {
+struct ObserverAnswers : MatchingNoise {
   std::vector<AnswerShares> ideal;
-  double matched_noise = 0.0;  ///< 0: ideal answers are right no more often than participants'
   std::vector<AnswerShares> matched;  ///< answers with that noise
-  double matched_accuracy = 0.0;      ///< share right with that noise, of the trials that set it
-  double wanted_accuracy = 0.0;       ///< participants' share right in these trials
 };
 
 /// The answers of an ideal observer, and of one whose noise makes it right as often as the

@@ -1,6 +1,6 @@
 #include "analysis/paper/published.hpp"
 #include "analysis/report/figures/style.hpp"
-#include "protocols/identification/analysis/figures/figure_kinds.hpp"
+#include "protocols/identification/analysis/figures/figures.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -57,14 +57,14 @@ std::string interval_name(const StudyReport& report) {
                    : "t interval over participants";
 }
 
-std::vector<std::vector<double>> class_rows(const StudyReport& report, std::size_t number) {
-  std::vector<std::vector<double>> rows;
+Rows class_rows(const StudyReport& report, std::size_t number) {
+  Rows rows;
   const std::vector<ClassAccuracy>& accuracy = report.methods[number].accuracy;
   for (std::size_t i = 0; i < accuracy.size(); ++i) {
     const std::optional<DrawnAccuracy> one = drawn_accuracy(accuracy[i]);
     if (!one) continue;
-    rows.push_back({static_cast<double>(i + 1) + aside(number, report.methods.size()),
-                    100.0 * one->share, 100.0 * one->interval.low, 100.0 * one->interval.high});
+    add_bar(rows, static_cast<double>(i + 1) + aside(number, report.methods.size()), one->share,
+            one->interval, 100.0);
   }
   return rows;
 }
@@ -87,8 +87,8 @@ std::vector<double> differences(const MethodReport& first, const MethodReport& s
 }
 
 /// The places of the dots: equal differences stand side by side around the place of their pair.
-std::vector<std::vector<double>> dots(const std::vector<double>& sorted, double at) {
-  std::vector<std::vector<double>> rows;
+Rows dots(const std::vector<double>& sorted, double at) {
+  Rows rows;
   for (std::size_t first = 0; first < sorted.size();) {
     std::size_t end = first;
     while (end < sorted.size() && std::abs(sorted[end] - sorted[first]) < 1e-9) ++end;
@@ -134,20 +134,18 @@ std::string pair_name(const StudyReport& report, const MethodPair& pair) {
 std::string differences_panel(const StudyReport& report, const NamesBelow& below) {
   std::string data;
   std::string plot;
-  std::vector<std::vector<double>> means;
+  Rows means;
   for (std::size_t i = 0; i < report.pairs.size(); ++i) {
     const MethodPair& pair = report.pairs[i];
-    const std::vector<std::vector<double>> rows =
-        dots(differences(report.methods[static_cast<std::size_t>(pair.first)],
-                         report.methods[static_cast<std::size_t>(pair.second)]),
-             static_cast<double>(i + 1));
+    const Rows rows = dots(differences(report.methods[static_cast<std::size_t>(pair.first)],
+                                       report.methods[static_cast<std::size_t>(pair.second)]),
+                           static_cast<double>(i + 1));
     if (rows.empty() || !pair.overall.difference) continue;
     data += data_block(fmt::format("pair{}", i), rows);
     plot += fmt::format("{}$pair{} using 1:2 with points pt 7 ps 0.33 lc rgb '#7a7a7a' notitle",
                         plot.empty() ? "plot " : ", ", i);
-    const double mean = *pair.overall.difference;
-    const Interval bar = pair.overall.known_interval().value_or(Interval{mean, mean});
-    means.push_back({static_cast<double>(i + 1), 100.0 * mean, 100.0 * bar.low, 100.0 * bar.high});
+    add_bar(means, static_cast<double>(i + 1), *pair.overall.difference,
+            pair.overall.known_interval(), 100.0);
   }
   if (means.empty()) return {};
   return data + data_block("means", means) + "unset label\nunset arrow\n" + below.script() +
@@ -204,8 +202,8 @@ std::string plain_name(std::string_view label) {
 
 /// The marks of the paper's values. A value stands beside the class that has its image's name, or
 /// otherwise in a column of its own.
-std::vector<std::vector<double>> paper_rows(std::span<const std::string> classes) {
-  std::vector<std::vector<double>> rows;
+Rows paper_rows(std::span<const std::string> classes) {
+  Rows rows;
   const auto column = static_cast<double>(classes.size()) + 1.0;
   for (std::size_t i = 0; i < kPublishedPercents.size(); ++i) {
     const auto found = std::find_if(classes.begin(), classes.end(), [i](const std::string& label) {
@@ -218,7 +216,7 @@ std::vector<std::vector<double>> paper_rows(std::span<const std::string> classes
   return rows;
 }
 
-bool has_column(std::span<const std::vector<double>> paper, std::size_t classes) {
+bool has_column(const Rows& paper, std::size_t classes) {
   return std::any_of(paper.begin(), paper.end(), [classes](const std::vector<double>& row) {
     return row[0] > static_cast<double>(classes) + 0.5;
   });
@@ -288,7 +286,7 @@ std::optional<Figure> methods_figure(const StudyReport& report) {
   right.bottom_cm = left.bottom_cm;
   right.top_cm = left.top_cm;
 
-  Figure figure = figure_on(sheet, "methods", alt_of_methods(report));
+  Figure figure = figure_on(sheet, "methods", alt_of_methods(report), "methods-compared");
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
     figure.script += data_block(fmt::format("method{}", i), class_rows(report, i));
   }
@@ -308,10 +306,9 @@ std::optional<Figure> methods_figure(const StudyReport& report) {
 
 std::optional<Figure> accuracy_figure(const StudyReport& report, bool paper_values) {
   if (report.methods.size() != 1) return {};
-  const std::vector<std::vector<double>> rows = class_rows(report, 0);
+  const Rows rows = class_rows(report, 0);
   if (rows.empty()) return {};
-  const std::vector<std::vector<double>> paper =
-      paper_values ? paper_rows(report.classes) : std::vector<std::vector<double>>{};
+  const Rows paper = paper_values ? paper_rows(report.classes) : Rows{};
   std::vector<std::string> names = report.classes;
   if (has_column(paper, names.size())) names.emplace_back("(paper)");
   const Sheet sheet{16.0, 8.0, report.simulated};
@@ -322,7 +319,7 @@ std::optional<Figure> accuracy_figure(const StudyReport& report, bool paper_valu
   const Legend legend(sheet, margins.left_cm, legend_of_accuracy(paper_values, classes));
   margins.top_cm = legend.room_cm() + 0.2;
 
-  Figure figure = figure_on(sheet, "accuracy-by-class", alt_of_accuracy(report));
+  Figure figure = figure_on(sheet, "accuracy-by-class", alt_of_accuracy(report), "accuracy");
   figure.caption = stamped(report.simulated, "accuracy by presented class with its 95 % " +
                                                  interval_name(report) +
                                                  ". Trials without a response are wrong.");

@@ -1,5 +1,5 @@
 #include "analysis/report/figures/style.hpp"
-#include "protocols/identification/analysis/figures/figure_kinds.hpp"
+#include "protocols/identification/analysis/figures/figures.hpp"
 
 #include <algorithm>
 
@@ -10,17 +10,14 @@ namespace touchtrial::analysis::identification {
 namespace {
 
 /// Adds participants' accuracies as dots.
-void add_accuracies(std::vector<std::vector<double>>& rows, double at,
-                    std::vector<double> accuracy) {
+void add_accuracies(Rows& rows, double at, std::vector<double> accuracy) {
   for (double& one : accuracy) one *= 100.0;
   std::sort(accuracy.begin(), accuracy.end());
   add_dots(rows, at - 0.17, 0.22, accuracy);
 }
 
-void add_mean(std::vector<std::vector<double>>& rows, double at, const MeanEstimate& mean) {
-  if (!mean.mean) return;
-  const Interval bar = mean.known_interval().value_or(Interval{*mean.mean, *mean.mean});
-  rows.push_back({at + 0.12, 100.0 * *mean.mean, 100.0 * bar.low, 100.0 * bar.high});
+void add_mean(Rows& rows, double at, const MeanEstimate& mean) {
+  if (mean.mean) add_bar(rows, at + 0.12, *mean.mean, mean.known_interval(), 100.0);
 }
 
 std::string alt_of_cues(const MethodCues& method) {
@@ -38,9 +35,9 @@ std::string alt_of_cues(const MethodCues& method) {
 }
 
 std::string panel_script(const CueReport& cues, const MethodCues& method, std::size_t number) {
-  std::vector<std::vector<double>> dots;
-  std::vector<std::vector<double>> observers;
-  std::vector<std::vector<double>> humans;
+  Rows dots;
+  Rows observers;
+  Rows humans;
   for (std::size_t i = 0; i < method.observers.size(); ++i) {
     add_accuracies(dots, static_cast<double>(i + 1), method.observers[i].accuracy);
     add_mean(observers, static_cast<double>(i + 1), method.observers[i].mean);
@@ -180,7 +177,8 @@ std::optional<Figure> cues_figure(const CueReport& cues) {
                                chance_entry(static_cast<int>(cues.classes.size()))});
   Figure figure = figure_on(panels.sheet(), "ideal-observers",
                             "Accuracy of ideal observers that feel what the participants felt, "
-                            "beside the participants', with 95 % intervals:");
+                            "beside the participants', with 95 % intervals:",
+                            "cues");
   figure.script = sheet_head(panels.sheet()) + "set multiplot\n";
   for (std::size_t i = 0; i < shown.size(); ++i) {
     figure.script += panels.begin(i, shown[i]->method) + below.script();
@@ -208,7 +206,8 @@ Figure path_figure(const ExplorationPath& path) {
   const double force_n = strongest(path.points);
   const PathPoint* start = first_contact(path.points);
 
-  Figure figure = figure_on(sheet, fmt::format("exploration-{}-{}", path.session, path.trial));
+  Figure figure = figure_on(sheet, fmt::format("exploration-{}-{}", path.session, path.trial), {},
+                            kExplorations);
   figure.caption = caption_of(path);
   figure.alt = fmt::format(
       "Path of the hand over {} in {:.1f} s; strongest tangential force {:.2f} N; answered {}.",

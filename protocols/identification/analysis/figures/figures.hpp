@@ -6,11 +6,15 @@
 #include "protocols/identification/analysis/cues/exploration_path.hpp"
 #include "protocols/identification/analysis/report.hpp"
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace touchtrial::analysis::identification {
+
+/// The subheading of the pictures of explorations.
+inline constexpr const char* kExplorations = "explorations";
 
 struct FigureOptions {
   /// Shows the source paper's accuracies as open marks. They belong to other images and another
@@ -26,5 +30,23 @@ struct FigureOptions {
 /// milliseconds. Thread-safe.
 [[nodiscard]] std::vector<Figure> report_figures(const StudyReport& report,
                                                  const FigureOptions& options = {});
+
+/// The following have nothing to return if they have nothing to show.
+
+/// Accuracy by class (Fig. 6 of the source paper) for a report with one method; methods_figure
+/// shows several.
+[[nodiscard]] std::optional<Figure> accuracy_figure(const StudyReport& report, bool paper_values);
+/// Methods side by side for each class (Fig. 7 of the source paper), and participants' differences.
+[[nodiscard]] std::optional<Figure> methods_figure(const StudyReport& report);
+/// Every participant's accuracy, the mean and its interval.
+[[nodiscard]] std::optional<Figure> participants_figure(const StudyReport& report);
+/// Accuracy by the place of a trial among a participant's trials.
+[[nodiscard]] std::optional<Figure> trials_figure(const StudyReport& report);
+/// Reaction times by class.
+[[nodiscard]] std::optional<Figure> reaction_figure(const StudyReport& report);
+/// Accuracies of ideal observers beside those of participants.
+[[nodiscard]] std::optional<Figure> cues_figure(const CueReport& cues);
+/// The path of one trial over its texture, coloured by force.
+[[nodiscard]] Figure path_figure(const ExplorationPath& path);
 
 }  // namespace touchtrial::analysis::identification

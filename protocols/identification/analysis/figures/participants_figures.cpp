@@ -1,6 +1,6 @@
 #include "analysis/report/figures/style.hpp"
 #include "analysis/report/text_table.hpp"
-#include "protocols/identification/analysis/figures/figure_kinds.hpp"
+#include "protocols/identification/analysis/figures/figures.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -43,8 +43,8 @@ Heaps heaps_of(const MethodReport& method) {
 }
 
 /// Rows of x and y; for bars, also of their lower edge.
-std::vector<std::vector<double>> marks_of(const Heaps& heaps, double base, bool bars) {
-  std::vector<std::vector<double>> rows;
+Rows marks_of(const Heaps& heaps, double base, bool bars) {
+  Rows rows;
   const double height = 0.62 / std::max(heaps.highest, 8);
   for (const auto& [place, count] : heaps.counts) {
     const double x = heaps.step * place;
@@ -128,8 +128,8 @@ std::vector<Point> points_of(const std::vector<GroupAccuracy>& groups) {
   return points;
 }
 
-std::vector<std::vector<double>> rows_of(const std::vector<Point>& points) {
-  std::vector<std::vector<double>> rows;
+Rows rows_of(const std::vector<Point>& points) {
+  Rows rows;
   for (const Point& point : points) {
     const std::optional<double> share = point.accuracy.share();
     if (!share) continue;
@@ -148,18 +148,16 @@ std::string plot_of_trials(std::size_t number) {
 }
 
 /// Rows of the place of the class and the time in seconds.
-std::vector<std::vector<double>> points_of(const std::vector<ReactionTimes>& times,
-                                           std::size_t classes) {
-  std::vector<std::vector<double>> points;
+Rows points_of(const std::vector<ReactionTimes>& times, std::size_t classes) {
+  Rows points;
   for (std::size_t i = 0; i < classes; ++i) {
     add_dots(points, static_cast<double>(i + 1), 0.56, times[i].seconds);
   }
   return points;
 }
 
-std::vector<std::vector<double>> boxes_of(const std::vector<ReactionTimes>& times,
-                                          std::size_t classes) {
-  std::vector<std::vector<double>> boxes;
+Rows boxes_of(const std::vector<ReactionTimes>& times, std::size_t classes) {
+  Rows boxes;
   for (std::size_t i = 0; i < classes; ++i) {
     const Quartiles& q = times[i].from_plane_on;
     if (q.median) boxes.push_back({static_cast<double>(i + 1), *q.lower, *q.median, *q.upper});
@@ -216,7 +214,7 @@ std::optional<Figure> participants_figure(const StudyReport& report) {
   std::string data;
   std::string names;
   std::string plot;
-  std::vector<std::vector<double>> means;
+  Rows means;
   for (int i = 0; i < rows; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const MethodReport& method = report.methods[at];
@@ -233,7 +231,7 @@ std::optional<Figure> participants_figure(const StudyReport& report) {
     means.push_back({100.0 * mean, base - 0.13, 100.0 * bar.low, 100.0 * bar.high});
   }
 
-  Figure figure = figure_on(sheet, "participants", alt_of_participants(report));
+  Figure figure = figure_on(sheet, "participants", alt_of_participants(report), "accuracy");
   figure.caption = stamped(report.simulated,
                            "every participant's accuracy, and the mean over participants. The "
                            "interval is Student's t, at the level of participants.");
@@ -265,7 +263,7 @@ std::optional<Figure> trials_figure(const StudyReport& report) {
   const auto classes = static_cast<int>(report.classes.size());
   const Panels panels(shown.size(), 2, 6.0, {1.5, 0.4, 0.6, 1.25}, report.simulated);
   Figure figure = figure_on(panels.sheet(), "accuracy-over-trials",
-                            "Accuracy by place among a participant's trials.");
+                            "Accuracy by place among a participant's trials.", "order");
   figure.script = sheet_head(panels.sheet()) + "set multiplot\n";
   const Legend legend(
       panels.sheet(), 1.5,
@@ -276,7 +274,7 @@ std::optional<Figure> trials_figure(const StudyReport& report) {
     const MethodReport& method = report.methods[shown[i]];
     const std::vector<GroupAccuracy>& groups = by_trial(method)->groups;
     const std::vector<Point> points = points_of(groups);
-    const std::vector<std::vector<double>> rows = rows_of(points);
+    const Rows rows = rows_of(points);
     most = std::max(most, places_together(groups));
     if (rows.empty()) continue;
     figure.script += data_block(fmt::format("trials{}", i), rows) + panels.begin(i, method.method) +
@@ -314,8 +312,8 @@ std::optional<Figure> reaction_figure(const StudyReport& report) {
       0.3;
   const Panels panels(shown.size(), across, 5.6 + around.bottom_cm, around, report.simulated);
   const NamesBelow below(report.classes, panels.axis_cm());
-  Figure figure =
-      figure_on(panels.sheet(), "reaction-times", "Median reaction time and quartiles by class:");
+  Figure figure = figure_on(panels.sheet(), "reaction-times",
+                            "Median reaction time and quartiles by class:", "reaction-times");
   figure.script = sheet_head(panels.sheet()) + "set multiplot\n";
   const Legend legend(
       panels.sheet(), 1.5,

@@ -25,18 +25,12 @@ std::vector<Cell> accuracy_row(const std::string& name, const ClassAccuracy& one
 
 Table class_table(const StudyReport& report, std::size_t index) {
   const MethodReport& method = report.methods[index];
-  Table table{"accuracy-by-class-" + method_slug(report, index),
-              method_prefix(report, index) +
-                  "right answers by the texture presented; t over participants, the other "
-                  "intervals as if all trials were independent",
-              {{"texture", Align::left},
-               {"n"},
-               {"right"},
-               {"accuracy"},
-               {"t 95% (%)"},
-               {"Wilson 95% (%)"},
-               {"Clopper-Pearson 95% (%)"},
-               {"Jeffreys 95% (%)"}}};
+  Table table =
+      method_table(report, index, "accuracy-by-class",
+                   "right answers by the texture presented; t over participants, the other "
+                   "intervals as if all trials were independent",
+                   columns_of({"texture", "n", "right", "accuracy", "t 95% (%)", "Wilson 95% (%)",
+                               "Clopper-Pearson 95% (%)", "Jeffreys 95% (%)"}));
   for (std::size_t i = 0; i < method.accuracy.size(); ++i) {
     table.rows.push_back(accuracy_row(report.classes[i], method.accuracy[i]));
   }
@@ -66,17 +60,11 @@ std::string exchange_of(const LabelMatching& matching, const std::vector<std::st
 
 Table participant_table(const StudyReport& report, std::size_t index) {
   const MethodReport& method = report.methods[index];
-  Table table{"accuracy-by-participant-" + method_slug(report, index),
-              method_prefix(report, index) + "right answers by participant",
-              {{"participant", Align::left},
-               {"n"},
-               {"right"},
-               {"accuracy"},
-               {"with the best exchange of labels"},
-               {"exchange", Align::left},
-               {"p of the exchange"},
-               {"adjusted"},
-               {"consistency (bit)"}}};
+  Table table = method_table(
+      report, index, "accuracy-by-participant", "right answers by participant",
+      columns_of({"participant", "n", "right", "accuracy", "with the best exchange of labels",
+                  "exchange", "p of the exchange", "adjusted", "consistency (bit)"},
+                 {"exchange"}));
   for (const ParticipantAccuracy& one : method.per_participant) {
     table.rows.push_back({one.participant, std::to_string(one.accuracy.n),
                           std::to_string(one.accuracy.correct), share_figure(one.accuracy.share()),
@@ -132,10 +120,10 @@ std::vector<Cell> marginal_row(const ConfusionMatrix& confusion) {
 
 Table confusion_table(const StudyReport& report, std::size_t index) {
   const ConfusionMatrix& confusion = report.methods[index].confusion;
-  Table table{"confusions-" + method_slug(report, index),
-              method_prefix(report, index) +
-                  "answers (columns) to the textures presented (rows), counts and row percentages",
-              class_columns("presented", report)};
+  Table table =
+      method_table(report, index, "confusions",
+                   "answers (columns) to the textures presented (rows), counts and row percentages",
+                   class_columns("presented", report));
   table.columns.push_back({"no response"});
   table.columns.push_back({"n"});
   for (int i = 0; i < confusion.classes(); ++i) {
@@ -157,10 +145,9 @@ Table confusion_table(const StudyReport& report, std::size_t index) {
 
 Table unbiased_table(const StudyReport& report, std::size_t index) {
   const MethodReport& method = report.methods[index];
-  Table table{"unbiased-hits-" + method_slug(report, index),
-              method_prefix(report, index) +
-                  "unbiased hit rates, which answering one texture often does not raise",
-              {{"texture", Align::left}, {"mean"}, {"t 95% (%)"}, {"at random"}}};
+  Table table = method_table(report, index, "unbiased-hits",
+                             "unbiased hit rates, which answering one texture often does not raise",
+                             columns_of({"texture", "mean", "t 95% (%)", "at random"}));
   for (std::size_t i = 0; i < method.unbiased.size(); ++i) {
     const UnbiasedHits& hits = method.unbiased[i];
     const bool all = i >= report.classes.size();
@@ -227,9 +214,9 @@ std::vector<Cited> choice_notes(const ChoiceModel& model, const std::vector<std:
 
 Table choice_table(const StudyReport& report, std::size_t index) {
   const ChoiceModel& model = *report.methods[index].choice;
-  Table table{"choice-model-" + method_slug(report, index),
-              method_prefix(report, index) + "similarity of textures, and bias of answers",
-              class_columns("similarity", report)};
+  Table table =
+      method_table(report, index, "choice-model", "similarity of textures, and bias of answers",
+                   class_columns("similarity", report));
   const auto classes = static_cast<int>(report.classes.size());
   for (int i = 0; i < classes; ++i) {
     std::vector<Cell> row{report.classes[i]};
@@ -261,14 +248,8 @@ std::string bound_of(const MethodReport& method) {
 Table information_table(const StudyReport& report) {
   Table table{"information",
               "Information transfer and nominal sensitivity, all participants' trials pooled",
-              {{"method", Align::left},
-               {"n"},
-               {"raw (bit)"},
-               {"corrected (bit)"},
-               {"at random (bit)"},
-               {"categories"},
-               {"d′"},
-               {"d′ 95%"}}};
+              columns_of({"method", "n", "raw (bit)", "corrected (bit)", "at random (bit)",
+                          "categories", "d′", "d′ 95%"})};
   for (const MethodReport& method : report.methods) {
     const InformationTransfer& information = method.information;
     const auto categories =

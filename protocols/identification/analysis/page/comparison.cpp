@@ -72,14 +72,9 @@ Table pair_table(const StudyReport& report) {
                                    [](const MethodPair& pair) { return pair.mcnemar_mid_p; });
   const bool holm = std::any_of(report.pairs.begin(), report.pairs.end(),
                                 [](const MethodPair& pair) { return pair.p_holm; });
-  Table table{"methods",
-              "Methods compared within participants",
-              {{"difference", Align::left},
-               {"participants"},
-               {"points"},
-               {"t 95%"},
-               {"bootstrap 95%"},
-               {"sign-flip p"}}};
+  Table table{"methods", "Methods compared within participants",
+              columns_of({"difference", "participants", "points", "t 95%", "bootstrap 95%",
+                          "sign-flip p"})};
   if (holm) table.columns.push_back({"p, Holm"});
   if (mcnemar) table.columns.push_back({"McNemar mid-p"});
   table.columns.push_back({"odds ratio, 95%"});
@@ -158,14 +153,8 @@ Table class_table(const StudyReport& report, const MethodPair& pair, std::size_t
                   [](const ClassComparison& one) { return one.mcnemar_mid_p.has_value(); });
   Table table{"methods-by-class-" + std::to_string(index + 1),
               first + " beside " + second + ", by texture",
-              {{"texture", Align::left},
-               {first + ", right"},
-               {first},
-               {second + ", right"},
-               {second},
-               {"points"},
-               {"t 95%"},
-               {"sign-flip p"}}};
+              columns_of({"texture", first + ", right", first, second + ", right", second, "points",
+                          "t 95%", "sign-flip p"})};
   if (mcnemar) table.columns.push_back({"McNemar mid-p"});
   table.columns.push_back({"dB (10 log10)"});
   for (std::size_t i = 0; i < pair.classes.size(); ++i) {

@@ -15,10 +15,6 @@ std::string mean_range(const MeanEstimate& mean) {
   return has_width ? share_range(mean.interval) : kNoFigure;
 }
 
-std::string prefix_of(const StudyReport& report, const MethodCues& method) {
-  return report.methods.size() > 1 ? method.method + ": " : "";
-}
-
 std::vector<Cell> observer_row(const ObserverFigures& observer) {
   return {std::string(title_of(observer.cue)),
           share_figure(observer.mean.mean),
@@ -33,14 +29,9 @@ std::vector<Cell> observer_row(const ObserverFigures& observer) {
 Table cue_table(const StudyReport& report, const MethodCues& method, std::size_t index) {
   Table table{
       "cues-" + std::to_string(index + 1),
-      prefix_of(report, method) + "what ideal observers would have made of what each hand felt",
-      {{"observer uses", Align::left},
-       {"accuracy"},
-       {"95% (%)"},
-       {"efficiency"},
-       {"95%"},
-       {"above chance"},
-       {"95%"}}};
+      method_prefix(report, index) + "what ideal observers would have made of what each hand felt",
+      columns_of(
+          {"observer uses", "accuracy", "95% (%)", "efficiency", "95%", "above chance", "95%"})};
   table.rows.push_back({"(participants)", Cell(share_figure(method.human_mean.mean), true),
                         mean_range(method.human_mean), "", "", "", ""});
   for (const ObserverFigures& one : method.observers) table.rows.push_back(observer_row(one));
@@ -69,13 +60,9 @@ std::vector<Cell> confusing_row(const ObserverFigures& observer, bool best) {
 /// The table on which observer confuses classes as participants do.
 Table confusing_table(const StudyReport& report, const MethodCues& method, std::size_t index) {
   Table table{"cues-confusing-" + std::to_string(index + 1),
-              prefix_of(report, method) + "how far observers' confusions are from participants'",
-              {{"observer uses", Align::left},
-               {"divergence (bit)"},
-               {"95%"},
-               {"noise to match"},
-               {"divergence, matched (bit)"},
-               {"95%"}}};
+              method_prefix(report, index) + "how far observers' confusions are from participants'",
+              columns_of({"observer uses", "divergence (bit)", "95%", "noise to match",
+                          "divergence, matched (bit)", "95%"})};
   for (const ObserverFigures& one : method.observers) {
     table.rows.push_back(confusing_row(one, method.match && method.match->best == one.cue));
   }
@@ -157,19 +144,9 @@ std::string left_out_of(const MethodCues& method) {
   return text;
 }
 
-}  // namespace
-
-Section cues_section(const StudyReport& report) {
-  Section section{"cues", "Which cue was it?", {}};
-  if (!report.cues) {
-    section.blocks.emplace_back(
-        Cited{"Not examined: ideal observers read every trace of the study. Ask for it with "
-              "touchtrial report DB --out DIR --cues yes.",
-              {}});
-    return section;
-  }
-  for (std::size_t i = 0; i < report.cues->methods.size(); ++i) {
-    const MethodCues& method = report.cues->methods[i];
+void add_observers(const StudyReport& report, const CueReport& cues, Section& section) {
+  for (std::size_t i = 0; i < cues.methods.size(); ++i) {
+    const MethodCues& method = cues.methods[i];
     if (method.observers.empty()) {
       section.blocks.emplace_back(Cited{method.method + ": no trial could be judged.", {}});
       continue;
@@ -180,7 +157,22 @@ Section cues_section(const StudyReport& report) {
     const std::string left_out = left_out_of(method);
     if (!left_out.empty()) section.blocks.emplace_back(Cited{left_out, {}});
   }
-  if (!report.cues->warnings.empty()) section.blocks.emplace_back(Warnings{report.cues->warnings});
+  if (!cues.warnings.empty()) section.blocks.emplace_back(Warnings{cues.warnings});
+}
+
+}  // namespace
+
+Section cues_section(const StudyReport& report, bool explores) {
+  Section section{"cues", "Which cue was it?", {}};
+  if (report.cues) {
+    add_observers(report, *report.cues, section);
+  } else {
+    section.blocks.emplace_back(
+        Cited{"Not examined: ideal observers read every trace of the study. Ask for it with "
+              "touchtrial report DB --out DIR --cues yes.",
+              {}});
+  }
+  if (explores) section.blocks.emplace_back(Subheading{kExplorations, "How a hand explored"});
   return section;
 }
 

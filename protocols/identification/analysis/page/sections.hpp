@@ -3,15 +3,13 @@
 
 #include "analysis/report/page/document.hpp"
 #include "analysis/report/page/study_document.hpp"
+#include "protocols/identification/analysis/figures/figures.hpp"
 #include "protocols/identification/analysis/report.hpp"
 
 #include <cstddef>
 #include <string>
 
 namespace touchtrial::analysis::identification {
-
-/// The usual level of significance. Only the wording depends on it.
-inline constexpr double kUsualLevel = 0.05;
 
 /// Adds each method's mean over participants and what chance would give.
 void add_headline(const StudyReport& report, Section& section);
@@ -28,16 +26,24 @@ void add_headline(const StudyReport& report, Section& section);
 /// \return a section without blocks if they were not asked
 [[nodiscard]] Section confidence_section(const StudyReport& report);
 [[nodiscard]] Section times_section(const StudyReport& report);
-[[nodiscard]] Section cues_section(const StudyReport& report);
+/// \param explores  whether there are pictures of explorations, which stand at its end
+[[nodiscard]] Section cues_section(const StudyReport& report, bool explores = false);
 /// The servo and the validity of trials, and the results with and without invalid trials.
 [[nodiscard]] Section robustness_section(const StudyReport& report);
 [[nodiscard]] Section methods_section(const StudyReport& report);
 
-/// The end of the ids of a method's tables; unique in the report.
-[[nodiscard]] std::string method_slug(const StudyReport& report, std::size_t method);
 /// Adds a subheading with the method's name if the report has several methods.
 /// \param section  its id begins the id of the heading
 void add_method_heading(const StudyReport& report, std::size_t method, Section& section);
+/// An empty table of one method, whose id and caption tell which if the report has several.
+[[nodiscard]] Table method_table(const StudyReport& report, std::size_t method,
+                                 const std::string& id, const std::string& caption,
+                                 std::vector<Column> columns);
+/// Cells on trials: how many, how many right and their share, pooled; and the mean over
+/// participants.
+[[nodiscard]] std::vector<Cell> pooled_and_mean_row(const std::string& name,
+                                                    const Proportion& pooled,
+                                                    const MeanEstimate& mean);
 /// The beginning of captions: for example "adaptive: " if the report has several methods, otherwise
 /// empty.
 [[nodiscard]] std::string method_prefix(const StudyReport& report, std::size_t method);

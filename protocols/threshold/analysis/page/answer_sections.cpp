@@ -8,16 +8,10 @@ namespace touchtrial::analysis::threshold {
 namespace {
 
 Table outside_table(const std::string& id, const std::string& caption,
-                    const OutsideTracks& outside) {
-  Table table{id,
-              caption,
-              {{"participant", Align::left},
-               {"n"},
-               {"right"},
-               {"share"},
-               {"Clopper-Pearson 95% (%)"},
-               {"p"},
-               {"p by Holm"}}};
+                    const AgainstGuessing& outside) {
+  Table table{id, caption,
+              columns_of({"participant", "n", "right", "share", "Clopper-Pearson 95% (%)", "p",
+                          "p by Holm"})};
   const auto add = [&](const std::string& name, const RightAnswers& one) {
     table.rows.push_back({name, std::to_string(one.answers.n), std::to_string(one.answers.correct),
                           share_figure(one.answers.share()), share_range(one.interval),
@@ -44,12 +38,7 @@ std::string control_meaning(const ThresholdReport& report) {
 Table choices_table(const ThresholdReport& report) {
   Table table{"named-choices",
               "How often each answer was given, and how often it was right; trials of tracks",
-              {{"answer", Align::left},
-               {"given"},
-               {"right answer"},
-               {"difference (points)"},
-               {"t 95%"},
-               {"p"}}};
+              columns_of({"answer", "given", "right answer", "difference (points)", "t 95%", "p"})};
   for (const ChoiceUse& one : report.choice_use) {
     const std::optional<Interval> interval = one.excess.mean.known_interval();
     table.rows.push_back({one.choice, std::to_string(one.named), std::to_string(one.targets),
@@ -74,15 +63,9 @@ std::vector<Cell> repetition_row(const std::string& name, const Repetition& one)
 }
 
 Table repetitions_table(const ThresholdReport& report) {
-  Table table{"repeated-answers",
-              "How often an answer repeated the one before it",
-              {{"after", Align::left},
-               {"n"},
-               {"repeated"},
-               {"in any order"},
-               {"difference (points)"},
-               {"t 95%"},
-               {"p"}}};
+  Table table{
+      "repeated-answers", "How often an answer repeated the one before it",
+      columns_of({"after", "n", "repeated", "in any order", "difference (points)", "t 95%", "p"})};
   table.rows.push_back(repetition_row("a right answer", report.after_right));
   table.rows.push_back(repetition_row("a wrong answer", report.after_wrong));
   table.notes = {
@@ -114,16 +97,10 @@ std::string cell_of(const Proportion& of) {
 
 Table same_different_table(const ThresholdReport& report, const std::string& id,
                            const std::string& caption, bool pooled) {
-  Table table{id,
-              caption,
-              {{"participant", Align::left},
-               {"standard", Align::left},
-               {"level (dB)"},
-               {"hits"},
-               {"false alarms"},
-               {"at all levels"},
-               {"d' differencing"},
-               {"d' independent"}}};
+  Table table{id, caption,
+              columns_of({"participant", "standard", "level (dB)", "hits", "false alarms",
+                          "at all levels", "d' differencing", "d' independent"},
+                         {"standard"})};
   for (const SameDifferentLevel& one : report.same_different) {
     if (one.participant.empty() != pooled) continue;
     table.rows.push_back({pooled ? "all, pooled" : one.participant,
@@ -137,13 +114,8 @@ Table same_different_table(const ThresholdReport& report, const std::string& id,
 Table group_d_prime_table(const ThresholdReport& report) {
   Table table{"d-prime-by-level",
               "d' of same or different: means over participants with t intervals",
-              {{"standard", Align::left},
-               {"level (dB)"},
-               {"n"},
-               {"d' differencing"},
-               {"t 95%"},
-               {"d' independent"},
-               {"t 95%"}}};
+              columns_of({"standard", "level (dB)", "n", "d' differencing", "t 95%",
+                          "d' independent", "t 95%"})};
   for (const SameDifferentGroup& one : report.same_different_groups) {
     table.rows.push_back(
         {report.standards[one.standard].words, plain_figure(one.level, 1),

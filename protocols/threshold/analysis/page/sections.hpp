@@ -21,19 +21,12 @@ namespace touchtrial::analysis::threshold {
 /// What quantity_text shows: "Weber fraction", "change of order"; empty for detection.
 [[nodiscard]] std::string quantity_name(const study::threshold::ThresholdOptions& options);
 
-/// Adds what was asked, each standard's threshold, and what the control block says of it.
-void add_headline(const ThresholdReport& report, Section& section);
-/// Thresholds by standard, and their differences.
-[[nodiscard]] Section thresholds_section(const ThresholdReport& report);
-/// Every participant's tracks.
-[[nodiscard]] Section tracks_section(const ThresholdReport& report);
 /// \return a section without blocks if the question is another one
 [[nodiscard]] Section same_different_section(const ThresholdReport& report);
 /// The control block with the hand off the device, and the catch trials.
 [[nodiscard]] Section control_section(const ThresholdReport& report);
 /// Preferred choices, repeated answers and learning.
 [[nodiscard]] Section habits_section(const ThresholdReport& report);
-[[nodiscard]] Section methods_section(const ThresholdReport& report);
 
 /// The report after unblinding.
 /// \param pictures  in the order in which they appear

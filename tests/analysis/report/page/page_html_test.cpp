@@ -47,9 +47,10 @@ TEST_CASE("page: the checker finds the faults that it looks for") {
 
 TEST_CASE("page: a full report has no fault") {
   const std::vector<std::string> faults = faults_of_page(
-      page_of(hand_made_report(),
-              {hand_made_picture("accuracy-by-class"), hand_made_picture("confusions-adaptive"),
-               hand_made_picture("methods"), hand_made_picture("of-no-section")}));
+      page_of(hand_made_report(), {hand_made_picture("accuracy-by-class", "accuracy"),
+                                   hand_made_picture("confusions-adaptive", "confusions"),
+                                   hand_made_picture("methods", "methods-compared"),
+                                   hand_made_picture("of-no-section", "no-section")}));
   CHECK(faults == std::vector<std::string>());
 }
 
@@ -100,11 +101,11 @@ TEST_CASE("page: a simulated study says so on every table, and at both ends") {
 }
 
 TEST_CASE("page: a picture's ids are unique, and a picture with a script is left out") {
-  Picture bad = hand_made_picture("reaction-times");
+  Picture bad = hand_made_picture("reaction-times", "reaction-times");
   bad.svg.insert(bad.svg.find("<path"), "<script>1</script>");
-  const std::string page = page_of(
-      hand_made_report(),
-      {hand_made_picture("accuracy-by-class"), hand_made_picture("confusions-adaptive"), bad});
+  const std::string page =
+      page_of(hand_made_report(), {hand_made_picture("accuracy-by-class", "accuracy"),
+                                   hand_made_picture("confusions-adaptive", "confusions"), bad});
   CHECK(faults_of_page(page) == std::vector<std::string>());
   CHECK_THAT(page, holds_text("id=\"figure-accuracy-by-class-t\""));
   CHECK_THAT(page, holds_text("url(#figure-confusions-adaptive-p)"));

@@ -18,15 +18,15 @@ namespace {
 using namespace analysis::identification;
 
 /// The same wave, stronger for each class and a little different in each trial.
-record::Trace stronger_by_class(const study::Presentation& shown) {
-  const double strength_n = 0.05 * (1 << shown.stimulus.class_index);
-  return stroking_over_wave(3.0, strength_n * (1.0 + 0.001 * shown.trial));
+record::Trace stronger_by_class(const study::Trial& shown) {
+  const double strength_n = 0.05 * (1 << shown.field().class_index);
+  return stroking_over_wave(3.0, strength_n * (1.0 + 0.001 * shown.place.trial));
 }
 
 /// An octave shorter for each class; of any strength.
-record::Trace shorter_by_class(const study::Presentation& shown) {
-  RandomStream random(1, "cue_report_test", static_cast<std::uint64_t>(shown.trial));
-  return stroking_over_wave(12.0 / (1 << shown.stimulus.class_index), random.uniform(0.1, 0.4));
+record::Trace shorter_by_class(const study::Trial& shown) {
+  RandomStream random(1, "cue_report_test", static_cast<std::uint64_t>(shown.place.trial));
+  return stroking_over_wave(12.0 / (1 << shown.field().class_index), random.uniform(0.1, 0.4));
 }
 
 /// Everyone answers alike.
@@ -92,8 +92,8 @@ TEST_CASE("shape, and not strength, distinguishes traces of shorter waves") {
 }
 
 TEST_CASE("participants who swap two labels achieve a third of what is available") {
-  const FakeAnswers swapped = [](const study::Presentation& shown) {
-    const int own = shown.stimulus.class_index;
+  const FakeAnswers swapped = [](const study::Trial& shown) {
+    const int own = shown.field().class_index;
     return own < 2 ? 1 - own : own;
   };
   FeltStudy study(stronger_by_class, swapped);

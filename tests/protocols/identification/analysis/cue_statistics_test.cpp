@@ -106,7 +106,7 @@ TEST_CASE("without a response there is nothing to match, and accuracy is zero") 
       one.add(
           {k, std::nullopt, {surely(k), surely(k), surely(k)}, {surely(k), surely(k), surely(k)}});
     }
-    CHECK(one.no_response(0) == 1);
+    CHECK(one.no_response[0] == 1);
   }
   const CueStatistics statistics = cue_statistics(all, 0);
   CHECK(statistics.efficiency[0].value.value() == 0.0);

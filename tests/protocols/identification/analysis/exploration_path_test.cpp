@@ -58,7 +58,7 @@ TEST_CASE("a trial's path lies over the field that was felt") {
   FakeStudy study({.with_pack = true});
   study.add({.participant = "P01",
              .answers = FakeStudy::confusing(0, 1),
-             .traces = [](const study::Presentation&) { return stroking_over_wave(3.0, 0.2); }});
+             .traces = [](const study::Trial&) { return stroking_over_wave(3.0, 0.2); }});
   study.close_and_unblind();
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   const ExplorationPath path =
@@ -81,7 +81,7 @@ TEST_CASE("a trial's path lies over the field that was felt") {
   CHECK(bare.points.size() == 1500);
 }
 
-record::Trace wave(const study::Presentation& /*shown*/) {
+record::Trace wave(const study::Trial& /*shown*/) {
   return stroking_over_wave(3.0, 0.2);
 }
 

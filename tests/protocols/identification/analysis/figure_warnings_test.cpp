@@ -28,8 +28,8 @@ int warnings_with(const StudyReport& report, const std::string& part) {
 }
 
 /// Takes the first two classes for each other.
-std::optional<int> swapping(const study::Presentation& shown) {
-  const int felt = shown.stimulus.class_index;
+std::optional<int> swapping(const study::Trial& shown) {
+  const int felt = shown.field().class_index;
   return felt < 2 ? 1 - felt : felt;
 }
 
@@ -85,8 +85,8 @@ TEST_CASE("One who swaps labels among many is suspected, and guessers are not") 
     // Answers that have nothing to do with what is presented.
     study.add({.participant = "P" + std::to_string(i),
                .enrolment = i,
-               .answers = [i](const study::Presentation& shown) {
-                 return std::optional((shown.trial * 7 + i) % 3);
+               .answers = [i](const study::Trial& shown) {
+                 return std::optional((shown.place.trial * 7 + i) % 3);
                }});
   }
   const StudyReport report = report_of(study);

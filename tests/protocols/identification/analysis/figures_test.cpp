@@ -3,6 +3,7 @@
 #include "analysis/text_matching.hpp"
 #include "core/errors.hpp"
 #include "protocols/identification/analysis/fake_report.hpp"
+#include "protocols/identification/analysis/page/sections.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -84,6 +85,30 @@ class EmptyPath {
 };
 
 }  // namespace
+
+TEST_CASE("every figure but the participants' flow stands on the page, below its section") {
+  for (const std::vector<std::string>& methods :
+       {std::vector<std::string>{"adaptive"}, {"adaptive", "tv-gabor"}}) {
+    const FakeReportOptions options{.methods = methods, .servo_trials = 50};
+    const CueReport cues = fake_cues(options);
+    const StudyReport report = fake_report(options);
+    Pictures pictures;
+    for (const Figure& figure : report_figures(report, {.cues = &cues})) {
+      CHECK(figure.section.empty() == (figure.id == "participant-flow"));
+      pictures.push_back({figure.id, figure.caption, figure.alt, "", figure.section});
+    }
+    std::size_t shown = 0;
+    for (const Section& section : study_document(report, {}, pictures).sections) {
+      for (const Block& block : section.blocks) {
+        const auto* picture = std::get_if<Picture>(&block);
+        if (picture == nullptr) continue;
+        ++shown;
+        CHECK(picture->section == section.id);
+      }
+    }
+    CHECK(shown + 1 == pictures.size());
+  }
+}
 
 TEST_CASE("figures of one method are those of a classification study") {
   FakeReportOptions options{.servo_trials = 50};
@@ -210,9 +235,8 @@ TEST_CASE("figures of an exploration show the path in contact, in newtons, over 
   path.class_label = "it's </text> bark";
   path.texture.geometry = {0.2, 20, 30};
   path.texture.grey = GreyImage(20, 30, 100);
-  path.points = {{{9.0, 9.0}, {}, 0.0, 0.0, false},
-                 {{1.5, 2.5}, {}, 0.25, 1.0, true},
-                 {{2.0, 3.0}, {}, 0.5, 1.0, true}};
+  path.points = {
+      {{9.0, 9.0}, {}, 0.0, false}, {{1.5, 2.5}, {}, 0.25, true}, {{2.0, 3.0}, {}, 0.5, true}};
   const std::vector<Figure> figures = report_figures(StudyReport{}, {.explorations = {&path, 1}});
   REQUIRE(ids_of(figures) == "exploration-3-7 ");
   CHECK(contains(figures[0].script, "$path << EOD\n1.5 2.5 0.25\n2 3 0.5\nEOD\n"));

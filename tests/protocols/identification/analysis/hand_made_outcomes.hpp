@@ -64,6 +64,7 @@ class HandMadeOutcomes {
     trial.row.valid = of.within_limits;
     trial.stimulus = {of.felt, 0, of.method};
     trial.role = of.role;
+    trial.has_stimulus = of.role != study::Role::catch_trial;
     trial.scored = of.role == study::Role::scored;
     trial.counted = trial.scored && outcomes.sessions.at(of.session - 1).counted;
     trial.response = of.answered;

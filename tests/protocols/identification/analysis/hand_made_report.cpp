@@ -207,12 +207,13 @@ analysis::Provenance hand_made_provenance() {
   return provenance;
 }
 
-analysis::Picture hand_made_picture(const std::string& id) {
+analysis::Picture hand_made_picture(const std::string& id, const std::string& section) {
   return {id, "A picture.", "Three bars: 80, 76 and 72%.",
           "<?xml version=\"1.0\"?>\n<!DOCTYPE svg>\n<svg viewBox=\"0 0 9 9\" "
           "xmlns=\"http://www.w3.org/2000/svg\" aria-labelledby=\"t d\"><title id=\"t\">bars"
           "</title><desc id=\"d\">three</desc><path id='p' d=\"M0 0\"/><use href='#p'/>"
-          "<g clip-path=\"url(#p)\"/></svg>\n"};
+          "<g clip-path=\"url(#p)\"/></svg>\n",
+          section};
 }
 
 }  // namespace touchtrial

@@ -16,6 +16,7 @@ inline constexpr const char* kHostile = "<script>alert('x')</script> & \"b|rk\" 
 [[nodiscard]] analysis::Provenance hand_made_provenance();
 
 /// An SVG file with ids, as a drawing program writes it.
-[[nodiscard]] analysis::Picture hand_made_picture(const std::string& id);
+[[nodiscard]] analysis::Picture hand_made_picture(const std::string& id,
+                                                  const std::string& section = {});
 
 }  // namespace touchtrial

@@ -1,4 +1,4 @@
-#include "protocols/identification/analysis/primary.hpp"
+#include "analysis/choices/primary.hpp"
 
 #include "analysis/fake_study.hpp"
 #include "analysis/report/page/document.hpp"
@@ -16,6 +16,7 @@ namespace touchtrial {
 namespace {
 
 using namespace analysis::identification;
+using namespace choices;
 using analysis::Verdict;
 using std::chrono::seconds;
 
@@ -25,9 +26,9 @@ constexpr const char* kRegistered =
 
 /// The first `right` of the 12 trials are right, the others wrong.
 FakeAnswers right_in(int right) {
-  return [right](const study::Presentation& shown) {
-    const int shift = shown.trial <= right ? 0 : 1;
-    return std::optional((shown.stimulus.class_index + shift) % 3);
+  return [right](const study::Trial& shown) {
+    const int shift = shown.place.trial <= right ? 0 : 1;
+    return std::optional((shown.field().class_index + shift) % 3);
   };
 }
 
@@ -350,9 +351,9 @@ TEST_CASE("a registered difference is the first method less the second") {
   for (int i = 1; i <= 3; ++i) {
     study.add({.participant = "P" + std::to_string(i),
                .enrolment = i,
-               .answers = [](const study::Presentation& shown) {
-                 const bool wrong = shown.stimulus.method == 0 && shown.stimulus.class_index == 0;
-                 return std::optional(wrong ? 1 : shown.stimulus.class_index);
+               .answers = [](const study::Trial& shown) {
+                 const bool wrong = shown.field().method == 0 && shown.field().class_index == 0;
+                 return std::optional(wrong ? 1 : shown.field().class_index);
                }});
   }
   const StudyReport report = final_report_of(study);
@@ -366,10 +367,10 @@ namespace {
 /// Two methods, one after the other: in the first block `early` of 12 trials are right, in the
 /// second `late`, whichever the method.
 FakeAnswers right_by_block(int early, int late) {
-  return [early, late](const study::Presentation& shown) {
-    const int place = shown.block == 0 ? shown.trial : shown.trial - 12;
-    const bool right = place <= (shown.block == 0 ? early : late);
-    return std::optional(right ? shown.stimulus.class_index : (shown.stimulus.class_index + 1) % 3);
+  return [early, late](const study::Trial& shown) {
+    const int place = shown.place.block == 0 ? shown.place.trial : shown.place.trial - 12;
+    const bool right = place <= (shown.place.block == 0 ? early : late);
+    return std::optional(right ? shown.field().class_index : (shown.field().class_index + 1) % 3);
   };
 }
 

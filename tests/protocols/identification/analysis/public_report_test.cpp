@@ -32,9 +32,9 @@ void add_people_and_texts(FakeStudy& study) {
   for (int i = 0; i < 6; ++i) {
     FakeSession session{.participant = kPlanted[static_cast<std::size_t>(i)],
                         .enrolment = i + 1,
-                        .answers = [i](const study::Presentation& shown) {
-                          const bool wrong = shown.trial <= 2 + i;
-                          return std::optional((shown.stimulus.class_index + (wrong ? 1 : 0)) % 3);
+                        .answers = [i](const study::Trial& shown) {
+                          const bool wrong = shown.place.trial <= 2 + i;
+                          return std::optional((shown.field().class_index + (wrong ? 1 : 0)) % 3);
                         }};
     session.before_trials = [i](record::SessionRecorder& recorder) {
       if (i == 0) recorder.deviated(milliseconds(10), {"no-curtain", "qqdeviation"});

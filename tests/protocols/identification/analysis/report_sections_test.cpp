@@ -1,6 +1,6 @@
+#include "analysis/choices/orders.hpp"
 #include "analysis/text_matching.hpp"
 #include "protocols/identification/analysis/hand_made_outcomes.hpp"
-#include "protocols/identification/analysis/order.hpp"
 #include "protocols/identification/analysis/page/sections.hpp"
 #include "protocols/identification/analysis/report.hpp"
 #include "study/random_orders.hpp"
@@ -14,6 +14,7 @@ namespace touchtrial {
 namespace {
 
 using namespace analysis::identification;
+using namespace choices;
 
 constexpr int kBark = 0;
 constexpr int kCloth = 1;

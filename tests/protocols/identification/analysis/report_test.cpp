@@ -25,9 +25,9 @@ StudyReport report_of(FakeStudy& study) {
 /// The comparison with P01 always right and P02 taking bark for straw with tv-gabor only.
 StudyReport small_comparison(FakeStudy& study) {
   study.add({.participant = "P01", .enrolment = 1});
-  study.add({.participant = "P02", .enrolment = 2, .answers = [](const study::Presentation& shown) {
-               const bool mistaken = shown.stimulus.method == 1 && shown.stimulus.class_index == 0;
-               return mistaken ? 2 : shown.stimulus.class_index;
+  study.add({.participant = "P02", .enrolment = 2, .answers = [](const study::Trial& shown) {
+               const bool mistaken = shown.field().method == 1 && shown.field().class_index == 0;
+               return mistaken ? 2 : shown.field().class_index;
              }});
   return report_of(study);
 }
@@ -92,8 +92,9 @@ TEST_CASE("A report of an open study without sessions has no numbers and says so
 
 TEST_CASE("Time-outs are errors in accuracy, and their own column") {
   FakeStudy study(study::identification::classification());
-  study.add({.participant = "P01", .answers = [](const study::Presentation& shown) {
-               return shown.trial <= 2 ? std::nullopt : std::optional(shown.stimulus.class_index);
+  study.add({.participant = "P01", .answers = [](const study::Trial& shown) {
+               return shown.place.trial <= 2 ? std::nullopt
+                                             : std::optional(shown.field().class_index);
              }});
   const StudyReport report = report_of(study);
   CHECK(report.trials == 12);

@@ -4,7 +4,9 @@
 #include "protocols/identification/analysis/hand_made_report.hpp"
 #include "support/catch.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 using namespace touchtrial;
@@ -156,13 +158,18 @@ TEST_CASE("document: a choice model in groups says which, and has dashes where n
 }
 
 TEST_CASE("document: participants' flow is drawn once, explorations come last among the cues") {
-  const Document document =
-      study_document(hand_made_report(), hand_made_provenance(),
-                     {hand_made_picture("participant-flow"), hand_made_picture("exploration-1-2")});
+  const Document document = study_document(
+      hand_made_report(), hand_made_provenance(),
+      {hand_made_picture("participant-flow"), hand_made_picture("ideal-observers", "cues"),
+       hand_made_picture("exploration-1-2", kExplorations)});
   CHECK_THAT(page_html(document), !holds_text("figure-participant-flow"));
   for (const Section& section : document.sections) {
-    CHECK(section.id != "further-figures");
     if (section.id != "cues") continue;
+    const auto first_table = std::ranges::find_if(
+        section.blocks, [](const Block& block) { return std::holds_alternative<Table>(block); });
+    REQUIRE(first_table != section.blocks.begin());
+    REQUIRE(std::holds_alternative<Picture>(*std::prev(first_table)));
+    CHECK(std::get<Picture>(*std::prev(first_table)).id == "ideal-observers");
     REQUIRE(std::holds_alternative<Picture>(section.blocks.back()));
     CHECK(std::get<Picture>(section.blocks.back()).id == "exploration-1-2");
   }
@@ -230,7 +237,7 @@ TEST_CASE("document: every table of an interim look or a pilot is marked") {
 }
 
 TEST_CASE("document: figures that were not drawn are described, without their captions") {
-  Picture picture = hand_made_picture("methods");
+  Picture picture = hand_made_picture("methods", "methods-compared");
   const auto page = [&] {
     return page_html(study_document(hand_made_report(), hand_made_provenance(), {picture}));
   };

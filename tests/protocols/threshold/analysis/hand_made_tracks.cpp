@@ -65,7 +65,7 @@ HandMadeTracks::HandMadeTracks(const ThresholdOptions& options,
   outcomes.study = "weak";
   outcomes.design.name = "weak";
   outcomes.design.protocol = &study::threshold::protocol();
-  outcomes.design.options = std::make_shared<ThresholdOptions>(options);
+  outcomes.design = study::threshold::with_options(outcomes.design, options);
   for (const std::string& label : classes) {
     study::StudyClass& added = outcomes.design.classes.emplace_back();
     added.label = label;
@@ -74,7 +74,7 @@ HandMadeTracks::HandMadeTracks(const ThresholdOptions& options,
   }
   outcomes.classes = classes;
   outcomes.methods = {"adaptive"};
-  for (const study::Choice& choice : study::threshold::protocol().choices(outcomes.design)) {
+  for (const study::Choice& choice : study::choices_of(outcomes.design)) {
     outcomes.choices.push_back(choice.label);
   }
   outcomes.state.closed = true;

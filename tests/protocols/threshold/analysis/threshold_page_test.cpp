@@ -2,12 +2,11 @@
 #include "analysis/exports/dataset.hpp"
 #include "analysis/report/figures/figure.hpp"
 #include "analysis/report/results.hpp"
-#include "protocols/threshold/analysis/figures/figures.hpp"
+#include "protocols/threshold/analysis/exports.hpp"
+#include "protocols/threshold/analysis/figures.hpp"
 #include "protocols/threshold/analysis/hand_made_tracks.hpp"
 #include "protocols/threshold/analysis/page/sections.hpp"
-#include "protocols/threshold/analysis/tables.hpp"
 #include "protocols/threshold/analysis/threshold_analysis.hpp"
-#include "protocols/threshold/analysis/threshold_model.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -60,7 +59,7 @@ TEST_CASE("every page of thresholds is whole, with figures described in words") 
       CHECK(figure.alt.starts_with("PILOT. "));
       CHECK(figure.alt.size() > 40);
       CHECK_FALSE(figure.caption.empty());
-      pictures.push_back({figure.id, figure.caption, figure.alt, {}});
+      pictures.push_back({figure.id, figure.caption, figure.alt, {}, figure.section});
     }
     REQUIRE_FALSE(pictures.empty());
     const analysis::Document document = results->document({}, pictures);
@@ -168,11 +167,12 @@ TEST_CASE("wishes that a report of thresholds cannot fulfil are refused by their
 
 TEST_CASE("tables of trials have the track and the level where an order chose them") {
   const HandMadeTracks made = small_study(constant_options({-12.0, -6.0}));
-  const std::vector<analysis::TrialColumn> own_columns = own::threshold_analysis().trial_columns();
+  const std::vector<analysis::TrialColumn> own_columns =
+      own::threshold_analysis().trial_columns(made.outcomes);
   REQUIRE(own_columns.size() == 3);
   const analysis::TrialOutcome& trial = made.outcomes.trials.front();
   const analysis::TrialView view{trial.participant, trial.row, false, &made.outcomes, &trial};
-  CHECK(std::string(own_columns[0].name) == "track");
+  CHECK(own_columns[0].name == "track");
   CHECK(own_columns[0].value(view) == analysis::DataCell(std::int64_t{1}));
   CHECK(own_columns[1].value(view) == analysis::DataCell(std::string("bark, standard -12 dB")));
   CHECK(own_columns[2].value(view) ==

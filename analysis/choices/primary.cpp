@@ -1,0 +1,341 @@
+#include "analysis/choices/primary.hpp"
+
+#include "analysis/outcomes/departures.hpp"
+#include "analysis/statistics/common.hpp"
+#include "analysis/statistics/descriptive.hpp"
+#include "analysis/statistics/paired_tests.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace touchtrial::choices {
+namespace {
+
+using analysis::StratifiedMean;
+using analysis::without_noise;
+using study::Estimand;
+
+int method_labelled(const study::Study& study, const std::string& label) {
+  const auto found = std::ranges::find(study.methods, label, &study::StudyMethod::label);
+  return static_cast<int>(found - study.methods.begin());
+}
+
+PrimaryQuestion registered_question(const study::Study& study) {
+  const study::RegisteredAnalysis& registered = *study.registration.analysis;
+  PrimaryQuestion question;
+  question.estimand = registered.estimand;
+  if (registered.methods.size() == 2) {
+    question.first = method_labelled(study, registered.methods[0]);
+    question.second = method_labelled(study, registered.methods[1]);
+  }
+  question.test = registered.test;
+  question.sides = registered.one_sided ? Sides::one : Sides::two;
+  question.alpha = registered.alpha;
+  question.smallest_effect = registered.smallest_effect;
+  question.margin = registered.margin;
+  return question;
+}
+
+bool is_difference(const PrimaryQuestion& question) {
+  return question.estimand == Estimand::difference;
+}
+
+/// Which sessions and which of their trials enter an estimate.
+struct Selection {
+  std::string name;
+  std::string words;
+  std::set<int> sessions;
+  bool valid_alone = false;
+  bool answered_alone = false;
+
+  [[nodiscard]] bool has(const TrialOutcome& trial) const {
+    return trial.scored && has_ended(trial) && sessions.contains(trial.row.session) &&
+           (!valid_alone || trial.valid()) && (!answered_alone || trial.response);
+  }
+};
+
+std::set<int> joined(std::set<int> sessions, const std::set<int>& more) {
+  sessions.insert(more.begin(), more.end());
+  return sessions;
+}
+
+std::vector<Selection> selections(const Outcomes& outcomes) {
+  const std::set<int> taken = counted_sessions(outcomes);
+  const std::set<int> excluded = excluded_sessions(outcomes);
+  std::set<int> put_back = taken;
+  std::ranges::set_intersection(excluded, outcomes.looked.excluded_afterwards,
+                                std::inserter(put_back, put_back.end()));
+  std::set<int> registered = put_back;
+  for (const auto& [session, rule] : rules_met(outcomes)) registered.erase(session);
+  const bool is_registered = outcomes.design.registration.analysis.has_value();
+  std::string words = is_registered ? "as registered" : "every session that counts";
+  if (put_back != taken) words += "; no exclusion that was made after outcomes were seen";
+  return {{"registered", std::move(words), std::move(registered)},
+          {"taken", "all exclusions as made", taken},
+          {"put_back", "exclusions made after outcomes were seen put back", std::move(put_back)},
+          {"all", "all excluded sessions put back", joined(taken, excluded)},
+          {"valid", "exclusions as made, valid trials alone", taken, true},
+          {"answered", "exclusions as made, trials with a response alone", taken, false, true}};
+}
+
+struct SelectedPeople {
+  std::vector<CrossoverPerson> people;
+  std::vector<int> sessions;  ///< of each of them, the first
+  int trials = 0;
+};
+
+/// One participant's trials with one of the question's methods.
+struct OwnShare {
+  Proportion right;
+  int first_block = std::numeric_limits<int>::max();
+};
+
+/// The people who have all visits that decide.
+std::set<int> people_with_all_visits(const Outcomes& outcomes, const Selection& selection,
+                                     const FirstSessions& people) {
+  int deciding = 0;
+  for (int visit = 1; visit <= outcomes.design.visits.count; ++visit) {
+    deciding += outcomes.design.decides(visit) ? 1 : 0;
+  }
+  std::map<int, std::set<int>> visits;
+  for (const SessionOutcome& one : outcomes.sessions) {
+    if (!selection.sessions.contains(one.row.session)) continue;
+    if (outcomes.design.decides(one.row.visit)) {
+      visits[people.of(one.row.session)].insert(one.row.visit);
+    }
+  }
+  std::set<int> whole;
+  for (const auto& [person, own] : visits) {
+    if (static_cast<int>(own.size()) == deciding) whole.insert(person);
+  }
+  return whole;
+}
+
+/// The selected trials of each participant with each method.
+std::map<int, std::pair<OwnShare, OwnShare>> shares_of(const PrimaryQuestion& question,
+                                                       const Outcomes& outcomes,
+                                                       const Selection& selection) {
+  const FirstSessions people(outcomes);
+  const std::set<int> whole = people_with_all_visits(outcomes, selection, people);
+  std::map<int, std::pair<OwnShare, OwnShare>> shares;
+  for (const TrialOutcome& trial : outcomes.trials) {
+    if (!selection.has(trial) || !outcomes.design.decides(trial.visit)) continue;
+    const bool first = trial.stimulus.method == question.first;
+    const bool second = is_difference(question) && trial.stimulus.method == question.second;
+    if (!first && !second) continue;
+    const int person = people.of(trial.row.session);
+    if (!whole.contains(person)) continue;
+    auto& [of_first, of_second] = shares[person];
+    OwnShare& own = first ? of_first : of_second;
+    own.right.add(trial.correct());
+    own.first_block = std::min(own.first_block, trial.row.block);
+  }
+  return shares;
+}
+
+std::map<int, int> order_blocks_of(const Outcomes& outcomes) {
+  std::map<int, int> blocks;
+  for (const SessionOutcome& one : outcomes.sessions) blocks[one.row.session] = one.order_block;
+  return blocks;
+}
+
+SelectedPeople people_of(const PrimaryQuestion& question, const Outcomes& outcomes,
+                         const Selection& selection) {
+  const std::map<int, int> blocks = order_blocks_of(outcomes);
+  SelectedPeople selected;
+  for (const auto& [session, own] : shares_of(question, outcomes, selection)) {
+    const auto& [first, second] = own;
+    if (is_difference(question) && (first.right.n == 0 || second.right.n == 0)) continue;
+    selected.trials += first.right.n + second.right.n;
+    const double with_first = first.right.share().value_or(0.0);
+    const double difference = without_noise(with_first - second.right.share().value_or(0.0));
+    selected.sessions.push_back(session);
+    const auto block = blocks.find(session);
+    selected.people.push_back({is_difference(question) ? difference : with_first,
+                               first.first_block < second.first_block,
+                               block == blocks.end() ? -1 : block->second});
+  }
+  return selected;
+}
+
+Interval range_of(const PrimaryQuestion& question) {
+  return is_difference(question) ? Interval{-1.0, 1.0} : Interval{0.0, 1.0};
+}
+
+/// The lower limit that goes with a one-sided test: the lower end of the interval at 1 - 2 alpha.
+std::optional<double> bound_of(const PrimaryQuestion& question,
+                               std::span<const CrossoverPerson> people) {
+  if (question.sides == Sides::two || question.alpha >= 0.5) return std::nullopt;
+  const auto interval = primary_estimate(question, people, 1.0 - 2.0 * question.alpha).interval;
+  return interval ? std::optional(interval->low) : std::nullopt;
+}
+
+/// What belongs to the registered choice alone.
+void put_registered_choice(const PrimaryQuestion& question, int classes,
+                           std::span<const CrossoverPerson> people, PrimaryResult& result) {
+  result.p = primary_p(question, classes, people);
+  result.bound = bound_of(question, people);
+  if (question.test != study::RegisteredTest::crossover) return;
+  result.crossover =
+      crossover_estimate(people, result.null, question.sides, question.interval_level());
+  result.permutation = crossover_permutation(people, result.null, question.sides);
+}
+
+/// With stations as strata, if there are several.
+std::optional<StratifiedMean> over_stations(const PrimaryQuestion& question,
+                                            const Outcomes& outcomes,
+                                            const SelectedPeople& selected) {
+  // Periods are told apart within all stations together.
+  if (question.test == study::RegisteredTest::crossover) return std::nullopt;
+  std::map<int, int> station_of;
+  for (const SessionOutcome& session : outcomes.sessions) {
+    station_of[session.row.session] = session.row.station;
+  }
+  std::map<int, std::vector<double>> by_station;
+  for (std::size_t i = 0; i < selected.people.size(); ++i) {
+    by_station[station_of.at(selected.sessions[i])].push_back(selected.people[i].difference);
+  }
+  std::vector<std::vector<double>> strata;
+  for (auto& [station, values] : by_station) strata.push_back(std::move(values));
+  return stratified_mean(strata, range_of(question), question.interval_level());
+}
+
+/// ", over all visits"; empty in a study with one.
+std::string visit_words(const study::Study& study) {
+  if (study.visits.count == 1) return "";
+  if (study.decides(1) && study.decides(study.visits.count)) return ", over all visits";
+  return study.decides(1) ? ", at the first visit" : ", at the last visit";
+}
+
+std::string question_words(const PrimaryQuestion& question, const Outcomes& outcomes) {
+  const std::string& first = outcomes.methods[question.first];
+  const std::string visits = visit_words(outcomes.design);
+  if (!is_difference(question)) {
+    return fmt::format("mean over participants of the accuracy with {}, against chance ({:.1f}%){}",
+                       first, 100.0 / static_cast<double>(outcomes.classes.size()), visits);
+  }
+  const std::string against =
+      question.margin ? fmt::format(", against −{:.3g} points", 100.0 * *question.margin) : "";
+  return fmt::format("mean over participants of the accuracy with {} less that with {}{}{}", first,
+                     outcomes.methods[question.second], against, visits);
+}
+
+/// The estimand under the null hypothesis.
+double null_of(const PrimaryQuestion& question, int classes) {
+  return is_difference(question) ? -question.margin.value_or(0.0) : 1.0 / classes;
+}
+
+}  // namespace
+
+std::optional<PrimaryQuestion> primary_question(const study::Study& study, int methods) {
+  if (study.registration.analysis) return registered_question(study);
+  if (methods > 2) return std::nullopt;
+  PrimaryQuestion question;
+  if (methods == 2) {
+    question.estimand = Estimand::difference;
+    question.test = study::usual_test_of(study);
+    question.sides = Sides::two;
+  }
+  return question;
+}
+
+std::string test_words(const PrimaryQuestion& question) {
+  const auto test = [&]() -> std::string {
+    switch (question.test) {
+      case study::RegisteredTest::sign_flip:
+        return "sign flips over participants";
+      case study::RegisteredTest::crossover:
+        return "period-adjusted t test over participants";
+      case study::RegisteredTest::t:
+        break;
+    }
+    return is_difference(question) ? "paired t test over participants"
+                                   : "one-sample t test over participants";
+  };
+  return fmt::format("{}, {}", test(), question.sides == Sides::one ? "one-sided" : "two-sided");
+}
+
+std::vector<double> differences_of(std::span<const CrossoverPerson> people) {
+  std::vector<double> differences;
+  for (const CrossoverPerson& one : people) differences.push_back(one.difference);
+  return differences;
+}
+
+PrimaryEstimate primary_estimate(const PrimaryQuestion& question,
+                                 std::span<const CrossoverPerson> people, double level) {
+  if (question.test == study::RegisteredTest::crossover) {
+    const auto found = crossover_estimate(people, 0.0, question.sides, level);
+    return {found.effect, found.interval};
+  }
+  const MeanEstimate mean = participant_mean(differences_of(people), range_of(question), level);
+  return {mean.mean, mean.known_interval()};
+}
+
+std::optional<double> primary_p(const PrimaryQuestion& question, int classes,
+                                std::span<const CrossoverPerson> people) {
+  const double null = null_of(question, classes);
+  switch (question.test) {
+    case study::RegisteredTest::crossover:
+      return crossover_estimate(people, null, question.sides).p;
+    case study::RegisteredTest::sign_flip:
+      return sign_flip_p(differences_of(people), question.sides);
+    case study::RegisteredTest::t:
+      break;
+  }
+  return t_test_p(differences_of(people), null, question.sides);
+}
+
+std::vector<CrossoverPerson> primary_values(const PrimaryQuestion& question,
+                                            const Outcomes& outcomes) {
+  return people_of(question, outcomes, {{}, {}, counted_sessions(outcomes)}).people;
+}
+
+std::optional<PrimaryResult> primary_result(const Outcomes& outcomes) {
+  const std::optional<PrimaryQuestion> question =
+      primary_question(outcomes.design, static_cast<int>(outcomes.methods.size()));
+  if (!question) return std::nullopt;
+  const auto classes = static_cast<int>(outcomes.classes.size());
+  PrimaryResult result{.estimand = question->estimand,
+                       .words = question_words(*question, outcomes),
+                       .test = test_words(*question),
+                       .null = null_of(*question, classes),
+                       .sides = question->sides,
+                       .alpha = question->alpha,
+                       .level = question->alpha,
+                       .interval_level = question->interval_level(),
+                       .smallest_effect = question->smallest_effect,
+                       .margin = question->margin};
+  const std::vector<Selection> chosen = selections(outcomes);
+  std::vector<SelectedPeople> people;
+  for (const Selection& selection : chosen) {
+    people.push_back(people_of(*question, outcomes, selection));
+  }
+  const analysis::StudyCourse course =
+      course_of(outcomes, static_cast<int>(people.front().people.size()));
+  // After registered looks, intervals and limits have the level of the test.
+  PrimaryQuestion at_level = *question;
+  if (const auto& registered = outcomes.design.registration.analysis) {
+    at_level.alpha = level_of(result, course, registered->spending);
+    result.level = at_level.alpha;
+    result.interval_level = at_level.interval_level();
+  }
+  put_registered_choice(at_level, classes, people.front().people, result);
+  result.stations = over_stations(at_level, outcomes, people.front());
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const PrimaryEstimate found =
+        primary_estimate(at_level, people[i].people, result.interval_level);
+    result.choices.push_back({chosen[i].name, chosen[i].words,
+                              static_cast<int>(people[i].people.size()), people[i].trials,
+                              found.estimate, found.interval});
+  }
+  judge(result, course);
+  return result;
+}
+
+}  // namespace touchtrial::choices

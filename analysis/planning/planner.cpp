@@ -1,0 +1,66 @@
+#include "analysis/planning/planner.hpp"
+
+#include "core/errors.hpp"
+#include "study/protocol.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+namespace touchtrial::planning {
+namespace {
+
+std::map<std::string_view, const Planner*>& known_planners() {
+  static std::map<std::string_view, const Planner*> all;
+  return all;
+}
+
+/// Where a study with tracks is found: "the protocol NAME, such as FILE".
+std::string words_of_tracks() {
+  for (const auto& [protocol, planner] : known_planners()) {
+    if (planner->study_with_tracks().empty()) continue;
+    return fmt::format("the protocol {}, such as {}", protocol, planner->study_with_tracks());
+  }
+  return "another protocol";
+}
+
+}  // namespace
+
+std::string_view Planner::study_with_tracks() const {
+  return {};
+}
+
+std::string Planner::procedure(const study::Study& study, int, const std::vector<bool>&) const {
+  throw UsageError(
+      one_line(fmt::format("{}: has the protocol {}, whose trials no procedure chooses; "
+                           "`touchtrial procedure` needs a study of {}",
+                           study.source, study.protocol_name(), words_of_tracks())));
+}
+
+std::vector<std::pair<std::string, double>> Planner::pilot_thresholds(
+    const analysis::Outcomes&, const std::string& place) const {
+  throw StudyError(one_line(place + ": is no detection study along gain that asks which interval"));
+}
+
+void add_planner(std::string_view protocol, const Planner& planner) {
+  known_planners()[protocol] = &planner;
+}
+
+const Planner& planner_of(const study::Study& study, const std::string& what) {
+  const auto found = known_planners().find(study.protocol->name);
+  if (found != known_planners().end()) return *found->second;
+  throw StudyError(one_line("study " + study.name + ": the protocol " + study.protocol_name() +
+                            " has no " + what + "; give a study of another"));
+}
+
+std::vector<std::string_view> protocols_with(std::string_view option) {
+  std::vector<std::string_view> found;
+  for (const auto& [protocol, planner] : known_planners()) {
+    const auto own = planner->options();
+    if (std::ranges::find(own, option) != own.end()) found.push_back(protocol);
+  }
+  return found;
+}
+
+}  // namespace touchtrial::planning

@@ -1,0 +1,60 @@
+/// \file The screen on which the participant rates what was felt.
+#pragma once
+
+#include "app/windows/participant/screen.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace touchtrial::app {
+
+/// Shows a picture and scales, which are lines or rows of numbers. Nothing is marked before the
+/// participant has marked it, so that no rating is suggested. All ratings may be changed until
+/// Next, which waits for the last of them.
+class RatingScreen final : public Screen {
+ public:
+  /// \pre the step asks for ratings
+  RatingScreen(const session::AnswerStep& step, const ScreenContext& context);
+
+ private:
+  /// Where picture and scales lie.
+  struct Arrangement {
+    Box picture;
+    Box scale_bar;
+    double shown = 1.0;  ///< scale of the picture: 1 is true size
+    Box rows;            ///< of the scales, one below the other
+  };
+
+  void paint(Canvas& canvas) override;
+  [[nodiscard]] std::optional<session::StepReply> activate(int id, Time at) override;
+  [[nodiscard]] int default_target() const noexcept override;
+  bool takes_key(const InputEvent& event) override;
+  void drag(int id, Vec2 to) override;
+
+  [[nodiscard]] Arrangement arranged(const Box& room, double unit) const;
+  void paint_scale(Canvas& canvas, std::size_t index, const Box& row);
+  void paint_line(Canvas& canvas, std::size_t index, const Box& room);
+  void paint_points(Canvas& canvas, std::size_t index, const Box& room);
+  [[nodiscard]] const std::string& hint() const;
+
+  /// Moves the marker of the scale that has the keys.
+  /// \param steps  to the right, if positive
+  void move_marker(int steps);
+  void choose_number(int number);
+  /// Gives the keys to the next or the previous scale or button.
+  void move_keys(int by, bool around);
+  /// After Enter, gives the keys to the next scale without a rating.
+  /// \return whether there is one, and this one has a rating
+  bool moves_on();
+  [[nodiscard]] bool is_complete() const noexcept;
+
+  session::AnswerStep step_;
+  ScreenContext context_;
+  std::vector<study::Scale> scales_;
+  std::vector<std::optional<double>> ratings_;  ///< by scale
+  std::vector<Box> lines_;                      ///< by scale, where lines were drawn last
+  std::size_t current_ = 0;  ///< the scale that has the keys, if no target has the focus
+};
+
+}  // namespace touchtrial::app

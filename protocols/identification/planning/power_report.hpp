@@ -1,0 +1,75 @@
+/// \file The results of a power run, all from simulated participants: power given the assumed
+/// sensitivity. Source: docs/planning.md.
+#pragma once
+
+#include "analysis/statistics/proportion.hpp"
+#include "protocols/identification/planning/power_runs.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial::planning::identification {
+
+/// Widths of the 95 % t interval, over the runs of one size.
+struct WidthFigures {
+  double mean = 0.0;
+  double standard_error = 0.0;  ///< Monte Carlo, of the mean
+  double lower = 0.0;           ///< one tenth of the runs is narrower
+  double median = 0.0;
+  double upper = 0.0;  ///< one tenth of the runs is wider
+};
+
+/// The results for one size.
+struct PowerRow {
+  int participants = 0;
+  analysis::Proportion significant;  ///< runs with the population
+  analysis::Interval power{};        ///< Wilson, 95 %
+  double estimate = 0.0;             ///< mean over runs
+  double estimate_sd = 0.0;          ///< from run to run
+  WidthFigures width;
+  analysis::Proportion false_alarms;  ///< significant runs under the null
+  analysis::Interval type_one{};      ///< Wilson, 95 %
+  double attainable = 0.0;            ///< mean of PowerRun::attainable
+  bool has_fixed_counts = true;       ///< PowerSetting
+  double level = 0.05;                ///< PowerPlan
+
+  [[nodiscard]] double estimated_power() const { return significant.share().value_or(0.0); }
+  [[nodiscard]] double estimated_error() const { return false_alarms.share().value_or(0.0); }
+};
+
+/// How the type-I error compares with the test's level.
+enum class ErrorVerdict {
+  holds,         ///< the interval overlaps the range from attainable to the level
+  conservative,  ///< the interval lies below the attainable error
+  excessive,     ///< the interval lies above the level
+  conditional,   ///< no verdict: the error depends on the orders of this study's seed
+};
+[[nodiscard]] ErrorVerdict verdict_of(const PowerRow& row) noexcept;
+[[nodiscard]] std::string_view name_of(ErrorVerdict verdict);
+
+/// The sizes that reach a power.
+struct TargetSize {
+  double target = 0.0;
+  std::optional<int> smallest;  ///< this and all larger sizes reach it by their estimates
+  std::optional<int> surely;    ///< this and all larger sizes reach it by their whole intervals
+};
+
+struct PowerReport {
+  PowerSetting setting;
+  PowerPlan plan;
+  std::vector<PowerRow> rows;  ///< by size
+  std::vector<TargetSize> targets;
+  std::vector<std::string> warnings;  ///< against misreadings, one line each
+};
+
+[[nodiscard]] PowerReport make_power_report(const PowerRuns& power);
+
+/// Stamp of everything that comes from a power run: what its power is given.
+[[nodiscard]] std::string power_stamp(const PowerSetting& setting);
+
+/// Tables for a terminal. This and the JSON end with a line feed.
+[[nodiscard]] std::string power_text(const PowerReport& report);
+[[nodiscard]] std::string power_json(const PowerReport& report);
+
+}  // namespace touchtrial::planning::identification

@@ -1,0 +1,71 @@
+/// \file The runs of a power run: the numbers of every simulated study. Source: docs/planning.md.
+#pragma once
+
+#include "analysis/planning/power_plan.hpp"
+#include "protocols/identification/planning/primary_test.hpp"
+#include "protocols/identification/planning/rehearsed_study.hpp"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace touchtrial::planning::identification {
+
+/// The powers that a size may reach.
+inline constexpr std::array<double, 2> kPowerTargets{0.8, 0.9};
+
+/// The seed of one simulated study, as for `simulate --seed`. Every size, hypothesis and run has
+/// its own seed, so that no two studies share a participant.
+[[nodiscard]] std::uint64_t study_seed(std::uint64_t seed, int participants, Hypothesis hypothesis,
+                                       int run);
+
+/// In place of the hash of fields: nobody feels anything.
+inline constexpr std::string_view kNoFields = "none";
+
+/// What a power run simulates. Two runs with equal settings and plans simulate the same studies.
+struct PowerSetting {
+  std::string study;     ///< its name
+  std::string protocol;  ///< its name
+  std::string test;      ///< words_of the primary test
+  std::string estimate;  ///< estimate_words
+  std::string seal;      ///< study_seal of the simulated key, hexadecimal: the whole study file
+  std::string fields;    ///< SHA-256 of the force fields that are felt, hexadecimal; or kNoFields
+  std::string subject;   ///< words_of the subject model, or of the stated people
+  std::string program;   ///< version
+  /// Whether every participant's order presents every class equally often. Otherwise the right
+  /// answers that a bias gives, and so all numbers, depend on the orders that the study's seed
+  /// draws.
+  bool has_fixed_counts = true;
+  std::string device{};  ///< analysis::device_words of what the subject holds
+
+  /// Whether people feel the study's textures; otherwise only how often they are right is stated.
+  [[nodiscard]] bool feels() const { return fields != kNoFields; }
+};
+
+/// The studies of one size and hypothesis.
+struct PowerCell {
+  int participants = 0;
+  Hypothesis hypothesis = Hypothesis::population;
+  std::vector<PowerRun> runs;  ///< in order
+
+  friend bool operator==(const PowerCell&, const PowerCell&) = default;
+};
+
+struct PowerRuns {
+  PowerSetting setting;
+  PowerPlan plan;                ///< settled
+  std::vector<PowerCell> cells;  ///< by size, the population before the null
+};
+
+/// Makes the runs of a plan. They depend on setting and plan alone, not on the number of threads.
+/// \param study  made for at least the plan's largest size
+/// \param jobs  threads, >= 1
+/// \param progress  called between blocks of runs, from one thread, with the share that is done
+[[nodiscard]] PowerRuns make_runs(const Rehearsal& study, const PrimaryTest& test,
+                                  PowerSetting setting, const PowerPlan& plan, int jobs,
+                                  const std::function<void(int done, int of)>& progress = {});
+
+}  // namespace touchtrial::planning::identification

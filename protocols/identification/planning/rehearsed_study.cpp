@@ -1,0 +1,246 @@
+#include "protocols/identification/planning/rehearsed_study.hpp"
+
+#include "core/errors.hpp"
+#include "core/random.hpp"
+#include "protocols/identification/planning/rehearsal.hpp"
+#include "protocols/simulation/condition.hpp"
+#include "protocols/simulation/felt_decision.hpp"
+#include "protocols/simulation/own_knowledge.hpp"
+#include "protocols/simulation/simulated_participant.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace touchtrial::planning::identification {
+namespace {
+
+/// Trainings have other seeds than the studies that use them.
+std::uint64_t training_seed(std::uint64_t seed, int training) {
+  return RandomStream(seed, "power: training", static_cast<std::uint64_t>(training)).bits();
+}
+
+std::vector<study::StimulusIndex> stimuli_of_method(const study::Study& study, int method) {
+  std::vector<study::StimulusIndex> stimuli;
+  for (int c = 0; c < static_cast<int>(study.classes.size()); ++c) {
+    for (int e = 0; e < static_cast<int>(study.classes[c].images.size()); ++e) {
+      stimuli.push_back({c, e, method});
+    }
+  }
+  return stimuli;
+}
+
+}  // namespace
+
+void require_answers(const study::Study& study, const simulation::SubjectModel& subject) {
+  const bool in_time = subject.explore_s < study.trials.explore_limit_s;
+  if (in_time || study.trials.on_timeout != study::OnTimeout::no_response) return;
+  throw StudyError(one_line(fmt::format(
+      "{}: /explore_s: {} s is not less than the study's explore_limit_s ({} s), after which "
+      "it takes no answer (on_timeout \"no-response\"); nobody would ever answer: explore for less",
+      subject.source, subject.explore_s, study.trials.explore_limit_s)));
+}
+
+BankedFeelings::BankedFeelings(const simulation::LabelledFields& fields, const study::Study& study,
+                               const simulation::SubjectModel& subject,
+                               const BankedFeelingsOptions& options,
+                               const study::Progress& progress)
+    : bank_(fields, study, subject, {options.explorations, options.seed, options.jobs}, progress) {
+  for (int i = 0; i < options.trainings; ++i) {
+    trainings_.push_back(
+        simulation::learn(fields, study, subject, training_seed(options.seed, i), options.jobs));
+  }
+}
+
+std::shared_ptr<const simulation::FeltKnowledge> BankedFeelings::knowledge(
+    std::uint64_t study_seed) const {
+  RandomStream random(study_seed, "power: which training");
+  return trainings_[random.below(trainings_.size())];
+}
+
+engine::FeltFeatures BankedFeelings::felt(const study::StimulusIndex& stimulus,
+                                          const FeltTrial& trial) const {
+  // With 64 random bits, the bias of the modulo is negligible.
+  const auto explorations = static_cast<std::uint64_t>(bank_.explorations());
+  return bank_.felt(bank_.place_of(stimulus))[trial.draw % explorations];
+}
+
+/// What the participants of one simulated study share.
+struct RehearsedStudy::Answering {
+  const simulation::SubjectModel& subject;
+  const std::shared_ptr<const simulation::FeltKnowledge>& learnt;
+  Hypothesis hypothesis;
+  std::uint64_t study_seed;
+};
+
+RehearsedStudy::RehearsedStudy(const study::Study& study, const simulation::SubjectModel& subject,
+                               const PrimaryTest& test, const Feelings& feelings,
+                               int most_participants)
+    : subject_(subject),
+      test_(test),
+      feelings_(feelings),
+      visits_(study.visits.count),
+      of_method_(stimuli_of_method(study, test.first)),
+      empty_(nobody_yet(study)) {
+  require_answers(study, subject);
+  const study::StudyKey key = study::simulated_study_key(study);
+  for (int i = 0; i < most_participants * visits_; ++i) {
+    schedules_.push_back(planned_visit(study, key, 1 + i / visits_, 1 + i % visits_));
+  }
+  if (test_.margin) set_margin();
+}
+
+void RehearsedStudy::set_margin() {
+  constexpr int kPeople = 400;
+  const double accuracy = accuracy_of(kPeople);
+  if (accuracy <= *test_.margin) {
+    throw UsageError(fmt::format(
+        "a margin of {:.4g} points is not less than the accuracy of methods that are alike "
+        "({:.1f} %), so that nothing is worse by it; register a smaller margin",
+        100.0 * *test_.margin, 100.0 * accuracy));
+  }
+  margin_loss_ = *test_.margin / accuracy;
+}
+
+RehearsedStudy::PlannedSchedule RehearsedStudy::planned_visit(const study::Study& study,
+                                                              const study::StudyKey& key,
+                                                              int number, int visit) const {
+  PlannedSchedule planned;
+  planned.schedule =
+      study::make_schedule(study, key.draw_of(number, study::Draws::rehearsal, visit));
+  for (const int class_index : planned.schedule.layout) {
+    planned.pictures.push_back(study.classes[class_index].label);
+  }
+  planned.order_block = study::order_block_of(study, key.stations, number, study::Draws::rehearsal);
+  planned.course = simulation::course_of(study, planned.schedule);
+  for (std::size_t i = 0; i < planned.course.size(); ++i) {
+    const int every = study.trials.break_every;
+    planned.break_before.push_back(every > 0 && i > 0 && static_cast<int>(i) % every == 0);
+  }
+  return planned;
+}
+
+double RehearsedStudy::accuracy_of(int people) const {
+  const auto size = std::min(static_cast<int>(schedules_.size()) / visits_, people);
+  analysis::Proportion right;
+  for (int made = 0; made < people; made += size) {
+    RandomStream seeds(0, "power: methods alike", static_cast<std::uint64_t>(made));
+    const analysis::Outcomes made_now = outcomes(size, Hypothesis::population, seeds.bits());
+    for (const analysis::TrialOutcome& trial : made_now.trials) {
+      if (trial.stimulus.method != test_.first) continue;
+      ++right.n;
+      if (trial.correct()) ++right.correct;
+    }
+  }
+  return right.share().value_or(0.0);
+}
+
+study::StimulusIndex RehearsedStudy::felt_stimulus(const study::StimulusIndex& presented,
+                                                   Hypothesis hypothesis,
+                                                   std::uint64_t draw) const {
+  if (hypothesis == Hypothesis::population && !test_.margin) return presented;
+  if (test_.estimand == study::Estimand::mean_accuracy) return of_method_[draw % of_method_.size()];
+  study::StimulusIndex felt = presented;
+  if (felt.method == test_.first || felt.method == test_.second) {
+    felt.method = draw % 2 == 0 ? test_.first : test_.second;
+  }
+  return felt;
+}
+
+/// One participant of a simulated study, with the random numbers that planning alone needs.
+struct RehearsedStudy::Person {
+  Person(const Answering& answering, int participant)
+      : number(participant),
+        knowledge(simulation::remembered(answering.learnt, answering.subject, answering.study_seed,
+                                         number)),
+        individual(answering.subject, answering.study_seed, number),
+        decision(individual, *knowledge),
+        draws(answering.study_seed, "power: feelings", static_cast<std::uint64_t>(number)) {}
+
+  int number;
+  std::shared_ptr<const simulation::FeltKnowledge> knowledge;
+  simulation::Individual individual;
+  simulation::FeltDecision decision;
+  /// One stream for each participant: making a stream takes longer than the rest of a trial.
+  RandomStream draws;
+  std::optional<RandomStream> losses;
+};
+
+int RehearsedStudy::lost(int position, double loss, Person& person, int right,
+                         const study::Schedule& schedule) {
+  if (loss <= 0.0 || schedule.layout[position] != right) return position;
+  if (person.losses->uniform() >= loss) return position;
+  return another_position(position, schedule.layout.size(), *person.losses);
+}
+
+void RehearsedStudy::add_participant(int number, const Answering& answering,
+                                     analysis::Outcomes& outcomes) const {
+  Person person(answering, number);
+  if (margin_loss_ > 0.0) {
+    person.losses.emplace(answering.study_seed, "power: losses",
+                          static_cast<std::uint64_t>(number));
+  }
+  for (int visit = 1; visit <= visits_; ++visit) add_visit(person, visit, answering, outcomes);
+}
+
+void RehearsedStudy::add_visit(Person& person, int visit, const Answering& answering,
+                               analysis::Outcomes& outcomes) const {
+  const int session = (person.number - 1) * visits_ + visit;
+  const PlannedSchedule& planned = schedules_[static_cast<std::size_t>(session) - 1];
+  const simulation::SeenPictures seen =
+      simulation::see(planned.pictures, answering.subject, person.individual, *person.knowledge);
+  simulation::Condition condition(answering.subject, answering.study_seed, person.number, visit,
+                                  static_cast<int>(planned.course.size()));
+  outcomes.sessions.push_back(
+      completed_session(person.number, session, visit, planned.order_block));
+  FeltTrial trial{answering.study_seed, person.number,
+                  simulation::SimulatedParticipant::trials_before(visit), 0};
+  for (std::size_t i = 0; i < planned.course.size(); ++i) {
+    const study::Trial& presented = planned.schedule.trials[i];
+    const bool is_scored = presented.role == study::Role::scored;
+    simulation::TrialPlace place = planned.course[i];
+    const int begun = static_cast<int>(i) + 1;
+    if (planned.break_before[i]) condition.rest(begun - 1);
+    ++trial.nth;
+    trial.draw = person.draws.bits();
+    trial.gain_db = presented.planes.front().gain_db;
+    const std::uint64_t instead = person.draws.bits();
+    if (!place.carries_over) condition.forget();
+    // What is not scored is answered only if the next answer leans on it.
+    if (!is_scored && !(answering.subject.serial.is_on() && place.carries_over)) continue;
+    const study::StimulusIndex felt =
+        felt_stimulus(presented.field(), answering.hypothesis, instead);
+    RandomStream random = simulation::stream_of_trial(trial.study_seed, simulation::kAnswerPurpose,
+                                                      trial.participant, trial.nth);
+    int position =
+        person.decision
+            .answer(feelings_.felt(felt, trial), seen, random, condition.before(begun, place.block))
+            .position;
+    if (is_scored) {
+      const bool is_worse =
+          answering.hypothesis == Hypothesis::null && presented.field().method == test_.first;
+      const double loss = is_worse ? margin_loss_ : 0.0;
+      position = lost(position, loss, person, presented.field().class_index, planned.schedule);
+      outcomes.trials.push_back(
+          answered_trial(person.number, session, visit, presented, planned.schedule, position));
+    }
+    if (!answering.subject.serial.is_on()) continue;
+    place.label = empty_.classes[felt.class_index];
+    simulation::end_trial(condition, place, position, seen, *person.knowledge);
+  }
+}
+
+analysis::Outcomes RehearsedStudy::outcomes(int participants, Hypothesis hypothesis,
+                                            std::uint64_t study_seed) const {
+  analysis::Outcomes outcomes = empty_;
+  const std::shared_ptr<const simulation::FeltKnowledge> learnt = feelings_.knowledge(study_seed);
+  const Answering answering{subject_, learnt, hypothesis, study_seed};
+  for (int number = 1; number <= participants; ++number) {
+    add_participant(number, answering, outcomes);
+  }
+  return outcomes;
+}
+
+}  // namespace touchtrial::planning::identification

@@ -1,0 +1,97 @@
+#include "protocols/session/plane_run.hpp"
+
+#include "study/protocol.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <variant>
+
+namespace touchtrial::session {
+namespace {
+
+// The stroke that is played: as instructions ask for.
+constexpr double kPlayedMmS = 100.0;
+constexpr double kPlayedLoadN = 0.7;
+constexpr double kShareOfPlane = 0.35;  ///< radius re the shorter side
+
+/// The force of a plane that is explored so.
+/// \param model  must outlive it
+std::unique_ptr<device::ForceSource> force_of(const study::Exploring& exploring,
+                                              const engine::RenderingModel& model,
+                                              const SessionDesk& desk,
+                                              const device::ServoOptions& servo) {
+  const SessionParts& parts = desk.parts();
+  const double stiffness_n_per_mm = parts.key.study.rendering.stiffness_n_per_mm;
+  const auto ticks = [&](double seconds) {
+    return std::max<std::int64_t>(1, std::llround(seconds * servo.rate_hz));
+  };
+  if (const auto* const clocked = std::get_if<study::InContact>(&exploring)) {
+    return std::make_unique<IntervalForce>(model, stiffness_n_per_mm, clocked->range,
+                                           ticks(clocked->seconds));
+  }
+  if (const auto* const played = std::get_if<study::Played>(&exploring)) {
+    return std::make_unique<PlayedForce>(model, parts.source.plane(), stiffness_n_per_mm,
+                                         ticks(played->seconds), servo.rate_hz);
+  }
+  return std::make_unique<ModelForce>(model);
+}
+
+}  // namespace
+
+Vec3 IntervalForce::force_n(const device::DeviceSample& sample) noexcept {
+  has_lifted_ = has_lifted_ || sample.position_mm.z > study::kLiftedMm;
+  if (!has_lifted_) return {};
+  const double wall_n = -stiffness_n_per_mm_ * sample.position_mm.z;
+  const double speed_mm_s = std::hypot(sample.velocity_mm_s.x, sample.velocity_mm_s.y);
+  const bool explores = wall_n >= range_.lightest_n && wall_n <= range_.strongest_n &&
+                        speed_mm_s >= range_.slowest_mm_s && speed_mm_s <= range_.fastest_mm_s;
+  if (explores && left_ > 0) --left_;
+  return model_.force_n(sample.position_mm, sample.velocity_mm_s, touch_);
+}
+
+Vec3 PlayedForce::force_n(const device::DeviceSample& /*sample*/) noexcept {
+  const double radius_mm = kShareOfPlane * std::min(plane_.width_mm(), plane_.height_mm());
+  const double turn = kPlayedMmS / radius_mm * static_cast<double>(tick_++) / rate_hz_;
+  if (left_ > 0) --left_;
+  const Vec3 at_mm{plane_.width_mm() / 2.0 + radius_mm * std::cos(turn),
+                   plane_.height_mm() / 2.0 + radius_mm * std::sin(turn),
+                   -kPlayedLoadN / stiffness_n_per_mm_};
+  const Vec3 whole_n = model_.force_n(at_mm, {}, touch_);
+  return {whole_n.x, whole_n.y, 0.0};
+}
+
+PlanesEnd run_planes(SessionDesk& desk, const study::Trial& trial,
+                     const device::ServoOptions& servo, const PlaneListener& listener) {
+  const SessionParts& parts = desk.parts();
+  const study::Study& study = parts.key.study;
+  const study::Ask ask = study.task->ask(study, trial.place);
+  const bool is_free = std::holds_alternative<study::Free>(ask.exploring);
+  const int of = static_cast<int>(trial.planes.size());
+  int pauses = desk.pauses();  // before the first plane
+  for (int i = 0; i < of; ++i) {
+    if (of > 1 && !desk.attend(IntervalStep{trial.place.trial, trial.role == study::Role::practice,
+                                            i + 1, of, trial.place.hand_off})) {
+      return PlanesEnd::broken_off;
+    }
+    if (i == 0) pauses = desk.pauses();
+    if (desk.pauses() != pauses) return PlanesEnd::paused;
+    const engine::RenderingModel model =
+        parts.source.plane_of(trial.planes[static_cast<std::size_t>(i)], parts.key);
+    const auto force = force_of(ask.exploring, model, desk, servo);
+    if (i == 0 && parts.explorer.in_real_time()) parts.source.fetch();
+    record::Trace* const trace = listener.plane_on();
+    if (trace == nullptr) return PlanesEnd::paused;
+    const Exploration done = desk.explore(*force, parts.source.plane(), servo, *trace);
+    listener.explored(done);
+    if (is_interrupted(done.servo)) return PlanesEnd::interrupted;
+    if (desk.was_cut_short()) return PlanesEnd::paused;
+    if (!is_free && !force->is_done()) return PlanesEnd::not_explored;
+    const bool time_is_up = is_free && done.servo.end == device::ServoEnd::time_limit;
+    const bool is_lost = study.trials.on_timeout == study::OnTimeout::no_response;
+    if (time_is_up && is_lost && trial.role != study::Role::practice) return PlanesEnd::time_is_up;
+  }
+  return PlanesEnd::explored;
+}
+
+}  // namespace touchtrial::session

@@ -1,0 +1,86 @@
+/// \file The planes of a trial, one after the other. Private to protocols/session.
+#pragma once
+
+#include "device/servo/servo.hpp"
+#include "engine/rendering/rendering_model.hpp"
+#include "protocols/session/session_desk.hpp"
+#include "study/schedule.hpp"
+
+#include <cstdint>
+#include <functional>
+
+namespace touchtrial::session {
+
+/// One plane, until its clock has run down, which runs while the hand explores as asked for
+/// (study::InContact). It comes on once the hand has been above it, so that no plane begins inside
+/// the wall.
+class IntervalForce final : public device::ForceSource {
+ public:
+  /// \param stiffness_n_per_mm  of the wall
+  /// \param ticks  of exploration, >= 1
+  IntervalForce(const engine::RenderingModel& model, double stiffness_n_per_mm,
+                const study::HandRange& range, std::int64_t ticks) noexcept
+      : model_(model), stiffness_n_per_mm_(stiffness_n_per_mm), range_(range), left_(ticks) {}
+
+  [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override;
+  [[nodiscard]] bool is_done() const noexcept override { return left_ <= 0; }
+
+ private:
+  engine::RenderingModel model_;
+  engine::Bristle touch_;
+  double stiffness_n_per_mm_;
+  study::HandRange range_;
+  std::int64_t left_;
+  bool has_lifted_ = false;
+};
+
+/// The lateral forces of a stroke in circles, whatever the device does: what motors sound like,
+/// with the hand off (study::Played). Stops by itself.
+class PlayedForce final : public device::ForceSource {
+ public:
+  PlayedForce(const engine::RenderingModel& model, const PlaneGeometry& plane,
+              double stiffness_n_per_mm, std::int64_t ticks, double rate_hz) noexcept
+      : model_(model),
+        plane_(plane),
+        stiffness_n_per_mm_(stiffness_n_per_mm),
+        left_(ticks),
+        rate_hz_(rate_hz) {}
+
+  [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override;
+  [[nodiscard]] bool is_done() const noexcept override { return left_ <= 0; }
+
+ private:
+  engine::RenderingModel model_;
+  engine::Bristle touch_;
+  PlaneGeometry plane_;
+  double stiffness_n_per_mm_;
+  std::int64_t left_;
+  double rate_hz_;
+  std::int64_t tick_ = 0;
+};
+
+/// How the planes of a trial ended.
+enum class PlanesEnd {
+  explored,      ///< all as asked for
+  time_is_up,    ///< of a plane that is explored freely, in a study that then takes no response
+  not_explored,  ///< a plane's time was up before its clock had run down
+  interrupted,   ///< by a fault or a comfort stop, in an exploration
+  paused,        ///< by the experimenter, in an exploration or between two; begin again after it
+  broken_off     ///< between two explorations: the session was stopped or left, or interrupted
+};
+
+/// What is called in each exploration.
+struct PlaneListener {
+  /// Before a plane comes on; gives the trace that the exploration fills. Null: the plane comes too
+  /// late, and the trial begins again.
+  std::function<record::Trace*()> plane_on;
+  std::function<void(const Exploration&)> explored;
+};
+
+/// Presents the planes of a trial.
+/// \param servo  of each exploration
+[[nodiscard]] PlanesEnd run_planes(SessionDesk& desk, const study::Trial& trial,
+                                   const device::ServoOptions& servo,
+                                   const PlaneListener& listener);
+
+}  // namespace touchtrial::session

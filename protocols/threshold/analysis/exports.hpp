@@ -1,0 +1,40 @@
+/// \file What `export` writes of thresholds: tables (columns: docs/thresholds.md), and a long table of
+/// trials with the R script that fits a probit model with a guess rate to it, participants being
+/// random. Source: Moscatelli, Mezzetti, Lacquaniti 2012, Journal of Vision 12(11):26.
+#pragma once
+
+#include "analysis/exports/trial_tables.hpp"
+#include "protocols/threshold/analysis/report.hpp"
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace touchtrial::analysis::threshold {
+
+/// thresholds.csv: one row for each participant and track.
+[[nodiscard]] DataTable thresholds_table(const ThresholdReport& report, bool simulated);
+
+/// tracks.csv: one row for each answered trial, as it was felt, of sessions that count. The track
+/// of a catch trial and of a trial of the control block is empty.
+[[nodiscard]] DataTable track_trials_table(const Outcomes& outcomes);
+
+/// What trials.csv and its like have in addition: track, standard and level_db.
+[[nodiscard]] std::vector<TrialColumn> threshold_trial_columns();
+
+/// The part of the script that is the same for every study: threshold_model_functions.R, built in.
+[[nodiscard]] std::string_view threshold_model_functions() noexcept;
+
+/// The text of threshold_model.R.
+[[nodiscard]] std::string threshold_model_script(const Outcomes& outcomes);
+
+/// Writes threshold_model.csv, threshold_model.R and threshold_model.md.
+/// \return the files, in the order written
+/// \throws UsageError for same or different, which has no guess rate
+/// \throws FileError as write_export does
+std::vector<std::filesystem::path> export_threshold_model(const record::StudyStore& store,
+                                                          const Outcomes& outcomes,
+                                                          const std::filesystem::path& folder);
+
+}  // namespace touchtrial::analysis::threshold

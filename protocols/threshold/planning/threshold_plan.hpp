@@ -1,0 +1,85 @@
+/// \file How narrow the interval of a mean threshold becomes with a number of participants, and how
+/// often a difference of two thresholds is found. Source: docs/planning.md, "Power of threshold
+/// studies".
+#pragma once
+
+#include "analysis/statistics/descriptive.hpp"
+#include "analysis/statistics/proportion.hpp"
+#include "protocols/threshold/planning/threshold_pool.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace touchtrial::planning::threshold {
+
+struct ThresholdPlan {
+  std::vector<int> participants;     ///< sizes, >= 2
+  int runs = 1000;                   ///< samples of each size, >= 1
+  std::uint64_t seed = 1;            ///< of the samples
+  std::optional<double> width_db{};  ///< wanted half-width
+  /// Indices of the standards whose thresholds are compared, first minus second.
+  std::optional<std::pair<std::size_t, std::size_t>> difference{};
+  double alpha = 0.05;  ///< of the comparison, two-sided
+};
+
+/// Half-widths of the 95 % t interval of a mean, over samples.
+struct HalfWidths {
+  std::optional<double> median;  ///< nothing: that many samples have no interval
+  std::optional<double> upper;   ///< nine tenths of the samples are narrower
+  int without = 0;               ///< samples with fewer than two thresholds, and so no interval
+  analysis::Proportion narrow;   ///< samples within the wanted half-width; of none without one
+  analysis::Interval narrow_interval{};  ///< Wilson's, 95 %
+};
+
+struct DifferencePower {
+  HalfWidths width;
+  analysis::Proportion significant;  ///< paired t test
+  analysis::Interval power{};        ///< Wilson's, 95 %
+  /// The same samples, with the pool's mean difference taken off everybody's.
+  analysis::Proportion false_alarms;
+  analysis::Interval type_one{};
+};
+
+struct ThresholdRow {
+  int trials = 0;
+  int participants = 0;
+  std::vector<HalfWidths> standards;
+  std::optional<DifferencePower> difference;
+};
+
+/// The participants who have both thresholds: first minus second.
+[[nodiscard]] std::vector<double> differences_in(const ThresholdPool& pool,
+                                                 const std::pair<std::size_t, std::size_t>& of);
+/// Those who have the threshold.
+[[nodiscard]] std::vector<double> thresholds_in(const ThresholdPool& pool, std::size_t standard);
+
+/// One row for each size. A sample draws participants of the pool, each anew from all of them, with
+/// the thresholds that they have.
+/// \pre the pool has at least one participant and the standards of the plan
+/// \param jobs  threads; results do not depend on them
+[[nodiscard]] std::vector<ThresholdRow> rows_of(const ThresholdPool& pool,
+                                                const ThresholdPlan& plan, int jobs);
+
+/// What the numbers are of, in words.
+struct ThresholdPlanSetting {
+  std::string study;
+  std::string subject;   ///< words_of the subject model
+  std::string unit;      ///< of a level
+  std::string device{};  ///< analysis::device_words of what the subject holds
+};
+
+/// For each number of trials a pool, and its rows.
+struct ThresholdPlanReport {
+  ThresholdPlanSetting setting;
+  ThresholdPlan plan;
+  std::vector<std::pair<ThresholdPool, std::vector<ThresholdRow>>> pools;
+};
+
+[[nodiscard]] std::string threshold_plan_text(const ThresholdPlanReport& report);
+[[nodiscard]] std::string threshold_plan_json(const ThresholdPlanReport& report);
+
+}  // namespace touchtrial::planning::threshold

@@ -1,0 +1,248 @@
+#include "analysis/planning/power_plan.hpp"
+#include "analysis/report/text_figures.hpp"
+#include "analysis/report/text_table.hpp"
+#include "core/strict_json.hpp"
+#include "protocols/threshold/planning/threshold_plan.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace touchtrial::planning::threshold {
+namespace {
+
+using analysis::MeanEstimate;
+using nlohmann::ordered_json;
+
+MeanEstimate any_mean(const std::vector<double>& values) {
+  constexpr double kMost = std::numeric_limits<double>::max();
+  return analysis::participant_mean(values, {-kMost, kMost});
+}
+
+std::string db_text(const std::optional<double>& value) {
+  return value ? fmt::format("{:.2f}", *value) : "-";
+}
+
+std::string share_text(const analysis::Proportion& share, const analysis::Interval& interval) {
+  if (share.n == 0) return "-";
+  return power_per_cent(*share.share()) + " " + power_range(interval);
+}
+
+std::string compared_words(const ThresholdPlanReport& report) {
+  const std::vector<std::string>& words = report.pools.front().first.standards;
+  return words[report.plan.difference->first] + " less " + words[report.plan.difference->second];
+}
+
+/// The error of a mean that the pool leaves, because it is finite.
+std::optional<double> pool_error(const MeanEstimate& mean) {
+  if (!mean.sd) return std::nullopt;
+  return *mean.sd / std::sqrt(static_cast<double>(mean.participants));
+}
+
+std::vector<std::string> pool_cells(int trials, const std::string& what,
+                                    const std::vector<double>& values) {
+  const MeanEstimate mean = any_mean(values);
+  return {std::to_string(trials),
+          what,
+          std::to_string(mean.participants),
+          db_text(mean.mean),
+          db_text(mean.sd),
+          db_text(pool_error(mean))};
+}
+
+std::string pools_text(const ThresholdPlanReport& report) {
+  analysis::TextTable table({"trials", "thresholds", "people", "mean, dB", "SD", "error of mean"},
+                            {1});
+  std::string censored;
+  for (const auto& [pool, rows] : report.pools) {
+    for (std::size_t i = 0; i < pool.standards.size(); ++i) {
+      table.add(pool_cells(pool.trials, pool.standards[i], thresholds_in(pool, i)));
+    }
+    if (report.plan.difference) {
+      table.add(
+          pool_cells(pool.trials, "difference", differences_in(pool, *report.plan.difference)));
+    }
+    censored += fmt::format(
+        "  {} trials: {} of {} tracks censored ({} below, {} above the levels); {} sessions not "
+        "finished\n",
+        pool.trials, pool.censored_below + pool.censored_above, pool.tracks, pool.censored_below,
+        pool.censored_above, pool.unfinished);
+  }
+  return table.text() + censored;
+}
+
+std::string widths_text(const ThresholdPlanReport& report) {
+  std::vector<std::string> header = {"trials", "participants", "threshold", "half-width, dB",
+                                     "90 % below"};
+  if (report.plan.width_db) {
+    header.push_back(fmt::format("within {:.4g} dB, %", *report.plan.width_db));
+  }
+  analysis::TextTable table(header, {2});
+  const auto add = [&](const ThresholdRow& row, const std::string& what, const HalfWidths& width) {
+    std::vector<std::string> cells = {std::to_string(row.trials), std::to_string(row.participants),
+                                      what, db_text(width.median), db_text(width.upper)};
+    if (report.plan.width_db) cells.push_back(share_text(width.narrow, width.narrow_interval));
+    table.add(std::move(cells));
+  };
+  for (const auto& [pool, rows] : report.pools) {
+    for (const ThresholdRow& row : rows) {
+      for (std::size_t i = 0; i < row.standards.size(); ++i) {
+        add(row, pool.standards[i], row.standards[i]);
+      }
+      if (row.difference) add(row, "difference", row.difference->width);
+    }
+  }
+  return table.text();
+}
+
+std::string difference_text(const ThresholdPlanReport& report) {
+  analysis::TextTable table({"trials", "participants", "power, %", "type-I error, %"}, {});
+  for (const auto& [pool, rows] : report.pools) {
+    for (const ThresholdRow& row : rows) {
+      table.add({std::to_string(row.trials), std::to_string(row.participants),
+                 share_text(row.difference->significant, row.difference->power),
+                 share_text(row.difference->false_alarms, row.difference->type_one)});
+    }
+  }
+  return table.text();
+}
+
+std::string stamp_of(const ThresholdPlanReport& report) {
+  return "SIMULATED: intervals and power given the assumed sensitivity of " +
+         report.setting.subject;
+}
+
+std::vector<std::string> sentences_of(const ThresholdPlanReport& report) {
+  std::vector<std::string> sentences = {
+      fmt::format("Samples of each size: {}, drawn from the simulated participants, each anew from "
+                  "all of them. Monte-Carlo intervals (Wilson's, 95 %) are of the samples alone: "
+                  "that the pool is finite is the error of the mean in the first table, and other "
+                  "seeds show it.",
+                  report.plan.runs),
+      "Half-width: of the 95 % t interval of the mean over participants; its median, and what nine "
+      "tenths of samples stay below. A participant's threshold is the mean of the own tracks that "
+      "are not censored; who has none is missing in a sample, as in a study. Add the participants "
+      "that you expect to lose."};
+  if (report.plan.difference) {
+    sentences.push_back(fmt::format(
+        "Power: paired t test of the difference, two-sided, level {:.4g}. Type-I error: the same "
+        "people, with their mean difference taken off everybody's.",
+        report.plan.alpha));
+  }
+  return sentences;
+}
+
+ordered_json number_json(const std::optional<double>& value) {
+  return value ? ordered_json(*value) : ordered_json(nullptr);
+}
+
+ordered_json share_json(const analysis::Proportion& share, const analysis::Interval& interval) {
+  return {{"samples", share.n},
+          {"count", share.correct},
+          {"share", number_json(share.share())},
+          {"low", interval.low},
+          {"high", interval.high}};
+}
+
+ordered_json widths_json(const HalfWidths& width) {
+  ordered_json object = {{"half_width_median", number_json(width.median)},
+                         {"half_width_90", number_json(width.upper)},
+                         {"samples_without_interval", width.without}};
+  if (width.narrow.n > 0) object["within"] = share_json(width.narrow, width.narrow_interval);
+  return object;
+}
+
+ordered_json mean_json(const std::string& what, const std::vector<double>& values) {
+  const MeanEstimate mean = any_mean(values);
+  return {{"of", what},
+          {"people", mean.participants},
+          {"mean", number_json(mean.mean)},
+          {"sd", number_json(mean.sd)},
+          {"error_of_mean", number_json(pool_error(mean))}};
+}
+
+ordered_json threshold_row_json(const ThresholdPool& pool, const ThresholdRow& row) {
+  ordered_json standards = ordered_json::array();
+  for (std::size_t i = 0; i < row.standards.size(); ++i) {
+    ordered_json one = {{"of", pool.standards[i]}};
+    one.update(widths_json(row.standards[i]));
+    standards.push_back(one);
+  }
+  ordered_json object = {{"participants", row.participants}, {"thresholds", standards}};
+  if (row.difference) {
+    ordered_json difference = widths_json(row.difference->width);
+    difference["power"] = share_json(row.difference->significant, row.difference->power);
+    difference["type_one_error"] =
+        share_json(row.difference->false_alarms, row.difference->type_one);
+    object["difference"] = difference;
+  }
+  return object;
+}
+
+ordered_json pool_json(const ThresholdPlanReport& report, const ThresholdPool& pool,
+                       const std::vector<ThresholdRow>& rows) {
+  ordered_json means = ordered_json::array();
+  for (std::size_t i = 0; i < pool.standards.size(); ++i) {
+    means.push_back(mean_json(pool.standards[i], thresholds_in(pool, i)));
+  }
+  ordered_json object = {{"trials", pool.trials},
+                         {"people", pool.people.size()},
+                         {"unfinished", pool.unfinished},
+                         {"tracks", pool.tracks},
+                         {"censored_below", pool.censored_below},
+                         {"censored_above", pool.censored_above},
+                         {"thresholds", means}};
+  if (report.plan.difference) {
+    object["difference"] =
+        mean_json(compared_words(report), differences_in(pool, *report.plan.difference));
+  }
+  object["sizes"] = ordered_json::array();
+  for (const ThresholdRow& row : rows) object["sizes"].push_back(threshold_row_json(pool, row));
+  return object;
+}
+
+}  // namespace
+
+std::string threshold_plan_text(const ThresholdPlanReport& report) {
+  const std::string stamp = analysis::wrapped("", stamp_of(report));
+  std::string text =
+      analysis::simulated_on_line(report.setting.device) + stamp +
+      fmt::format("study    {}\nunit     {}\n", report.setting.study, report.setting.unit);
+  text +=
+      analysis::heading("Simulated participants, by trials of a track", true) + pools_text(report);
+  text += analysis::heading("Intervals of mean thresholds", true) + widths_text(report);
+  if (report.plan.difference) {
+    text +=
+        analysis::heading("Difference: " + compared_words(report), true) + difference_text(report);
+  }
+  text += "\n";
+  for (const std::string& sentence : sentences_of(report)) {
+    text += analysis::wrapped("", sentence);
+  }
+  return text + stamp;
+}
+
+std::string threshold_plan_json(const ThresholdPlanReport& report) {
+  const ThresholdPlan& plan = report.plan;
+  ordered_json document = {{"simulated", true},
+                           {"stamp", stamp_of(report)},
+                           {"simulated_on", report.setting.device},
+                           {"study", report.setting.study},
+                           {"protocol", "threshold"},
+                           {"subject", report.setting.subject},
+                           {"unit", report.setting.unit},
+                           {"seed", plan.seed},
+                           {"samples", plan.runs},
+                           {"width_db", number_json(plan.width_db)}};
+  if (plan.difference) document["alpha"] = plan.alpha;
+  document["trials"] = ordered_json::array();
+  for (const auto& [pool, rows] : report.pools) {
+    document["trials"].push_back(pool_json(report, pool, rows));
+  }
+  document["notes"] = sentences_of(report);
+  return json_text(document);
+}
+
+}  // namespace touchtrial::planning::threshold

@@ -1,0 +1,140 @@
+#include "protocols/threshold/planning/threshold_pool.hpp"
+
+#include "analysis/planning/pool_sessions.hpp"
+#include "core/errors.hpp"
+#include "core/parallel.hpp"
+#include "protocols/procedures/estimates.hpp"
+#include "protocols/simulation/population.hpp"
+#include "protocols/threshold/study/threshold.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace touchtrial::planning::threshold {
+namespace {
+
+using procedures::Censored;
+using procedures::Threshold;
+using procedures::TrackTrial;
+using study::threshold::ThresholdOptions;
+
+/// The trials of each track.
+using TracksOfPerson = std::vector<std::vector<TrackTrial>>;
+
+study::Study with_trials(const study::Study& study, int trials) {
+  ThresholdOptions options = study::threshold::options_of(study);
+  options.track.trials = trials;
+  options.control_trials = 0;
+  study::Study changed = study::threshold::with_options(study, options);
+  try {
+    static_cast<void>(procedures::Block(study::threshold::block_settings(changed), Digest{}));
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(
+        fmt::format("--trials: {} are impossible for this study: {}; give another number", trials,
+                    error.what()));
+  }
+  return changed;
+}
+
+/// \return nothing if a session ended early
+std::optional<TracksOfPerson> tracks_of_person(const PoolSetting& setting, int number) {
+  TracksOfPerson tracks(study::threshold::block_settings(setting.key.study).tracks.size());
+  const auto note = [&tracks](const study::Order& order, const study::Trial& shown,
+                              const Answer& answer) {
+    if (!shown.level || shown.level->track < 1) return;
+    tracks[static_cast<std::size_t>(shown.level->track - 1)].push_back(
+        {static_cast<std::size_t>(shown.level->level),
+         order.schedule().choice_of(answer) == shown.right});
+  };
+  if (!hold_pool_sessions(setting, number, note)) return std::nullopt;
+  return tracks;
+}
+
+Threshold threshold_of(const std::vector<TrackTrial>& trials,
+                       const procedures::TrackSettings& track) {
+  if (track.procedure == "constant-stimuli") {
+    return procedures::likelihood_threshold(procedures::counts_of(track.levels, trials),
+                                            {.shape = track.grid.shape, .guess = track.grid.guess});
+  }
+  return procedures::posterior_threshold(procedures::posterior_of(track.levels, track.grid, trials),
+                                         track.levels);
+}
+
+std::vector<Threshold> thresholds_of(const TracksOfPerson& tracks,
+                                     const procedures::TrackSettings& settings) {
+  std::vector<Threshold> thresholds;
+  for (const std::vector<TrackTrial>& trials : tracks) {
+    thresholds.push_back(threshold_of(trials, settings));
+  }
+  return thresholds;
+}
+
+/// Adds a participant.
+void add_person(ThresholdPool& pool, const std::vector<Threshold>& thresholds,
+                std::size_t tracks_each) {
+  std::vector<std::optional<double>>& person = pool.people.emplace_back(pool.standards.size());
+  for (std::size_t standard = 0; standard < person.size(); ++standard) {
+    double sum = 0.0;
+    int n = 0;
+    for (std::size_t i = 0; i < tracks_each; ++i) {
+      const Threshold& threshold = thresholds[standard * tracks_each + i];
+      ++pool.tracks;
+      pool.censored_below += threshold.censored == Censored::below ? 1 : 0;
+      pool.censored_above += threshold.censored == Censored::above ? 1 : 0;
+      if (!threshold.level) continue;
+      sum += *threshold.level;
+      ++n;
+    }
+    if (n > 0) person[standard] = sum / n;
+  }
+}
+
+}  // namespace
+
+ThresholdPool simulated_thresholds(const study::StudyKey& key,
+                                   const session::StimulusSource& source,
+                                   const simulation::SubjectModel& subject, int trials,
+                                   const ThresholdPoolOptions& options,
+                                   const study::Progress& progress) {
+  const ThresholdOptions& registered = study::threshold::options_of(key.study);
+  if (registered.question == study::threshold::Question::same_different) {
+    throw UsageError(one_line(key.study.source +
+                              ": asks for same or different, which gives a d' at each level and no "
+                              "threshold; power needs another question"));
+  }
+  study::StudyKey changed = key;
+  changed.study = with_trials(key.study, trials);
+  const std::unique_ptr<const simulation::Population> population =
+      simulation::population_of({changed, source, subject, options.seed, options.jobs});
+  const PoolSetting setting{changed, source, subject, *population};
+  std::vector<std::optional<std::vector<Threshold>>> found(
+      static_cast<std::size_t>(options.people));
+  std::mutex counting;
+  int done = 0;
+  in_parallel(options.jobs, found.size(), [&](std::size_t i) {
+    const auto tracks = tracks_of_person(setting, static_cast<int>(i) + 1);
+    const auto& track = study::threshold::options_of(changed.study).track;
+    if (tracks) found[i] = thresholds_of(*tracks, track);
+    const std::lock_guard lock(counting);
+    if (progress) progress(++done, options.people);
+  });
+  ThresholdPool pool{.trials = trials, .standards = {}, .people = {}};
+  for (const auto& standard : study::threshold::standards_of(key.study)) {
+    pool.standards.push_back(study::threshold::words_of(key.study, standard));
+  }
+  for (const auto& thresholds : found) {
+    if (thresholds) {
+      add_person(pool, *thresholds, static_cast<std::size_t>(registered.tracks_each));
+    } else {
+      ++pool.unfinished;
+    }
+  }
+  return pool;
+}
+
+}  // namespace touchtrial::planning::threshold

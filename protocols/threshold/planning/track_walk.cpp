@@ -1,0 +1,145 @@
+#include "protocols/threshold/planning/track_walk.hpp"
+
+#include "core/errors.hpp"
+#include "core/named.hpp"
+#include "core/random.hpp"
+#include "core/strict_json.hpp"
+#include "core/text.hpp"
+#include "protocols/threshold/study/threshold.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace touchtrial::planning::threshold {
+namespace {
+
+using nlohmann::ordered_json;
+using procedures::Marginal;
+using procedures::Posterior;
+using study::threshold::Question;
+using study::threshold::ThresholdOptions;
+
+Belief belief_in(const Marginal& marginal, double mode) {
+  return {procedures::mean_of(marginal), procedures::sd_of(marginal), mode};
+}
+
+ObserverBelief belief_of(const Posterior& posterior) {
+  const procedures::Observer mode = posterior.mode();
+  return {belief_in(posterior.threshold(), mode.threshold),
+          belief_in(posterior.slope(), mode.slope), belief_in(posterior.lapse(), mode.lapse)};
+}
+
+/// Fills the levels, and the level's index before each answer.
+std::vector<std::size_t> follow(TrackWalk& walk) {
+  // Whoever asks twice must see the same order of constant stimuli.
+  RandomStream stream(0, "touchtrial procedure", static_cast<std::uint64_t>(walk.track));
+  const std::unique_ptr<procedures::Procedure> procedure =
+      procedures::make_procedure(walk.settings, stream);
+  std::vector<std::size_t> answered;
+  for (const bool correct : walk.answers) {
+    answered.push_back(procedure->next());
+    procedure->answer(correct);
+  }
+  for (const std::size_t level : answered) walk.levels.push_back(walk.settings.levels[level]);
+  if (walk.answers.size() < static_cast<std::size_t>(walk.settings.trials)) {
+    walk.levels.push_back(walk.settings.levels[procedure->next()]);
+  }
+  return answered;
+}
+
+void believe(TrackWalk& walk, const std::vector<std::size_t>& answered) {
+  Posterior posterior(walk.settings.levels, walk.settings.grid);
+  walk.prior = {posterior.threshold(), posterior.slope(), posterior.lapse()};
+  walk.beliefs.push_back(belief_of(posterior));
+  for (std::size_t i = 0; i < answered.size(); ++i) {
+    posterior.observe(answered[i], walk.answers[i]);
+    walk.beliefs.push_back(belief_of(posterior));
+  }
+}
+
+ordered_json belief_json(const Belief& belief) {
+  return {{"mean", belief.mean}, {"sd", belief.sd}, {"mode", belief.mode}};
+}
+
+std::string_view shape_word(procedures::Shape shape) {
+  using enum procedures::Shape;
+  static constexpr auto kNames = std::to_array<Named<procedures::Shape>>(
+      {{"logistic", logistic}, {"weibull", weibull}, {"normal", normal}});
+  return name_in(kNames, shape);
+}
+
+ordered_json walked_grid_json(const TrackWalk& walk) {
+  const procedures::ParameterGrid& grid = walk.settings.grid;
+  return {{"shape", shape_word(grid.shape)},
+          {"levels", walk.settings.levels},
+          {"threshold", grid.thresholds},
+          {"slope", grid.slopes},
+          {"guess", {grid.guess}},
+          {"lapse", grid.lapses},
+          {"prior",
+           {{"threshold", walk.prior[0].weights},
+            {"slope", walk.prior[1].weights},
+            {"lapse", walk.prior[2].weights}}}};
+}
+
+}  // namespace
+
+TrackWalk walked(const study::Study& study, int track, const std::vector<bool>& answers) {
+  const ThresholdOptions& options = study::threshold::options_of(study);
+  const std::vector<procedures::TrackSettings> tracks =
+      study::threshold::block_settings(study).tracks;
+  if (track < 1 || static_cast<std::size_t>(track) > tracks.size()) {
+    throw UsageError(
+        one_line(fmt::format("--track: {} is not a track of {}, which has {}; give 1{}", track,
+                             study.source, touchtrial::counted(std::ssize(tracks), "track"),
+                             tracks.size() > 1 ? fmt::format(" to {}", tracks.size()) : "")));
+  }
+  const auto index = static_cast<std::size_t>(track - 1);
+  const std::size_t standard = index / static_cast<std::size_t>(options.tracks_each);
+  TrackWalk walk;
+  walk.track = track;
+  walk.words = study::threshold::words_of(study, study::threshold::standards_of(study)[standard]);
+  walk.unit = study::threshold::unit_of_level(options);
+  walk.settings = tracks[index];
+  walk.answers = answers;
+  if (answers.size() > static_cast<std::size_t>(walk.settings.trials)) {
+    throw UsageError(fmt::format(
+        "--answers: has {} answers, more than the track's {} trials; give at most one for each",
+        answers.size(), walk.settings.trials));
+  }
+  const std::vector<std::size_t> answered = follow(walk);
+  if (options.question != Question::same_different) believe(walk, answered);
+  return walk;
+}
+
+std::string track_walk_json(const TrackWalk& walk) {
+  ordered_json posterior = nullptr;
+  if (!walk.beliefs.empty()) {
+    posterior = ordered_json::array();
+    for (const ObserverBelief& belief : walk.beliefs) {
+      posterior.push_back({{"threshold", belief_json(belief.threshold)},
+                           {"slope", belief_json(belief.slope)},
+                           {"lapse", belief_json(belief.lapse)}});
+    }
+  }
+  ordered_json answers = ordered_json::array();
+  for (const bool correct : walk.answers) answers.push_back(correct ? 1 : 0);
+  const ordered_json document = {
+      {"track", walk.words},
+      {"number", walk.track},
+      {"procedure", walk.settings.procedure},
+      {"trials", walk.settings.trials},
+      {"unit", walk.unit},
+      {"answers", answers},
+      {"levels", walk.levels},
+      {"grid", walk.beliefs.empty() ? ordered_json(nullptr) : walked_grid_json(walk)},
+      {"posterior", posterior}};
+  return json_text(document);
+}
+
+}  // namespace touchtrial::planning::threshold
