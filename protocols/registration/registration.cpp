@@ -4,6 +4,10 @@
 #include "protocols/identification/planning/planner.hpp"
 #include "protocols/identification/simulation/identifying_participant.hpp"
 #include "protocols/identification/study/identification.hpp"
+#include "protocols/rating/analysis/rating_analysis.hpp"
+#include "protocols/rating/planning/planner.hpp"
+#include "protocols/rating/simulation/rating_participant.hpp"
+#include "protocols/rating/study/rating.hpp"
 #include "protocols/threshold/analysis/threshold_analysis.hpp"
 #include "protocols/threshold/planning/planner.hpp"
 #include "protocols/threshold/simulation/comparing_participant.hpp"
@@ -26,6 +30,11 @@ void register_protocols() {
     simulation::add_population(threshold.name, simulation::threshold::make_population);
     analysis::add_analysis(threshold.name, analysis::threshold::threshold_analysis());
     planning::add_planner(threshold.name, planning::threshold::threshold_planner());
+    const study::Protocol& rating = study::rating::protocol();
+    study::add_protocol(rating);
+    simulation::add_population(rating.name, simulation::rating::make_population);
+    analysis::add_analysis(rating.name, analysis::rating::rating_analysis());
+    planning::add_planner(rating.name, planning::rating::rating_planner());
     return true;
   }();
   static_cast<void>(done);

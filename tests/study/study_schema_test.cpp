@@ -22,13 +22,13 @@ json schema() {
   return json::parse(text_of(read_file(root / "config/schema/study.schema.json")));
 }
 
-/// The schema, combined with its rules for one rendering model, and for every protocol but
-/// thresholds, whose section has tests of its own (tests/protocols/threshold).
+/// The schema, combined with its rules for one rendering model, and for the protocols without a
+/// section, which has tests of its own (tests/protocols).
 json schema_for(const std::string& model) {
   json whole = schema();
   for (const json& rule : whole["allOf"]) {
-    if (rule["if"]["properties"]["protocol"]["const"] != "threshold") continue;
-    whole["properties"]["classes"].update(rule["else"]["properties"]["classes"]);
+    if (!rule["if"]["properties"]["protocol"].contains("enum")) continue;
+    whole["properties"]["classes"].update(rule["then"]["properties"]["classes"]);
   }
   json& rendering = whole["properties"]["rendering"];
   const bool of_surface =

@@ -80,7 +80,25 @@ TEST_CASE("a preview of trials with several planes has every kind of screen") {
   }
 }
 
-/// A folder with the study above.
+TEST_CASE("a preview of ratings shows a picture with the scales, and tells no answer") {
+  const study::Study study =
+      study::load_study(fs::path(TOUCHTRIAL_SOURCE_DIR) / "config/realism.json");
+  const session::SessionTexts texts = app::session_texts(study);
+  std::vector<std::string> pictures;
+  for (const app::PreviewScreen& screen : app::preview_screens(study, texts)) {
+    if (!screen.step) continue;
+    CHECK_FALSE(std::holds_alternative<session::FeedbackStep>(*screen.step));
+    const auto* const answer = std::get_if<session::AnswerStep>(&*screen.step);
+    if (answer == nullptr) continue;
+    CHECK(std::holds_alternative<study::Rate>(answer->question));
+    pictures.push_back(answer->picture);
+  }
+  // Of practice, a trial, and a trial whose time is up.
+  const std::string& first = study.classes.front().label;
+  CHECK(pictures == std::vector<std::string>{study.practice.classes.front().label, first, first});
+}
+
+/// A folder with the study that asks everything.
 struct Drawer {
   Drawer() {
     fs::create_directory(folder.path() / "config");

@@ -262,6 +262,106 @@ TEST_CASE("a person pilots a session whose trials have several planes with the m
   CHECK(person.output().find("trial 6 acknowledged") != std::string::npos);
 }
 
+/// A study of two textures, each rated twice on two scales, and one plane without texture.
+/// \param points  of the first scale; 0: a line
+std::string study_of_ratings(const std::string& language, int points) {
+  const fs::path source = TOUCHTRIAL_SOURCE_DIR;
+  json study = json::parse(text_of(read_file(source / "config/realism.json", 1U << 20U)));
+  study["classes"].erase(2);
+  study["classes"].erase(2);
+  study["methods"] = {{{"name", "adaptive"}}};
+  const json words = {{"en", "rough"}, {"de", "rau"}};
+  study["rating"]["scales"] = {
+      {{"id", "fit"}, {"points", points}},
+      {{"id", "rough"}, {"text", words}, {"low", words}, {"high", words}, {"points", points}}};
+  study["trials"]["repeats"] = 2;
+  study["trials"]["catch"] = 1;
+  study["trials"]["practice"] = 1;
+  study["trials"]["answer_after"] = {{"contact_s", 0}, {"path_mm", 0}};
+  study["session"] = {{"handedness", false}, {"closing", false}, {"language", language}};
+  study.erase("registration");
+  return study.dump();
+}
+
+/// A person who rates in a window with the keyboard, or with the mouse all over it.
+class Rater {
+ public:
+  Rater(const Laboratory& lab, const VirtualScreen& screen, bool by_mouse, const std::string& size)
+      : screen_(screen),
+        by_mouse_(by_mouse),
+        program_({TOUCHTRIAL_PROGRAM, "run", lab.in("config/ratings.json"), "--participant", "P01",
+                  "--db", lab.in("rated.db"), "--no-sound", "--device", "mouse", "--pilot",
+                  "--window", size},
+                 {}) {}
+
+  /// \return the program's exit code
+  int sit_through() {
+    while (program_.listen(std::chrono::milliseconds(20))) react();
+    return program_.finish();
+  }
+  [[nodiscard]] const std::string& output() const { return program_.output(); }
+
+ private:
+  void react() {
+    const std::size_t last = program_.output().rfind("\nP01  ");
+    const std::string line = last == std::string::npos ? "" : program_.output().substr(last + 1);
+    if (line.find("  answering") != std::string::npos) by_mouse_ ? click_around() : rate();
+    screen_.type("Return");
+    screen_.wait_until_heard("Touchtrial");
+  }
+  /// A digit counts as a point; on a line the arrow sets the mark in its middle.
+  void rate() { screen_.type("4 Right Down 2 Right"); }
+  void click_around() {
+    for (int y = 200; y < 660; y += 12) {
+      screen_.move_pointer(860, y);
+      screen_.press();
+      screen_.release();
+    }
+  }
+
+  const VirtualScreen& screen_;
+  bool by_mouse_;
+  testing::ChildProcess program_;
+};
+
+/// The ratings of all trials, those of practice left out.
+std::vector<std::vector<double>> ratings_in(const Laboratory& lab) {
+  const auto store =
+      record::StudyStore::open(lab.in("rated.db"), record::StudyStore::Access::read_only);
+  std::vector<std::vector<double>> all;
+  for (const record::TrialRow& trial : analysis::open_trials(
+           store,
+           analysis::person_keys(store, study::load_study_key(lab.in("config/ratings.key")))))
+    all.push_back(ratings_of(trial.answer));
+  return all;
+}
+
+TEST_CASE("a person rates from the keyboard and with the mouse, in two languages and sizes") {
+  const bool by_mouse = GENERATE(false, true);
+  CAPTURE(by_mouse);
+  const auto screen = VirtualScreen::open("1280x720");
+  const Laboratory lab;
+  replace_file(lab.in("config/ratings.json"),
+               study_of_ratings(by_mouse ? "en" : "de", by_mouse ? 0 : 5));
+  succeeded(run_touchtrial(lab.folder.path(), {"prepare", lab.in("config/ratings.json")}));
+  Rater person(lab, *screen, by_mouse, by_mouse ? "1280x720" : "1024x700");
+  const int code = person.sit_through();
+  INFO(person.output());
+  REQUIRE(code == 0);
+  const auto ratings = ratings_in(lab);
+  REQUIRE(ratings.size() == 5);
+  for (const std::vector<double>& of_trial : ratings) {
+    REQUIRE(of_trial.size() == 2);
+    if (by_mouse) {
+      CHECK(of_trial[0] > 0.0);
+      CHECK(of_trial[1] < 1.0);
+    }
+    if (!by_mouse) CHECK(of_trial[0] >= 4.0);
+  }
+  succeeded(run_touchtrial(lab.folder.path(),
+                           {"verify", lab.in("rated.db"), "--key", lab.in("config/ratings.key")}));
+}
+
 TEST_CASE("a screen that was measured with a card has a known scale from then on") {
   const TempFolder folder;
   const EnvironmentVariable own("XDG_CONFIG_HOME", folder.path().c_str());

@@ -1,0 +1,107 @@
+#include "protocols/rating/analysis/page.hpp"
+
+#include "analysis/report/page/wording.hpp"
+#include "core/text.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace touchtrial::analysis::rating {
+namespace {
+
+std::string question_sentence(const RatingReport& report, const ScaleReport& scale) {
+  const std::string kind = scale.scale.points == 0
+                               ? "a line from 0 to 1"
+                               : fmt::format("points from 1 to {}", scale.scale.points);
+  return caption_of(report, scale,
+                    fmt::format("Participants rated: {} From \"{}\" to \"{}\", {}",
+                                scale.scale.text, scale.scale.low, scale.scale.high, kind)) +
+         ".";
+}
+
+std::string mean_words(const MeanEstimate& mean) {
+  if (mean.participants == 1) return "of one participant";
+  return fmt::format("mean of {} with its 95 % t interval {}",
+                     counted(mean.participants, "participant"),
+                     plain_range(mean.known_interval(), kRatingDecimals));
+}
+
+/// What the study is about: the first method less the second, or the only one.
+std::string result_sentence(const RatingReport& report, const ScaleReport& scale) {
+  const auto label = [&](int method) { return report.methods[static_cast<std::size_t>(method)]; };
+  if (scale.differences.empty()) {
+    if (scale.means.methods.empty()) return "";
+    const GroupMean& only = scale.means.methods.front();
+    if (!only.mean.mean) return "Nobody rated every texture, so there is no mean.";
+    return fmt::format("{}: {}, {}.", label(only.group),
+                       plain_figure(only.mean.mean, kRatingDecimals), mean_words(only.mean));
+  }
+  const MethodDifference& pair = scale.differences.front();
+  const std::string names = label(pair.first) + " less " + label(pair.second);
+  if (!pair.difference.mean) {
+    return names + ": nobody rated every texture by both, so there is no difference.";
+  }
+  std::string text =
+      fmt::format("{}: {}, {}", names, signed_plain_figure(pair.difference.mean, kRatingDecimals),
+                  mean_words(pair.difference));
+  if (pair.sign_flip) {
+    text += fmt::format("; {} by sign flips", p_phrase(pair.sign_flip->p));
+    if (scale.differences.size() > 1) {
+      text += fmt::format(", {} after Holm over {} pairs", p_figure(pair.sign_flip->holm),
+                          scale.differences.size());
+    }
+  }
+  return text + ".";
+}
+
+void add_headline(const RatingReport& report, Section& section) {
+  const auto say = [&](std::string text) {
+    if (!text.empty()) section.blocks.emplace_back(Cited{std::move(text)});
+  };
+  for (const ScaleReport& scale : report.scales) {
+    say(question_sentence(report, scale));
+    if (report.trials > 0) say(result_sentence(report, scale));
+  }
+  if (report.trials == 0) say("No trial counts, so there is no result.");
+}
+
+Section methods_section(const RatingReport& report) {
+  Section section{"analysis", "Analysis", {}, true};
+  section.blocks.emplace_back(
+      Cited{"The unit is the participant: repeats of a texture by a method are averaged first, and "
+            "a participant enters a mean, a difference or the agreement only with all that it is "
+            "over."});
+  if (report.without_answer > 0) {
+    section.blocks.emplace_back(Cited{fmt::format("{} without an answer {} no rating.",
+                                                  counted(report.without_answer, "trial"),
+                                                  report.without_answer == 1 ? "has" : "have")});
+  }
+  return section;
+}
+
+}  // namespace
+
+std::string caption_of(const RatingReport& report, const ScaleReport& scale,
+                       const std::string& caption) {
+  if (report.scales.size() < 2) return caption;
+  return fmt::format("{} (scale {})", caption, scale.scale.id);
+}
+
+std::string id_of(const RatingReport& report, const ScaleReport& scale, const std::string& name) {
+  if (report.scales.size() < 2) return name;
+  return fmt::format("{}-{}", name, &scale - report.scales.data() + 1);
+}
+
+Document rating_document(const RatingReport& report, const Provenance& provenance,
+                         const Pictures& pictures) {
+  Section result{"result", "Result", {}};
+  add_headline(report, result);
+  std::vector<Section> sections = {means_section(report),       differences_section(report),
+                                   reliability_section(report), use_section(report),
+                                   catches_section(report),     methods_section(report)};
+  return framed_document(report, std::move(result), std::move(sections), provenance, pictures);
+}
+
+}  // namespace touchtrial::analysis::rating

@@ -1,0 +1,507 @@
+#include "protocols/rating/analysis/rating_statistics.hpp"
+
+#include "analysis/statistics/common.hpp"
+#include "analysis/statistics/mean_test.hpp"
+#include "analysis/statistics/paired_tests.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <set>
+#include <stdexcept>
+
+#include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/non_central_t.hpp>
+#include <boost/math/tools/roots.hpp>
+
+namespace touchtrial::analysis::rating {
+namespace {
+
+/// A participant's ratings of each item that was rated.
+using Repeats = std::map<Item, std::vector<double>>;
+
+using Items = std::set<Item>;
+
+double length_of(const Interval& scale) {
+  return scale.high - scale.low;
+}
+
+/// All differences that are possible.
+Interval differences_on(const Interval& scale) {
+  return {-length_of(scale), length_of(scale)};
+}
+
+void require_on_scale(std::span<const RatedParticipant> participants, const Interval& scale) {
+  if (!std::isfinite(length_of(scale)) || length_of(scale) <= 0.0) {
+    throw std::invalid_argument("a scale needs two ends in ascending order");
+  }
+  const auto on_scale = [&](double value) { return value >= scale.low && value <= scale.high; };
+  for (const RatedParticipant& one : participants) {
+    if (!std::ranges::all_of(one.scored, on_scale, &ItemRating::value) ||
+        !std::ranges::all_of(one.catches, on_scale)) {
+      throw std::invalid_argument("a rating lies beyond the ends of its scale");
+    }
+  }
+}
+
+Repeats repeats_of(const RatedParticipant& participant, const Items& items) {
+  Repeats repeats;
+  for (const ItemRating& one : participant.scored) {
+    if (items.contains(one.item)) repeats[one.item].push_back(one.value);
+  }
+  return repeats;
+}
+
+std::vector<Repeats> repeats_of(std::span<const RatedParticipant> participants,
+                                const Items& items) {
+  std::vector<Repeats> all;
+  for (const RatedParticipant& one : participants) all.push_back(repeats_of(one, items));
+  return all;
+}
+
+/// \return a participant's mean of each item; nothing if one is missing
+std::optional<std::vector<double>> means_of(const Repeats& repeats, const Items& items) {
+  std::vector<double> means;
+  for (const Item& item : items) {
+    const auto found = repeats.find(item);
+    if (found == repeats.end()) return std::nullopt;
+    means.push_back(mean_of(found->second));
+  }
+  return means;
+}
+
+/// \return a participant's mean over the items; nothing if one is missing, or there is none
+std::optional<double> mean_over(const Repeats& repeats, const Items& items) {
+  const auto means = means_of(repeats, items);
+  if (!means || means->empty()) return std::nullopt;
+  return mean_of(*means);
+}
+
+MeanEstimate mean_over(std::span<const Repeats> participants, const Items& items,
+                       const Interval& scale, double level) {
+  std::vector<double> means;
+  for (const Repeats& repeats : participants) {
+    if (const auto mean = mean_over(repeats, items)) means.push_back(*mean);
+  }
+  return participant_mean(means, scale, level);
+}
+
+/// The items of each method, or of each class.
+std::map<int, Items> grouped(const Items& items, int Item::*by) {
+  std::map<int, Items> groups;
+  for (const Item& item : items) groups[item.*by].insert(item);
+  return groups;
+}
+
+std::vector<GroupMean> group_means(std::span<const Repeats> participants, const Items& items,
+                                   int Item::*by, const Interval& scale, double level) {
+  std::vector<GroupMean> means;
+  for (const auto& [group, own] : grouped(items, by)) {
+    means.push_back(
+        {group, static_cast<int>(own.size()), mean_over(participants, own, scale, level)});
+  }
+  return means;
+}
+
+/// The F above which there is the share `tail`.
+double f_beyond(double degrees, double degrees_below, double tail) {
+  return quantile(complement(boost::math::fisher_f_distribution<>(degrees, degrees_below), tail));
+}
+
+/// McGraw and Wong's degrees of freedom of the columns' and the residual mean square, weighed as
+/// the correlation weighs them.
+/// \return nothing with fewer than one
+std::optional<double> satterthwaite(const TwoWayMeanSquares& squares, double correlation) {
+  const double n = squares.rows;
+  const double k = squares.columns;
+  const double columns = k * correlation * squares.between_columns;
+  const double residual =
+      (n * (1.0 - correlation) + k * correlation * (n - 1.0)) * squares.residual;
+  const double below = (columns * columns + residual * residual / (n - 1.0)) / (k - 1.0);
+  const double sum = columns + residual;
+  if (below <= 0.0 || sum * sum < below) return std::nullopt;
+  return sum * sum / below;
+}
+
+/// The interval of single_agreement.
+std::optional<Interval> interval_of_single(const TwoWayMeanSquares& squares, double estimate,
+                                           double level) {
+  const auto degrees = satterthwaite(squares, estimate);
+  if (!degrees) return std::nullopt;
+  const double n = squares.rows;
+  const double k = squares.columns;
+  const double tail = 0.5 * (1.0 - level);
+  const double of_rows = n * squares.between_rows;
+  const double of_residual = n * squares.residual;
+  const double others = k * squares.between_columns + (k * n - k - n) * squares.residual;
+  const double f_low = f_beyond(n - 1.0, *degrees, tail);
+  const double f_high = f_beyond(*degrees, n - 1.0, tail);
+  return Interval{(of_rows - f_low * of_residual) / (f_low * others + of_rows),
+                  (f_high * of_rows - of_residual) / (others + f_high * of_rows)};
+}
+
+/// Spearman and Brown's correlation of means of k, from that of single ones.
+std::optional<double> of_means(double single, double k) {
+  const double below = 1.0 + (k - 1.0) * single;
+  if (below <= 0.0) return std::nullopt;
+  return k * single / below;
+}
+
+/// The noncentrality at which a t below `t` has the probability `share`.
+double noncentrality(double t, double degrees, double share) {
+  const auto excess = [&](double delta) {
+    return cdf(boost::math::non_central_t_distribution<>(degrees, delta), t) - share;
+  };
+  const double step = 1.0 + std::abs(t);
+  double low = t - step;
+  while (excess(low) < 0.0) low -= step;
+  double high = t + step;
+  while (excess(high) > 0.0) high += step;
+  std::uintmax_t steps = 200;
+  const auto [a, b] = boost::math::tools::toms748_solve(
+      excess, low, high, boost::math::tools::eps_tolerance<double>(45), steps);
+  return 0.5 * (a + b);
+}
+
+/// Student's t of the mean of differences, if they are not all the same.
+std::optional<double> t_of(std::span<const double> differences) {
+  if (differences.size() < 2) return std::nullopt;
+  const auto n = static_cast<double>(differences.size());
+  const double mean = without_noise(mean_of(differences));
+  const double sd = without_noise(standard_deviation(differences, mean, n - 1.0));
+  if (sd == 0.0) return std::nullopt;
+  return mean / sd * std::sqrt(n);
+}
+
+/// Somebody's absence may leave differences that are all the same, which have no d_z.
+std::optional<JackknifeEstimate> jackknifed(double d_z, std::span<const double> differences,
+                                            double level) {
+  if (differences.size() < 3) return std::nullopt;
+  const double root = std::sqrt(static_cast<double>(differences.size() - 1));
+  std::vector<double> without;
+  for (std::size_t i = 0; i < differences.size(); ++i) {
+    std::vector<double> others(differences.begin(), differences.end());
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    const auto t = t_of(others);
+    if (!t) return std::nullopt;
+    without.push_back(*t / root);
+  }
+  constexpr double kAny = std::numeric_limits<double>::max();
+  return jackknife(d_z, without, {-kAny, kAny}, level);
+}
+
+/// \return the p as the only one of its family
+std::optional<FamilyP> alone(std::optional<double> p) {
+  if (!p) return std::nullopt;
+  return FamilyP{*p, *p};
+}
+
+void adjust(std::span<MethodDifference> pairs, std::optional<FamilyP> MethodDifference::*test) {
+  std::vector<double> family;
+  for (const MethodDifference& pair : pairs) {
+    if (pair.*test) family.push_back((pair.*test)->p);
+  }
+  const std::vector<double> adjusted = holm_adjusted(family);
+  auto next = adjusted.begin();
+  for (MethodDifference& pair : pairs) {
+    if (pair.*test) (pair.*test)->holm = *next++;
+  }
+}
+
+/// The items of the first method whose class the second has too.
+Items shared_items(const Items& first, const Items& second) {
+  Items shared;
+  for (const Item& item : first) {
+    if (std::ranges::find(second, item.texture_class, &Item::texture_class) != second.end()) {
+      shared.insert(item);
+    }
+  }
+  return shared;
+}
+
+MethodDifference difference_of(std::span<const Repeats> participants, const Items& first,
+                               const Items& second, const Interval& scale, double level) {
+  const Items of_first = shared_items(first, second);
+  const Items of_second = shared_items(second, first);
+  std::vector<double> differences;
+  for (const Repeats& repeats : participants) {
+    const auto higher = mean_over(repeats, of_first);
+    const auto lower = mean_over(repeats, of_second);
+    if (higher && lower) differences.push_back(without_noise(*higher - *lower));
+  }
+  return {first.begin()->method,
+          second.begin()->method,
+          static_cast<int>(of_first.size()),
+          participant_mean(differences, differences_on(scale), level),
+          t_of(differences),
+          alone(t_test_p(differences, 0.0, Sides::two)),
+          alone(sign_flip_p(differences)),
+          standardised_difference(differences, level)};
+}
+
+ScaleUse use_of(const RatedParticipant& participant, const Interval& scale) {
+  std::vector<double> values;
+  for (const ItemRating& one : participant.scored) values.push_back(one.value);
+  const auto n = static_cast<int>(values.size());
+  const auto at = [&](double end) {
+    return static_cast<int>(std::ranges::count_if(
+        values, [end](double value) { return without_noise(value - end) == 0.0; }));
+  };
+  ScaleUse use{.at_low = {n, at(scale.low)}, .at_high = {n, at(scale.high)}};
+  if (n == 0) return use;
+  use.mean = mean_of(values);
+  if (n > 1) {
+    use.sd = without_noise(standard_deviation(values, *use.mean, n - 1.0));
+    use.narrow = *use.sd < kNarrowUse * length_of(scale);
+  }
+  std::ranges::sort(values);
+  const auto end = std::unique(values.begin(), values.end(),
+                               [](double a, double b) { return without_noise(b - a) == 0.0; });
+  use.distinct = static_cast<int>(end - values.begin());
+  return use;
+}
+
+void add(Proportion& all, const Proportion& own) {
+  all.n += own.n;
+  all.correct += own.correct;
+}
+
+}  // namespace
+
+RatingMeans rating_means(std::span<const RatedParticipant> participants,
+                         std::span<const Item> items, const Interval& scale, double level) {
+  require_on_scale(participants, scale);
+  const Items all(items.begin(), items.end());
+  const std::vector<Repeats> repeats = repeats_of(participants, all);
+  RatingMeans means;
+  for (const Item& item : all) {
+    means.items.push_back({item, mean_over(repeats, Items{item}, scale, level)});
+  }
+  means.methods = group_means(repeats, all, &Item::method, scale, level);
+  means.classes = group_means(repeats, all, &Item::texture_class, scale, level);
+  return means;
+}
+
+std::optional<TwoWayMeanSquares> two_way_mean_squares(std::span<const std::vector<double>> table) {
+  const std::size_t columns = table.empty() ? 0 : table.front().size();
+  std::vector<double> column_means(columns);
+  std::vector<double> row_means;
+  for (const std::vector<double>& row : table) {
+    require_finite(row, "an analysis of variance");
+    if (row.size() != columns) throw std::invalid_argument("a table has equally long rows");
+    for (std::size_t j = 0; j < columns; ++j) {
+      column_means[j] += row[j] / static_cast<double>(table.size());
+    }
+    if (columns > 0) row_means.push_back(mean_of(row));
+  }
+  if (table.size() < 2 || columns < 2) return std::nullopt;
+  const double mean = mean_of(row_means);
+  double rows_apart = 0.0;
+  double columns_apart = 0.0;
+  double rest = 0.0;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const double row = without_noise(row_means[i] - mean);
+    rows_apart += row * row;
+    for (std::size_t j = 0; j < columns; ++j) {
+      const double left = without_noise(table[i][j] - row_means[i] - column_means[j] + mean);
+      rest += left * left;
+    }
+  }
+  for (const double own : column_means) {
+    const double column = without_noise(own - mean);
+    columns_apart += column * column;
+  }
+  const auto n = static_cast<double>(table.size());
+  const auto k = static_cast<double>(columns);
+  return TwoWayMeanSquares{static_cast<int>(table.size()), static_cast<int>(columns),
+                           k * rows_apart / (n - 1.0), n * columns_apart / (k - 1.0),
+                           rest / ((n - 1.0) * (k - 1.0))};
+}
+
+std::optional<IntraclassCorrelation> single_agreement(const TwoWayMeanSquares& squares,
+                                                      double level) {
+  require_level(level);
+  const double n = squares.rows;
+  const double k = squares.columns;
+  const double all =
+      n * squares.between_rows + (k * n - k - n) * squares.residual + k * squares.between_columns;
+  if (all <= 0.0) return std::nullopt;
+  const double estimate = n * (squares.between_rows - squares.residual) / all;
+  return IntraclassCorrelation{estimate, interval_of_single(squares, estimate, level)};
+}
+
+std::optional<IntraclassCorrelation> average_agreement(const TwoWayMeanSquares& squares,
+                                                       double level) {
+  const auto single = single_agreement(squares, level);
+  if (!single) return std::nullopt;
+  const double k = squares.columns;
+  const auto estimate = of_means(single->estimate, k);
+  if (!estimate) return std::nullopt;
+  IntraclassCorrelation average{*estimate};
+  if (!single->interval) return average;
+  const auto low = of_means(single->interval->low, k);
+  const auto high = of_means(single->interval->high, k);
+  if (low && high) average.interval = Interval{*low, *high};
+  return average;
+}
+
+std::optional<double> one_way_correlation(std::span<const std::vector<double>> groups) {
+  double numbers = 0.0;
+  double squared_sizes = 0.0;
+  double sum = 0.0;
+  double used = 0.0;
+  for (const std::vector<double>& group : groups) {
+    require_finite(group, "an analysis of variance");
+    if (group.size() < 2) continue;
+    const auto size = static_cast<double>(group.size());
+    numbers += size;
+    squared_sizes += size * size;
+    sum += size * mean_of(group);
+    used += 1.0;
+  }
+  if (used < 2.0) return std::nullopt;
+  double between = 0.0;
+  double within = 0.0;
+  for (const std::vector<double>& group : groups) {
+    if (group.size() < 2) continue;
+    const double mean = mean_of(group);
+    const double apart = without_noise(mean - sum / numbers);
+    between += static_cast<double>(group.size()) * apart * apart;
+    for (const double value : group) {
+      const double left = without_noise(value - mean);
+      within += left * left;
+    }
+  }
+  between /= used - 1.0;
+  within /= numbers - used;
+  const double size = (numbers - squared_sizes / numbers) / (used - 1.0);
+  const double all = between + (size - 1.0) * within;
+  if (all <= 0.0) return std::nullopt;
+  return (between - within) / all;
+}
+
+Agreement agreement(std::span<const RatedParticipant> participants, std::span<const Item> items,
+                    double level) {
+  require_level(level);
+  const Items all(items.begin(), items.end());
+  Agreement result{.items = static_cast<int>(all.size())};
+  std::vector<std::vector<double>> table(all.size());
+  for (const Repeats& repeats : repeats_of(participants, all)) {
+    const auto means = means_of(repeats, all);
+    if (!means || means->empty()) {
+      ++result.left_out;
+      continue;
+    }
+    ++result.participants;
+    for (std::size_t i = 0; i < table.size(); ++i) table[i].push_back((*means)[i]);
+  }
+  result.mean_squares = two_way_mean_squares(table);
+  if (!result.mean_squares) return result;
+  result.single = single_agreement(*result.mean_squares, level);
+  result.average = average_agreement(*result.mean_squares, level);
+  return result;
+}
+
+RetestReliability retest_reliability(std::span<const RatedParticipant> participants,
+                                     std::span<const Item> items, double level) {
+  require_level(level);
+  RetestReliability result;
+  std::vector<double> known;
+  std::vector<double> z;
+  for (const Repeats& repeats : repeats_of(participants, Items(items.begin(), items.end()))) {
+    std::vector<std::vector<double>> groups;
+    for (const auto& [item, values] : repeats) groups.push_back(values);
+    const auto own = one_way_correlation(groups);
+    result.own.push_back(own);
+    if (!own) continue;
+    known.push_back(*own);
+    if (std::abs(*own) > kFurthestCorrelation) ++result.cut;
+    z.push_back(std::atanh(std::clamp(*own, -kFurthestCorrelation, kFurthestCorrelation)));
+  }
+  result.participants = static_cast<int>(known.size());
+  result.quartiles = quartiles(known);
+  const double furthest = std::atanh(kFurthestCorrelation);
+  const MeanEstimate mean = participant_mean(z, {-furthest, furthest}, level);
+  if (mean.mean) result.mean = std::tanh(*mean.mean);
+  if (const auto interval = mean.known_interval()) {
+    result.interval = Interval{std::tanh(interval->low), std::tanh(interval->high)};
+  }
+  return result;
+}
+
+ScaleUses scale_use(std::span<const RatedParticipant> participants, const Interval& scale) {
+  require_on_scale(participants, scale);
+  ScaleUses uses;
+  for (const RatedParticipant& one : participants) {
+    const ScaleUse use = use_of(one, scale);
+    add(uses.at_low, use.at_low);
+    add(uses.at_high, use.at_high);
+    uses.narrow += use.narrow ? 1 : 0;
+    uses.participants.push_back(use);
+  }
+  return uses;
+}
+
+std::optional<StandardisedDifference> standardised_difference(std::span<const double> differences,
+                                                              double level) {
+  require_level(level);
+  require_finite(differences, "a standardised difference");
+  const auto t = t_of(differences);
+  if (!t) return std::nullopt;
+  const auto n = static_cast<double>(differences.size());
+  StandardisedDifference result{*t / std::sqrt(n)};
+  result.jackknifed = jackknifed(result.d_z, differences, level);
+  if (std::abs(*t) > kFurthestT) return result;
+  const double tail = 0.5 * (1.0 - level);
+  result.interval = Interval{noncentrality(*t, n - 1.0, 1.0 - tail) / std::sqrt(n),
+                             noncentrality(*t, n - 1.0, tail) / std::sqrt(n)};
+  return result;
+}
+
+std::vector<MethodDifference> method_differences(std::span<const RatedParticipant> participants,
+                                                 std::span<const Item> items, const Interval& scale,
+                                                 double level) {
+  require_on_scale(participants, scale);
+  const Items all(items.begin(), items.end());
+  const std::vector<Repeats> repeats = repeats_of(participants, all);
+  const std::map<int, Items> methods = grouped(all, &Item::method);
+  std::vector<MethodDifference> pairs;
+  for (auto first = methods.begin(); first != methods.end(); ++first) {
+    for (auto second = std::next(first); second != methods.end(); ++second) {
+      pairs.push_back(difference_of(repeats, first->second, second->second, scale, level));
+    }
+  }
+  adjust(pairs, &MethodDifference::t_test);
+  adjust(pairs, &MethodDifference::sign_flip);
+  return pairs;
+}
+
+CatchComparison catch_comparison(std::span<const RatedParticipant> participants,
+                                 std::span<const Item> items, const Interval& scale, double level) {
+  require_on_scale(participants, scale);
+  const Items all(items.begin(), items.end());
+  CatchComparison result;
+  std::vector<double> catches;
+  std::vector<double> differences;
+  for (std::size_t i = 0; i < participants.size(); ++i) {
+    std::vector<double> means;
+    for (const auto& [item, values] : repeats_of(participants[i], all)) {
+      means.push_back(mean_of(values));
+    }
+    if (means.empty() || participants[i].catches.empty()) continue;
+    const CatchRating own{static_cast<int>(i), mean_of(participants[i].catches), mean_of(means)};
+    result.participants.push_back(own);
+    catches.push_back(own.catches);
+    differences.push_back(without_noise(own.scored - own.catches));
+    if (differences.back() <= 0.0) ++result.not_lower;
+  }
+  result.catches = participant_mean(catches, scale, level);
+  result.difference = participant_mean(differences, differences_on(scale), level);
+  return result;
+}
+
+}  // namespace touchtrial::analysis::rating

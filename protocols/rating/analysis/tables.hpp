@@ -1,0 +1,18 @@
+/// \file The tables that `export --format csv` writes for ratings. Columns: docs/rating.md.
+#pragma once
+
+#include "analysis/exports/trial_tables.hpp"
+#include "analysis/outcomes/outcomes.hpp"
+
+#include <vector>
+
+namespace touchtrial::analysis::rating {
+
+/// ratings.csv: one row for each scale of each answered trial, scored or catch, of sessions that
+/// count. Class, method and exemplar of a catch trial are empty.
+[[nodiscard]] DataTable ratings_table(const Outcomes& outcomes);
+
+/// What trials.csv and its like have in addition: the rating on each scale.
+[[nodiscard]] std::vector<TrialColumn> rating_columns(const Outcomes& outcomes);
+
+}  // namespace touchtrial::analysis::rating

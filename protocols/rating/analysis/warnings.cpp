@@ -1,0 +1,110 @@
+#include "analysis/statistics/common.hpp"
+#include "core/text.hpp"
+#include "protocols/rating/analysis/report.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace touchtrial::analysis::rating {
+namespace {
+
+constexpr double kUsualLevel = 0.05;
+/// Somebody's scatter over the median of all: people who scatter alike exceed it in one study of
+/// 200. Source: docs/rating.md, "Agreement".
+constexpr double kUnevenScatter = 2.5;
+
+using Sentences = std::vector<std::string>;
+
+void warn_of_catches(const RatingReport& report, const ScaleReport& scale, Sentences& all) {
+  std::vector<std::string> names;
+  for (const CatchRating& one : scale.catches.participants) {
+    if (without_noise(one.scored - one.catches) > 0.0) continue;
+    names.push_back(report.people[static_cast<std::size_t>(one.participant)]);
+  }
+  const int n = static_cast<int>(scale.catches.participants.size());
+  const auto interval = scale.catches.difference.known_interval();
+  if (n > 0 && (scale.catches.difference.mean <= 0.0 || (interval && interval->low <= 0.0))) {
+    all.push_back(fmt::format(
+        "Catch trials, in which there is nothing to feel, are not rated lower than textures as far "
+        "as {} tell: ratings may be of the pictures alone.",
+        counted(n, "participant")));
+  }
+  if (names.empty()) return;
+  all.push_back(fmt::format("Catch trials are rated at least as high as textures by {}.",
+                            listed(names, " and ")));
+}
+
+/// The least sign-flip p of so many people, adjusted for all pairs, is above the usual level.
+void warn_of_few(const ScaleReport& scale, Sentences& all) {
+  if (scale.differences.empty()) return;
+  const auto pairs = static_cast<double>(scale.differences.size());
+  int fewest = scale.differences.front().difference.participants;
+  for (const MethodDifference& one : scale.differences) {
+    fewest = std::min(fewest, one.difference.participants);
+  }
+  if (fewest == 0 || pairs * std::ldexp(1.0, 1 - fewest) <= kUsualLevel) return;
+  all.push_back(fmt::format(
+      "With {} sign flips cannot give a p of {} or less{}, whatever the difference.",
+      counted(fewest, "participant"), kUsualLevel,
+      pairs > 1.0 ? fmt::format(" for the first of {} pairs", scale.differences.size()) : ""));
+}
+
+void warn_of_narrow_use(const RatingReport& report, const ScaleReport& scale, Sentences& all) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < report.people.size(); ++i) {
+    if (scale.use.participants[i].narrow) names.push_back(report.people[i]);
+  }
+  if (names.empty()) return;
+  all.push_back(fmt::format(
+      "Almost none of the scale is used by {} (standard deviation below {:.0f} % of its length): "
+      "such answers can hardly tell textures or methods apart.",
+      listed(names, " and "), 100.0 * kNarrowUse));
+}
+
+void warn_of_scatter(const ScaleReport& scale, Sentences& all) {
+  std::vector<double> known;
+  for (const auto& one : scale.scatter) {
+    if (one) known.push_back(*one);
+  }
+  const Quartiles spread = quartiles(known);
+  if (known.size() < 3 || !scale.agreement.single) return;
+  const double most = *std::ranges::max_element(known);
+  if (most <= kUnevenScatter * *spread.median) return;
+  all.push_back(
+      "People scatter by very different amounts about what they have in common. The intervals of "
+      "ICC(2,1) and ICC(2,k) assume that they scatter alike, and are too narrow.");
+}
+
+void warn_of_left_out(const ScaleReport& scale, Sentences& all) {
+  if (scale.agreement.left_out == 0) return;
+  all.push_back(fmt::format(
+      "{} without a rating of every texture by every method; means over several textures and the "
+      "agreement leave them out.",
+      scale.agreement.left_out == 1
+          ? "One participant is"
+          : fmt::format("{} participants are", scale.agreement.left_out)));
+}
+
+}  // namespace
+
+std::vector<std::string> rating_warnings(const RatingReport& report) {
+  Sentences all;
+  if (report.people.empty()) return all;
+  for (const ScaleReport& scale : report.scales) {
+    Sentences own;
+    warn_of_catches(report, scale, own);
+    warn_of_few(scale, own);
+    warn_of_narrow_use(report, scale, own);
+    warn_of_scatter(scale, own);
+    warn_of_left_out(scale, own);
+    for (std::string& sentence : own) {
+      all.push_back(report.scales.size() > 1 ? fmt::format("Scale {}: {}", scale.scale.id, sentence)
+                                             : std::move(sentence));
+    }
+  }
+  return all;
+}
+
+}  // namespace touchtrial::analysis::rating

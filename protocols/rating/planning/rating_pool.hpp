@@ -1,0 +1,64 @@
+/// \file Ratings of simulated participants, from whom studies of any size are drawn.
+/// Source: docs/planning.md, "Power of rating studies".
+#pragma once
+
+#include "analysis/planning/pool_sessions.hpp"
+#include "analysis/statistics/proportion.hpp"
+#include "protocols/session/stimulus_source.hpp"
+#include "protocols/simulation/subject_model.hpp"
+#include "study/prepare.hpp"
+#include "study/study_key.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial::planning::rating {
+
+/// What is compared: indices of two methods of the study.
+struct MethodPair {
+  int first = 0;
+  int second = 1;
+};
+
+/// What one participant's ratings on one scale come to, as in `report`: each texture weighs the
+/// same. Nothing if a texture was never rated.
+struct PooledRating {
+  std::optional<double> first;       ///< mean with the first method
+  std::optional<double> second;      ///< with the second
+  std::optional<double> difference;  ///< first less second
+
+  friend bool operator==(const PooledRating&, const PooledRating&) = default;
+};
+
+/// The ratings on one scale, in its units.
+struct PooledScale {
+  std::string id;
+  analysis::Interval ends;
+  std::vector<PooledRating> people;  ///< the same, in the same order, on every scale
+};
+
+/// Participants who each did all sessions of the study.
+struct RatingPool {
+  std::vector<PooledScale> scales;  ///< of the study
+  int people = 0;
+  int unfinished = 0;  ///< participants whose sessions did not reach their end; not among `people`
+};
+
+struct RatingPoolOptions {
+  int people = 100;        ///< >= 2
+  std::uint64_t seed = 1;  ///< of everything random in participants, as in `simulate --seed`
+  int jobs = 1;            ///< threads; results do not depend on them
+};
+
+/// Simulates sessions.
+/// \param pair  two different methods of the study
+/// \param progress  called after each participant, from one thread at a time
+[[nodiscard]] RatingPool simulated_ratings(const study::StudyKey& key,
+                                           const session::StimulusSource& source,
+                                           const simulation::SubjectModel& subject,
+                                           const MethodPair& pair, const RatingPoolOptions& options,
+                                           const study::Progress& progress = {});
+
+}  // namespace touchtrial::planning::rating

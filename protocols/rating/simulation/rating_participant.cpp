@@ -1,0 +1,136 @@
+#include "protocols/rating/simulation/rating_participant.hpp"
+
+#include "protocols/simulation/own_knowledge.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+namespace touchtrial::simulation::rating {
+namespace {
+
+constexpr double kQuickestThoughtS = 1.5;
+constexpr double kSlowestThoughtS = 6.0;
+/// The distance beyond the noise, in its standard deviations, at which a fit has fallen to 1/e.
+constexpr double kScale = 1.5;
+// How people differ in their use of a scale.
+constexpr double kShiftSd = 0.08;
+constexpr double kLogStretchSd = 0.25;
+
+Expectations expectations_of(const PopulationSetting& setting) {
+  const study::Study& study = setting.key.study;
+  const LabelledFields fields(setting.key, setting.source);
+  const auto learnt = learn(fields, study, setting.subject, setting.seed, setting.jobs);
+  const auto is_control = [&](const LabelledField& field) {
+    const auto method = static_cast<std::size_t>(field.stimulus.method);
+    return study.methods[method].control != engine::Control::none;
+  };
+  const bool only_controls = std::ranges::all_of(fields.all(), is_control);
+  Expectations expectations;
+  std::map<std::string, double> counts;
+  for (const engine::FeltExample& example : learnt->examples) {
+    const LabelledField& field = fields.all()[static_cast<std::size_t>(example.label)];
+    if (is_control(field) && !only_controls) continue;
+    engine::FeltFeatures& sum = expectations[field.label];
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += example.features[i];
+    ++counts[field.label];
+  }
+  for (auto& [label, sum] : expectations) {
+    for (double& feature : sum) feature /= counts[label];
+  }
+  return expectations;
+}
+
+class RatingPopulation final : public Population {
+ public:
+  explicit RatingPopulation(const PopulationSetting& setting)
+      : study_(setting.key.study),
+        subject_(setting.subject),
+        seed_(setting.seed),
+        expectations_(expectations_of(setting)) {}
+
+  std::unique_ptr<SimulatedParticipant> participant(int number) const override {
+    return std::make_unique<RatingParticipant>(subject_, study_, expectations_, seed_, number);
+  }
+
+ private:
+  const study::Study& study_;
+  const SubjectModel& subject_;
+  std::uint64_t seed_;
+  Expectations expectations_;
+};
+
+double deviation(const char* purpose, std::uint64_t seed, int number) {
+  return RandomStream(seed, purpose, static_cast<std::uint64_t>(number)).normal();
+}
+
+double on_scale(const study::Scale& scale, double share) {
+  const double value = scale.min() + share * (scale.max() - scale.min());
+  if (scale.points > 0) return std::round(value);
+  return std::round(value / study::kLineStep) * study::kLineStep;
+}
+
+}  // namespace
+
+RatingParticipant::RatingParticipant(const SubjectModel& subject, const study::Study& study,
+                                     const Expectations& expectations, std::uint64_t seed,
+                                     int number)
+    : SimulatedParticipant(subject, seed, number),
+      subject_(subject),
+      expectations_(expectations),
+      scales_(study::rating::scales_of(study)),
+      seed_(seed),
+      number_(number),
+      individual_(subject, seed, number),
+      condition_(subject, seed, number),
+      shift_(kShiftSd * deviation("subject: rating shift", seed, number)),
+      stretch_(std::exp(kLogStretchSd * deviation("subject: rating stretch", seed, number))) {}
+
+void RatingParticipant::begin_visit(int visit, TrialCourse course) {
+  condition_ = Condition(subject_, seed_, number_, visit, static_cast<int>(course.size()));
+}
+
+double RatingParticipant::fit_of(engine::FeltFeatures felt, double noise_factor,
+                                 RandomStream& random) const {
+  const engine::FeltNoise noise = individual_.noise();
+  const double shared = noise_factor * noise.common * random.normal();
+  const double sd = std::max(1e-9, std::hypot(noise.own, noise.common));
+  if (individual_.floor()) individual_.floor()->apply_to(felt);
+  for (double& feature : felt) feature += shared + noise_factor * noise.own * random.normal();
+  const auto expected = expectations_.find(picture_);
+  if (expected == expectations_.end()) return 0.5;
+  engine::FeltFeatures wanted = expected->second;
+  if (individual_.floor()) individual_.floor()->apply_to(wanted);
+  double squares = 0.0;
+  for (std::size_t i = 0; i < felt.size(); ++i) {
+    squares += (felt[i] - wanted[i]) * (felt[i] - wanted[i]) / (sd * sd);
+  }
+  // The noise alone makes a mean square of 1.
+  const double beyond = std::max(0.0, squares / static_cast<double>(felt.size()) - 1.0);
+  return std::exp(-std::sqrt(beyond) / kScale);
+}
+
+ParticipantAnswer RatingParticipant::choose(const engine::FeltFeatures& felt,
+                                            RandomStream& random) {
+  const Moment moment = condition_.before(begun(), 0);
+  const bool lapses = random.uniform() < moved(individual_.lapse(), moment.lapse_log_odds);
+  const double thought_s = random.uniform(kQuickestThoughtS, kSlowestThoughtS);
+  const double fit = fit_of(felt, moment.noise_factor, random);
+  ParticipantAnswer answer;
+  answer.thought = std::chrono::milliseconds(std::llround(thought_s * 1000.0));
+  for (const study::Scale& scale : scales_) {
+    const double anything = random.uniform();
+    const double own = std::clamp(0.5 + shift_ + stretch_ * (fit - 0.5), 0.0, 1.0);
+    answer.ratings.push_back(on_scale(scale, lapses ? anything : own));
+  }
+  condition_.forget();
+  return answer;
+}
+
+std::unique_ptr<const Population> make_population(const PopulationSetting& setting) {
+  return std::make_unique<RatingPopulation>(setting);
+}
+
+}  // namespace touchtrial::simulation::rating

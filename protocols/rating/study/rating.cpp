@@ -1,0 +1,328 @@
+#include "protocols/rating/study/rating.hpp"
+
+#include "core/strict_json.hpp"
+#include "study/languages.hpp"
+#include "study/random_orders.hpp"
+#include "study/study_sections.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace touchtrial::study::rating {
+namespace {
+
+constexpr const char* kOwnScale = "fit";  ///< whose words the languages have
+
+RatedScale read_scale(const JsonValue& place) {
+  const JsonObject object = place.object({"id", "text", "low", "high", "points"});
+  RatedScale scale{.id = read_plain_name(object.at("id")), .text = {}, .low = {}, .high = {}};
+  const bool may_omit = scale.id == kOwnScale;
+  const auto read = [&](const char* key, Translated& words) {
+    if (const auto member = object.find(key)) {
+      words = read_translated(*member);
+    } else if (!may_omit) {
+      static_cast<void>(object.at(key));
+    }
+  };
+  read("text", scale.text);
+  read("low", scale.low);
+  read("high", scale.high);
+  if (const auto points = object.find("points")) {
+    scale.points = static_cast<int>(points->integer(0, kMaxPoints));
+    if (scale.points == 1) points->refuse("must be 0, a line, or at least 2");
+  }
+  return scale;
+}
+
+RatingOptions read_options(const JsonValue& section) {
+  const JsonObject object = section.object({"scales", "anchors"});
+  RatingOptions options;
+  if (const auto anchors = object.find("anchors")) options.anchors = anchors->truth();
+  const auto scales = object.find("scales");
+  if (!scales) return options;
+  options.scales.clear();
+  for (const JsonValue& item : scales->items(1, kMaxScales)) {
+    RatedScale scale = read_scale(item);
+    if (std::ranges::count(options.scales, scale.id, &RatedScale::id) > 0) {
+      item.refuse_below("/id",
+                        in_quotes(scale.id) + " is the id of another scale; ids must be unique");
+    }
+    options.scales.push_back(std::move(scale));
+  }
+  return options;
+}
+
+/// Deals a class's images like a shuffled pack of cards: all are used before any repeats.
+class ImageDeck {
+ public:
+  explicit ImageDeck(std::size_t images) : images_(images) {}
+
+  int next(RandomStream& random) {
+    if (left_.empty()) {
+      left_.resize(images_);
+      std::iota(left_.begin(), left_.end(), 0);
+      shuffle(std::span<int>(left_), random);
+    }
+    const int image = left_.back();
+    left_.pop_back();
+    return image;
+  }
+
+ private:
+  std::size_t images_;
+  std::vector<int> left_;
+};
+
+Trial rated_trial(int class_index, int block) {
+  Trial trial;
+  trial.place.block = block;
+  trial.planes.push_back({.field = {class_index, 0, 0}});
+  trial.picture = class_index;
+  return trial;
+}
+
+/// Every texture by each of these methods once, in random order.
+std::vector<Trial> drawn_pass(const Study& study, int block, const std::vector<int>& methods,
+                              RandomStream& random, std::vector<ImageDeck>& decks) {
+  std::vector<Trial> trials;
+  for (int shown = 0; shown < static_cast<int>(study.classes.size()); ++shown) {
+    for (const int method : methods) {
+      Trial& trial = trials.emplace_back(rated_trial(shown, block));
+      Plane& plane = trial.planes.front();
+      plane.field.method = method;
+      plane.field.exemplar = decks[static_cast<std::size_t>(shown)].next(random);
+      if (study.trials.rove_db == 0.0) continue;
+      plane.gain_db = study.trials.own_gain_db() + drawn_rove_db(study.trials.rove_db, random);
+    }
+  }
+  shuffle(std::span<Trial>(trials), random);
+  return trials;
+}
+
+/// The trials of a block: passes, in each of which every texture comes once.
+std::vector<Trial> drawn_block(const Study& study, const ScheduleDraw& draw, int block,
+                               RandomStream& random, std::vector<ImageDeck>& decks) {
+  const bool by_method = study.trials.blocks == Blocks::by_method;
+  std::vector<int> methods = williams_row(study.presented_methods(), draw.method_order);
+  if (by_method) methods = {methods[static_cast<std::size_t>(block)]};
+  std::vector<Trial> trials;
+  for (int pass = 0; pass < (by_method ? study.trials.repeats : 1); ++pass) {
+    std::ranges::move(drawn_pass(study, block, methods, random, decks), std::back_inserter(trials));
+  }
+  return trials;
+}
+
+/// Planes without texture, each under the picture of a random class, at random places but the
+/// first.
+void add_catch_trials(const Study& study, int count, RandomStream& random,
+                      std::vector<Trial>& trials) {
+  for (int i = 0; i < count; ++i) {
+    const auto shown = static_cast<int>(random.below(study.classes.size()));
+    const auto at = static_cast<std::ptrdiff_t>(1 + random.below(trials.size()));
+    Trial trial = rated_trial(shown, trials[static_cast<std::size_t>(at - 1)].place.block);
+    trial.role = Role::catch_trial;
+    trial.planes.front() = {.field = {}, .blank = true};
+    trials.insert(trials.begin() + at, std::move(trial));
+  }
+}
+
+void number(std::vector<Trial>& trials, int first) {
+  for (Trial& trial : trials) trial.place.trial = first++;
+}
+
+std::vector<ImageDeck> decks_of(const Study& study) {
+  std::vector<ImageDeck> decks;
+  for (const StudyClass& one : study.classes) decks.emplace_back(one.images.size());
+  return decks;
+}
+
+int blocks_of(const Study& study) {
+  return study.trials.blocks == Blocks::by_method ? study.presented_methods()
+                                                  : study.trials.repeats;
+}
+
+Schedule drawn_schedule(const Study& study, const ScheduleDraw& draw) {
+  RandomStream random(draw.secret, "rating: order", static_cast<std::uint64_t>(draw.visit));
+  std::vector<ImageDeck> decks = decks_of(study);
+  Schedule schedule;
+  for (int block = 0; block < blocks_of(study); ++block) {
+    std::ranges::move(drawn_block(study, draw, block, random, decks),
+                      std::back_inserter(schedule.trials));
+  }
+  add_catch_trials(study, study.trials.catch_trials, random, schedule.trials);
+  number(schedule.trials, 1);
+  return schedule;
+}
+
+class RatingOrder final : public Order {
+ public:
+  RatingOrder(const Study& study, const ScheduleDraw& draw)
+      : Order(drawn_schedule(study, draw), draw.secret), study_(study), draw_(draw) {}
+
+  std::vector<Trial> restarted(int block, int restarts_before, int first_trial) const override {
+    if (block < 0 || block >= blocks_of(study_) || restarts_before < 0) {
+      throw std::invalid_argument("Order: the schedule has no such block or restart");
+    }
+    RandomStream random(draw_.secret,
+                        fmt::format("rating: block {}, restart {}", block, restarts_before + 1),
+                        static_cast<std::uint64_t>(draw_.visit));
+    std::vector<ImageDeck> decks = decks_of(study_);
+    std::vector<Trial> trials = drawn_block(study_, draw_, block, random, decks);
+    const auto caught = std::ranges::count_if(schedule().trials, [block](const Trial& trial) {
+      return trial.place.block == block && trial.role == Role::catch_trial;
+    });
+    add_catch_trials(study_, static_cast<int>(caught), random, trials);
+    number(trials, first_trial);
+    return trials;
+  }
+
+ private:
+  const Study& study_;
+  ScheduleDraw draw_;
+};
+
+class RatingTask final : public Task {
+ public:
+  explicit RatingTask(RatingOptions options) : options_(std::move(options)) {}
+
+  [[nodiscard]] const RatingOptions& options() const noexcept { return options_; }
+
+  void check(const JsonValue& file, const Study& study) const override;
+  std::string in_clear() const override;
+  std::string rule(const Study& study) const override {
+    return fmt::format(
+        "touchtrial rating 1: every texture once before any is repeated, shuffled by "
+        "BLAKE2b(participant's secret, purpose); classes={}; methods={}; repeats={}; blocks={}; "
+        "rove_db={}; catch={}",
+        study.classes.size(), study.presented_methods(), study.trials.repeats,
+        name_of(study.trials.blocks), study.trials.rove_db, study.trials.catch_trials);
+  }
+  int scored_trials(const Study& study) const override {
+    return static_cast<int>(study.classes.size()) * study.presented_methods() *
+           study.trials.repeats;
+  }
+  Ask ask(const Study& study, const Place& /*place*/) const override {
+    return {.question = Rate{.title = "rate_title", .scales = scales_of(study)}};
+  }
+  std::unique_ptr<Order> order(const Study& study, const ScheduleDraw& draw) const override {
+    return std::make_unique<RatingOrder>(study, draw);
+  }
+  Practice practice(const Study& study, const ScheduleDraw& draw, int round) const override;
+
+ private:
+  RatingOptions options_;
+};
+
+void RatingTask::check(const JsonValue& file, const Study& study) const {
+  const std::string& language = study.session.language;
+  for (std::size_t i = 0; i < options_.scales.size(); ++i) {
+    const RatedScale& scale = options_.scales[i];
+    const auto require = [&](const char* key, const Translated& words) {
+      if (words.contains(language) || (words.empty() && scale.id == kOwnScale)) return;
+      file.refuse_below(fmt::format("/rating/scales/{}/{}/{}", i, key, language),
+                        "is missing, the study's language; add it");
+    };
+    require("text", scale.text);
+    require("low", scale.low);
+    require("high", scale.high);
+  }
+  const TrialOptions& trials = study.trials;
+  const auto refuse = [&](const char* key, const char* what) {
+    file.refuse_below(std::string("/trials") + key, what);
+  };
+  if (trials.order != TrialOrder::shuffled) refuse("/order", "must be \"shuffled\" for ratings");
+  if (trials.lead_in > 0) refuse("/lead_in", "must be 0: ratings have no lead-in");
+  if (trials.max_run > 0)
+    refuse("/max_run", "must be 0: every texture is felt once before any is repeated");
+  if (study.visits.methods == VisitMethods::divided) {
+    file.refuse_below("/visits/methods",
+                      "must be \"all\": everybody rates every method at each visit");
+  }
+  if (study.registration.analysis) {
+    file.refuse_below("/registration/estimand",
+                      "is about right answers, which ratings have none of; leave estimand and what "
+                      "belongs to it out, and state the test in primary_test");
+  }
+  if (study.session.confidence_levels > 0) {
+    file.refuse_below("/session/confidence", "must be 0: a rating has no confidence");
+  }
+  if (study.session.sight == Sight::blindfold) {
+    file.refuse_below("/session/sight", "must be \"curtain\": pictures are rated against textures");
+  }
+}
+
+std::string RatingTask::in_clear() const {
+  nlohmann::json scales = nlohmann::json::array();
+  for (const RatedScale& scale : options_.scales) {
+    scales.push_back({{"id", scale.id},
+                      {"text", scale.text},
+                      {"low", scale.low},
+                      {"high", scale.high},
+                      {"points", scale.points}});
+  }
+  return nlohmann::json{{"scales", scales}, {"anchors", options_.anchors}}.dump();
+}
+
+Practice RatingTask::practice(const Study& study, const ScheduleDraw& draw, int round) const {
+  Practice practice = Task::practice(study, draw, round);
+  practice.labels.clear();
+  practice.criterion = 0;  // no rating is right
+  for (Trial& trial : practice.trials) {
+    trial.right.reset();
+    trial.picture = trial.field().class_index;
+  }
+  if (options_.anchors && !practice.trials.empty()) {
+    Trial low = practice.trials.front();
+    low.planes.front() = {.field = {}, .blank = true};
+    practice.trials.insert(practice.trials.begin(), std::move(low));
+    for (std::size_t i = 0; i < practice.trials.size(); ++i) {
+      practice.trials[i].place.trial = static_cast<int>(i) + 1;
+    }
+  }
+  return practice;
+}
+
+std::shared_ptr<const Task> read_task(const std::optional<JsonValue>& section) {
+  return std::make_shared<RatingTask>(section ? read_options(*section) : RatingOptions{});
+}
+
+}  // namespace
+
+const RatingOptions& options_of(const Study& study) {
+  return static_cast<const RatingTask&>(*study.task).options();
+}
+
+std::vector<Scale> scales_of(const Study& study) {
+  const std::string& language = study.session.language;
+  std::vector<Scale> scales;
+  for (const RatedScale& scale : options_of(study).scales) {
+    const auto words = [&](const Translated& own, const char* key) {
+      if (const auto found = own.find(language); found != own.end()) return found->second;
+      return texts_of(study.session).at("screens").at(key);
+    };
+    scales.push_back({.id = scale.id,
+                      .text = words(scale.text, "scale_fit"),
+                      .low = words(scale.low, "scale_fit_low"),
+                      .high = words(scale.high, "scale_fit_high"),
+                      .points = scale.points});
+  }
+  return scales;
+}
+
+const Protocol& protocol() {
+  static constexpr Protocol kProtocol{
+      .name = "rating", .section = "rating", .read = read_task, .min_classes = 1};
+  return kProtocol;
+}
+
+}  // namespace touchtrial::study::rating
