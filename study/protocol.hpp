@@ -80,6 +80,7 @@ struct Protocol {
   std::shared_ptr<const Task> (*read)(const std::optional<JsonValue>& section);
   int min_classes = 2;
   int min_methods = 1;
+  bool adaptive = false;    ///< answers decide what comes next
   bool all_methods = true;  ///< participants get all of the study's methods; if not, only the first
 };
 

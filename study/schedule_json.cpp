@@ -70,6 +70,7 @@ json json_of(const Trial& trial, const StudyCodes& codes) {
   object["kind"] = name_of(trial.role);
   if (trial.place.hand_off) object["hand_off"] = true;
   if (trial.right) object["right"] = *trial.right;
+  if (trial.level) object["level"] = {trial.level->track, trial.level->level};
   if (trial.picture) object["picture"] = codes.code_of({*trial.picture, 0, 0});
   if (trial.planes.size() > 1) {
     for (const Plane& plane : trial.planes) object["planes"].push_back(json_of(plane, codes));
@@ -84,6 +85,9 @@ Trial trial_from(const json& object, const StudyCodes& codes) {
   trial.role = role_of(object.at("kind").get_ref<const std::string&>());
   if (const auto right = object.find("right"); right != object.end()) {
     trial.right = right->get<int>();
+  }
+  if (const auto level = object.find("level"); level != object.end()) {
+    trial.level = Level{level->at(0).get<int>(), level->at(1).get<int>()};
   }
   if (const auto picture = object.find("picture"); picture != object.end()) {
     trial.picture = meaning_of(*picture, codes).class_index;

@@ -276,6 +276,7 @@ std::string about_study(const DatasetSource& study) {
       std::count_if(sessions.begin(), sessions.end(),
                     [&](const record::SessionRow& row) { return session_counts(row, commitment); });
   const bool has_choices = commitment.positions > 0;
+  const bool has_planes = prescription_from_json(commitment.configuration).intervals > 0;
   std::string text;
   if (commitment.simulated) {
     text +=
@@ -287,7 +288,9 @@ std::string about_study(const DatasetSource& study) {
       "A psychophysical study of textures that are felt through a force-feedback device, recorded "
       "with Touchtrial {}. Protocol: {}; {}{} scored trials a participant; {} that count{}.\n\n",
       commitment.program_version, commitment.protocol,
-      has_choices ? fmt::format("{} textures to choose from; ", commitment.positions) : "",
+      has_choices ? fmt::format("{} {} to choose from; ", commitment.positions,
+                                has_planes ? "answers" : "textures")
+                  : "",
       commitment.scored_trials, counted(counts, "completed session"), counts == 1 ? "s" : "");
   text +=
       study.outcomes != nullptr
@@ -316,7 +319,9 @@ ColumnMeaning meaning_of(const std::string& column) {
   if (column.starts_with(kRatingColumn)) {
     return {"Rating on the scale " + column.substr(kRatingColumn.size())};
   }
-  return kMeanings.at(column);
+  const auto found = kMeanings.find(column);
+  if (found != kMeanings.end()) return found->second;
+  return {"Column of the protocol's own analysis"};
 }
 
 }  // namespace touchtrial::analysis

@@ -157,8 +157,9 @@ struct Prescription {
   double least_days = 0.0;            ///< between visits
   std::optional<double> most_days{};  ///< likewise
   std::vector<std::string> groups{};
-  std::string draft{};  ///< study::draft_notice of the participants' language
-  int intervals = 0;    ///< planes of a trial whose levels a procedure chooses; 0: one plane
+  std::string draft{};    ///< study::draft_notice of the participants' language
+  int intervals = 0;      ///< planes of a trial; 0: one plane
+  bool adaptive = false;  ///< a procedure chooses the level of each trial
 };
 
 struct Collection {

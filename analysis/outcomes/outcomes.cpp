@@ -83,6 +83,7 @@ TrialOutcome outcome_of(const record::TrialRow& row, const SessionOutcome& sessi
   trial.role = scheduled.role;
   trial.right = scheduled.right;
   trial.picture = scheduled.picture;
+  trial.planes = scheduled.planes;
   if (scheduled.planes.size() == 1) {
     trial.stimulus = scheduled.field();
     trial.gain_db = scheduled.planes.front().gain_db;

@@ -36,8 +36,9 @@ struct ChosenLevel {
 struct TrialOutcome {
   std::string participant;
   record::TrialRow row;
-  study::StimulusIndex stimulus;  ///< of a track: what its step is about
-  double gain_db = 0.0;           ///< study::Plane::gain_db
+  study::StimulusIndex stimulus;       ///< of a track: what its step is about
+  double gain_db = 0.0;                ///< study::Plane::gain_db
+  std::vector<study::Plane> planes{};  ///< of the schedule; empty where an adaptive order chose
   study::Role role = study::Role::scored;
   std::optional<ChosenLevel> chosen{};
   std::optional<int> picture{};  ///< class whose picture was shown with the question

@@ -54,7 +54,9 @@ Prescription prescription_of(const json& configuration) {
   prescription.order = trials.at("order").get<std::string>();
   prescription.repeats = trials.at("repeats").get<int>();
   prescription.intervals = configuration.value("intervals", 0);
-  if (prescription.intervals > 0) prescription.order = "by the procedure";
+  const study::Protocol* protocol = study::find_protocol(configuration.value("protocol", ""));
+  prescription.adaptive = protocol != nullptr && protocol->adaptive;
+  if (prescription.adaptive) prescription.order = "by the procedure";
   prescription.method_orders = method_orders_of(configuration);
   if (trials.contains("validity")) prescription.validity = validity_rule_of(trials["validity"]);
   if (configuration.contains("session")) read_session(configuration["session"], prescription);

@@ -125,6 +125,7 @@ void SessionCourse::answer(const record::Event& event) {
 
 void SessionCourse::require_chosen(const record::Event& event,
                                    const record::AnswerBody& body) const {
+  if (!course_.is_adaptive()) return;  // the sealed schedule says it all
   const study::Trial& due = *course_.current();
   const auto words = [](const auto& track, const auto& level, const auto& target) {
     return track && level && target

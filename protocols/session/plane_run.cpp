@@ -15,9 +15,25 @@ constexpr double kPlayedMmS = 100.0;
 constexpr double kPlayedLoadN = 0.7;
 constexpr double kShareOfPlane = 0.35;  ///< radius re the shorter side
 
+/// One of several planes that are explored freely. It comes on once the hand has been above it.
+class LiftedForce final : public device::ForceSource {
+ public:
+  explicit LiftedForce(const engine::RenderingModel& model) noexcept : force_(model) {}
+
+  [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override {
+    has_lifted_ = has_lifted_ || sample.position_mm.z > study::kLiftedMm;
+    return has_lifted_ ? force_.force_n(sample) : Vec3{};
+  }
+
+ private:
+  ModelForce force_;
+  bool has_lifted_ = false;
+};
+
 /// The force of a plane that is explored so.
+/// \param planes  of the trial
 /// \param model  must outlive it
-std::unique_ptr<device::ForceSource> force_of(const study::Exploring& exploring,
+std::unique_ptr<device::ForceSource> force_of(const study::Exploring& exploring, int planes,
                                               const engine::RenderingModel& model,
                                               const SessionDesk& desk,
                                               const device::ServoOptions& servo) {
@@ -34,6 +50,7 @@ std::unique_ptr<device::ForceSource> force_of(const study::Exploring& exploring,
     return std::make_unique<PlayedForce>(model, parts.source.plane(), stiffness_n_per_mm,
                                          ticks(played->seconds), servo.rate_hz);
   }
+  if (planes > 1) return std::make_unique<LiftedForce>(model);
   return std::make_unique<ModelForce>(model);
 }
 
@@ -78,7 +95,7 @@ PlanesEnd run_planes(SessionDesk& desk, const study::Trial& trial,
     if (desk.pauses() != pauses) return PlanesEnd::paused;
     const engine::RenderingModel model =
         parts.source.plane_of(trial.planes[static_cast<std::size_t>(i)], parts.key);
-    const auto force = force_of(ask.exploring, model, desk, servo);
+    const auto force = force_of(ask.exploring, of, model, desk, servo);
     if (i == 0 && parts.explorer.in_real_time()) parts.source.fetch();
     record::Trace* const trace = listener.plane_on();
     if (trace == nullptr) return PlanesEnd::paused;

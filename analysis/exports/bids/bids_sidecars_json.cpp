@@ -46,12 +46,15 @@ void put_columns(Json& object, const std::vector<std::string>& columns) {
 
 std::string task_description(const DatasetSource& study) {
   const record::StudyCommitment& commitment = study.store.commitment();
-  if (const int planes = prescription_from_json(commitment.configuration).intervals; planes > 0) {
+  const Prescription prescription = prescription_from_json(commitment.configuration);
+  if (prescription.intervals > 0) {
     return fmt::format(
         "Each trial presents {} planes through a force-feedback device, one after the other and "
         "without anything to see of them; the participant explores each and then gives one of {} "
-        "answers about them. A procedure chooses the level of each trial. Protocol: {}.",
-        planes, commitment.positions, commitment.protocol);
+        "answers about them. {}Protocol: {}.",
+        prescription.intervals, commitment.positions,
+        prescription.adaptive ? "A procedure chooses the level of each trial. " : "",
+        commitment.protocol);
   }
   return fmt::format(
       "Each trial presents a texture through a force-feedback device, without anything to see of "

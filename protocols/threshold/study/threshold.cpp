@@ -291,8 +291,11 @@ Study with_options(const Study& study, const ThresholdOptions& options) {
 }
 
 const Protocol& protocol() {
-  static constexpr Protocol kProtocol{
-      .name = "threshold", .section = "threshold", .read = read_task, .min_classes = 1};
+  static constexpr Protocol kProtocol{.name = "threshold",
+                                      .section = "threshold",
+                                      .read = read_task,
+                                      .min_classes = 1,
+                                      .adaptive = true};
   return kProtocol;
 }
 

@@ -36,11 +36,13 @@ study::Study study_with(const TinyStudyOptions& options) {
   }
   const std::string methods = options.comparison ? R"([{"name":"adaptive"},{"name":"tv-gabor"}])"
                                                  : R"([{"name":"adaptive"}])";
-  const std::string protocol = !options.protocol.empty() ? options.protocol
-                               : options.comparison      ? "comparison"
-                                                         : "classification";
-  const std::string section =
-      options.protocol.empty() ? "" : ",\"" + options.protocol + "\":" + options.section;
+  const std::string protocol = !options.protocol.empty() || options.section.empty()
+                                   ? options.protocol
+                               : options.comparison ? "comparison"
+                                                    : "classification";
+  const std::string section = options.protocol.empty() || options.section.empty()
+                                  ? ""
+                                  : ",\"" + options.protocol + "\":" + options.section;
   const std::string visits = options.visits.empty() ? "" : ",\"visits\":" + options.visits;
   return study::parse_study(R"({"study":"tiny","protocol":")" + protocol + R"(","classes":[)" +
                                 classes + R"(],"methods":)" + methods + R"(,"trials":)" +

@@ -24,7 +24,7 @@ struct TinyStudyOptions {
   std::uint64_t secret = 1;      ///< codes and secrets are a function of it
   std::uint64_t schedules = 0;   ///< if not 0, schedules are a function of this alone
   std::string protocol{};        ///< another one than classification and comparison
-  std::string section = "{}";    ///< that protocol's own object
+  std::string section = "{}";    ///< that protocol's own object; empty: it has none
   std::string trials = "{}";     ///< the study file's "trials"
   std::string rendering = "{}";  ///< the study file's "rendering"
   std::string visits{};          ///< the study file's "visits"; empty: one
