@@ -25,7 +25,8 @@ std::string rendering_text(const engine::RenderingOptions& rendering) {
 }
 
 /// The texture of a flat image: a constant level for luminance, zero for every other method.
-touchtrial::Plane<double> flat_texture(const GreyImage& image, const engine::ExtractionOptions& method) {
+touchtrial::Plane<double> flat_texture(const GreyImage& image,
+                                       const engine::ExtractionOptions& method) {
   const double level = method.method == engine::Method::luminance
                            ? engine::luminance_texture<double>(image).at(0, 0)
                            : 0.0;
