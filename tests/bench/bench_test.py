@@ -51,6 +51,12 @@ class Cases(unittest.TestCase):
         self.assertEqual(bench.case_of([{"run_name": "a | b/repeats:1/real_time", "cpu_time": 1.0, "real_time": 4.0}]),
                          {"us": 4.0})
 
+    def test_cases_stand_as_in_the_table_however_runs_took_turns(self):
+        places = {("a", "touchtrial"): 0, ("a", "peer"): 1}
+        runs = [{"run_name": f"a | {who}/repeats:1/process_time", "cpu_time": us}
+                for who, us in (("peer", 9.0), ("touchtrial", 3.0))]
+        self.assertEqual(list(bench.cases_of(runs, places).items()), [("touchtrial", {"us": 3.0}), ("peer", {"us": 9.0})])
+
     def test_what_is_only_counted_has_no_time(self):
         run = {"run_name": "a | b/iterations:1/repeats:1", "cpu_time": 1.0, "real_time": 4.0, "count: steps": 50.0}
         self.assertEqual(bench.case_of([run]), {"count": 50.0, "count_kind": "steps"})
