@@ -97,14 +97,13 @@ void let_writes_fail() {
   static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
 }
 
-/// What was freed is used again, not given back to the system, which would hand out every page
-/// anew, zeroed: as dear as extracting and rendering themselves. Blocks of more than 32 MiB are
-/// still given back.
+/// Keeps freed memory for the next allocation. The system would zero every page that it hands out
+/// again, which costs as much as extraction and rendering. Blocks of more than 32 MiB are returned.
 void keep_freed_memory() {
-  constexpr int kLargestKept = 32 << 20;
-  constexpr int kMostKept = 1 << 30;
-  static_cast<void>(::mallopt(M_MMAP_THRESHOLD, kLargestKept));
-  static_cast<void>(::mallopt(M_TRIM_THRESHOLD, kMostKept));
+  constexpr int kMmapThreshold = 32 << 20;
+  constexpr int kTrimThreshold = 1 << 30;
+  static_cast<void>(::mallopt(M_MMAP_THRESHOLD, kMmapThreshold));
+  static_cast<void>(::mallopt(M_TRIM_THRESHOLD, kTrimThreshold));
 }
 
 /// For instance "touchtrial 1.2.3 (f697f373)".

@@ -33,7 +33,7 @@ constexpr double kTvGaborTolerance = 0.5;
 constexpr double kGoalOfV = 1e-3;
 /// ADMM computes its own gap at every tenth step, so that only this interval costs nothing extra.
 constexpr int kAdmmRhythm = 10;
-constexpr int kMostAdmmSteps = 300;
+constexpr int kMaxAdmmSteps = 300;
 constexpr int kQuickPictures = 2;
 
 /// The two pictures that `evaluate` compares: the adaptive texture and that of a fixed order.
@@ -128,7 +128,7 @@ Row glcm_row() {
 int steps_to_goal(const GreyImage& image) {
   const Plane<double> truth = tv_gabor_truth(image);
   engine::TvGaborSolver<float> solver(image, kEndless);
-  for (int steps = kAdmmRhythm; steps <= kMostAdmmSteps; steps += kAdmmRhythm) {
+  for (int steps = kAdmmRhythm; steps <= kMaxAdmmSteps; steps += kAdmmRhythm) {
     static_cast<void>(solver.run(steps, engine::Patience::unlimited));
     if (distance_relative_to(solver.texture(), truth) <= kGoalOfV) return steps;
   }

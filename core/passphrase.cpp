@@ -10,8 +10,8 @@
 namespace touchtrial {
 
 bool is_in_range(const PassphraseCost& cost) noexcept {
-  const PassphraseCost& least = kLeastPassphraseCost;
-  const PassphraseCost& most = kMostPassphraseCost;
+  const PassphraseCost& least = kMinPassphraseCost;
+  const PassphraseCost& most = kMaxPassphraseCost;
   return cost.passes >= least.passes && cost.passes <= most.passes &&
          cost.memory_bytes >= least.memory_bytes && cost.memory_bytes <= most.memory_bytes;
 }

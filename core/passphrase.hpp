@@ -23,8 +23,8 @@ struct PassphraseCost {
 
 /// The range of a cost that key_of_passphrase accepts. Files of this program never cost more than
 /// the default: who forged one that does would have every command work for hours.
-inline constexpr PassphraseCost kLeastPassphraseCost{1, std::uint64_t{8} << 10U};
-inline constexpr PassphraseCost kMostPassphraseCost{};
+inline constexpr PassphraseCost kMinPassphraseCost{1, std::uint64_t{8} << 10U};
+inline constexpr PassphraseCost kMaxPassphraseCost{};
 [[nodiscard]] bool is_in_range(const PassphraseCost& cost) noexcept;
 
 /// \throws std::invalid_argument if a number of the cost is out of range

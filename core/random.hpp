@@ -19,8 +19,8 @@ class RandomStream {
   /// Each (seed, purpose, index) gives a different stream. Streams of different purposes are
   /// unrelated, so an additional draw from one leaves the others unchanged.
   RandomStream(std::uint64_t seed, std::string_view purpose, std::uint64_t index = 0);
-  /// The same from 32 secret bytes in place of a seed, for draws that nobody else may repeat. All
-  /// 256 bits enter; who knows some draws of a stream learns nothing of other streams.
+  /// The same from 32 secret bytes in place of a seed, for draws that nobody else may repeat.
+  /// Seeded with 256 bits; draws of one stream reveal nothing about another.
   RandomStream(const Digest& secret, std::string_view purpose, std::uint64_t index = 0);
 
   /// The next 64 random bits.

@@ -19,11 +19,11 @@ constexpr NumberRange kBiasN{.low = -FalconSettings::kMaxGravityBiasN,
                              .high = FalconSettings::kMaxGravityBiasN};
 constexpr NumberRange kPlaceMm{.low = -1000.0, .high = 1000.0};
 constexpr NumberRange kLengthMm{.low = 1.0, .high = 2000.0};
-constexpr NumberRange kScale{.low = kLeastScale, .high = kGreatestScale};
+constexpr NumberRange kScale{.low = kMinScale, .high = kMaxScale};
 constexpr NumberRange kMassKg{.low = 0.0, .high = 10.0};
-constexpr std::int64_t kMostMotorValue = 10'000;
+constexpr std::int64_t kMaxMotorValue = 10'000;
 constexpr NumberRange kPeakS{.low = 0.0, .high = 600.0, .open_low = true};
-constexpr std::int64_t kMostDevices = 64;
+constexpr std::int64_t kMaxDevices = 64;
 constexpr std::int64_t kFastestRateHz = 10'000;
 constexpr std::int64_t kSlowestRateHz = 500;
 /// Beside the drivers' names.
@@ -150,10 +150,10 @@ DeviceUse read_falcon(const JsonValue& place, const fs::path& folder, DeviceSett
   }
   if (const auto order = object.find("led_order")) falcon.led_order = read_led_order(*order);
   if (const auto value = object.find("motor_peak")) {
-    falcon.motor_peak = static_cast<int>(value->integer(1, kMostMotorValue));
+    falcon.motor_peak = static_cast<int>(value->integer(1, kMaxMotorValue));
   }
   if (const auto value = object.find("motor_continuous")) {
-    falcon.motor_continuous = static_cast<int>(value->integer(1, kMostMotorValue));
+    falcon.motor_continuous = static_cast<int>(value->integer(1, kMaxMotorValue));
   }
   if (const auto time = object.find("motor_peak_s")) falcon.motor_peak_s = time->number(kPeakS);
   return read_use(object);
@@ -179,7 +179,7 @@ DeviceUse read_dhd(const JsonValue& place, const fs::path& folder, DeviceSetting
   DhdSettings& dhd = settings.dhd;
   read_library(object, folder, dhd.library);
   if (const auto index = object.find("index")) {
-    dhd.index = static_cast<int>(index->integer(0, kMostDevices - 1));
+    dhd.index = static_cast<int>(index->integer(0, kMaxDevices - 1));
   }
   if (const auto on = object.find("gravity_compensation")) dhd.gravity_compensation = on->truth();
   if (const auto mass = object.find("effector_mass_kg")) {

@@ -13,7 +13,7 @@
 namespace touchtrial::engine {
 namespace {
 
-constexpr double kSmallestWeight = 1e-12;  // relative to the middle one
+constexpr double kMinWeight = 1e-12;  // relative to the middle one
 
 /// The mirrored axis has period 2n. From a standard deviation of 3n on, the Gaussian wrapped around
 /// that period is uniform to 1e-19; a wider one would only cost time.
@@ -23,7 +23,7 @@ double effective_sigma(double sigma_px, int n) {
 
 /// w_0 .. w_r of a symmetric kernel with w_0 + 2 (w_1 + .. + w_r) = 1; sigma > 0.
 std::vector<double> half_kernel(double sigma_px) {
-  const auto radius = static_cast<int>(sigma_px * std::sqrt(-2.0 * std::log(kSmallestWeight)));
+  const auto radius = static_cast<int>(sigma_px * std::sqrt(-2.0 * std::log(kMinWeight)));
   std::vector<double> weights;
   double sum = 0.0;
   for (int k = 0; k <= radius; ++k) {

@@ -17,7 +17,7 @@ namespace {
 /// Up to this size a file is read as a whole, which turns a failing disk into an error. A larger
 /// file is mapped: if it is no picture, or contains only a small one, only the few pages that are
 /// checked are read.
-constexpr std::uintmax_t kLargestReadWhole = std::uintmax_t{1} << 26U;
+constexpr std::uintmax_t kMaxReadWhole = std::uintmax_t{1} << 26U;
 
 GreyImage read_kind(ByteView file, GreyScale& scale, ImageNotes& notes) {
   switch (kind_of_image(file)) {
@@ -106,7 +106,7 @@ auto named(const std::string& name, const Decode& decode) {
 Picture read_picture(const std::filesystem::path& path, const SampleScale& scale) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (!error && size > kLargestReadWhole) {
+  if (!error && size > kMaxReadWhole) {
     const MappedFile file(path);
     return decode_picture(file.bytes(), path.string(), scale);
   }

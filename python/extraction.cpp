@@ -27,7 +27,7 @@ namespace py = pybind11;
 
 /// The neighbourhood of the forces that the engine computes along with a texture.
 constexpr int kForceNeighbourhood = 3;
-constexpr int kLargestForceNeighbourhood = 1001;
+constexpr int kMaxForceNeighbourhood = 1001;
 
 /// A plane's name, as of its file of `extract --dump`, and how the engine is asked for it; null: it
 /// is always there.
@@ -74,9 +74,9 @@ PictureAndForce picture_and_force(const std::string& mapping, int neighbourhood)
         "mapping: there is no " + mapping + "; choose among " +
         listed(engine::kMappingNames, ", ", [](const auto& one) { return one.name; }));
   }
-  if (neighbourhood < 3 || neighbourhood > kLargestForceNeighbourhood || neighbourhood % 2 == 0) {
+  if (neighbourhood < 3 || neighbourhood > kMaxForceNeighbourhood || neighbourhood % 2 == 0) {
     throw py::value_error("neighbourhood: is " + std::to_string(neighbourhood) +
-                          ", must be odd, from 3 to " + std::to_string(kLargestForceNeighbourhood));
+                          ", must be odd, from 3 to " + std::to_string(kMaxForceNeighbourhood));
   }
   return {*chosen, neighbourhood};
 }

@@ -41,7 +41,7 @@ SessionRow& open_row(DerivedRows& rows, const Event& event) {
   return found->second;
 }
 
-/// A trial that was presented before its block was restarted takes nothing more.
+/// A trial that was presented before its block was restarted accepts no further events.
 void refuse_if_voided(const TrialRow& row, const Event& event) {
   if (row.state == TrialState::voided) {
     refuse_trial(event, row.trial, "is void: its block was restarted");
@@ -102,6 +102,7 @@ void answer_trial(DerivedRows& rows, const Event& event, const AnswerBody& body)
   row.answered_at = event.time();
   row.answer = body.answer;
   row.confidence = body.confidence;
+  row.kind = body.kind;
   row.track = body.track;
   row.level = body.level;
   row.target = body.target;

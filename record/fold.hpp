@@ -78,9 +78,10 @@ struct TrialRow {
   std::optional<std::chrono::nanoseconds> answered_at;
   std::optional<Answer> answer;  ///< empty: no response
   std::optional<int> confidence;
-  std::optional<int> track;   ///< that an adaptive order chose, from 1; 0: none of its tracks
-  std::optional<int> level;   ///< index into the track's levels
-  std::optional<int> target;  ///< index of the right choice
+  std::optional<std::string> kind;  ///< that an adaptive order chose, as in the schedule
+  std::optional<int> track;         ///< from 1; 0: none
+  std::optional<int> level;         ///< index into the track's levels
+  std::optional<int> target;        ///< index of the right choice
   std::int64_t samples = 0;
 
   /// The session was paused between the end of the exploration and the answer.

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kSignatureDigits = 128;
 constexpr std::int64_t kHeadVersion = 1;
-constexpr std::int64_t kMostEvents = std::numeric_limits<std::int64_t>::max() - 1;
+constexpr std::int64_t kMaxEvents = std::numeric_limits<std::int64_t>::max() - 1;
 
 /// What is signed: nobody can pass another signed text off as a head.
 std::string head_statement(std::string_view text) {
@@ -57,7 +57,7 @@ Digest digest_at(const JsonObject& object, std::string_view key) {
 }
 
 ChainHead end_from(const JsonObject& object) {
-  return {.length = object.at("length").integer(0, kMostEvents), .hash = digest_at(object, "hash")};
+  return {.length = object.at("length").integer(0, kMaxEvents), .hash = digest_at(object, "hash")};
 }
 
 }  // namespace
@@ -77,12 +77,12 @@ HeadRecord head_record_from(std::string_view text, const std::string& source) {
   HeadRecord record{.study_id = object.at("study_id").text(),
                     .station = object.at("station").text(),
                     .database = digest_at(object, "database"),
-                    .count = object.at("count").integer(1, kMostEvents),
+                    .count = object.at("count").integer(1, kMaxEvents),
                     .file = end_from(object.at("file").object({"hash", "length"})),
                     .sessions = {},
-                    .acknowledged = object.at("acknowledged").integer(0, kMostEvents),
+                    .acknowledged = object.at("acknowledged").integer(0, kMaxEvents),
                     .also = object.at("also").text()};
-  for (const JsonValue& item : object.at("sessions").items(0, kMostHeadSessions)) {
+  for (const JsonValue& item : object.at("sessions").items(0, kMaxHeadSessions)) {
     const JsonObject session = item.object({"hash", "length", "session"});
     const auto number = session.at("session").integer(1, std::numeric_limits<int>::max());
     record.sessions[static_cast<int>(number)] = end_from(session);

@@ -26,7 +26,7 @@ struct HeadCopy {
 };
 
 /// The bytes of a copy.
-/// \pre record.sessions are no more than kMostHeadSessions
+/// \pre record.sessions are no more than kMaxHeadSessions
 /// \throws FileError, naming `path`, if the record is too long or has a name that is not UTF-8
 [[nodiscard]] std::string head_copy_of(const HeadRecord& record, const Signer& signer,
                                        const std::filesystem::path& path);

@@ -168,7 +168,7 @@ HeadSlots read_slots(const LockedHead& file, std::span<const PublicKey> signers,
 }
 
 void drop_oldest(std::map<int, ChainHead>& sessions) {
-  while (sessions.size() > kMostHeadSessions) sessions.erase(sessions.begin());
+  while (sessions.size() > kMaxHeadSessions) sessions.erase(sessions.begin());
 }
 
 void require_second_folder(const std::filesystem::path& folder,

@@ -27,7 +27,7 @@ namespace touchtrial::record {
 class StudyStore;
 
 /// How many open sessions a head file holds. Of more, it keeps those with the highest numbers.
-inline constexpr std::size_t kMostHeadSessions = 64;
+inline constexpr std::size_t kMaxHeadSessions = 64;
 
 /// What a head file says.
 struct HeadRecord {

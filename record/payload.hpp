@@ -187,8 +187,9 @@ struct AnswerBody {
   int trial = 0;
   std::optional<Answer> answer{};
   std::optional<int> confidence{};
-  /// \name What an adaptive order chose (study::ChosenLevel); sealed like all of an answer
+  /// \name What an adaptive order chose (study::Trial); sealed like all of an answer
   ///@{
+  std::optional<std::string> kind{};  ///< of the trial, as in the schedule
   std::optional<int> track{};
   std::optional<int> level{};
   std::optional<int> target{};

@@ -128,6 +128,7 @@ void members(Io& io, In<Io, AnswerBody>& body) {
   io("trial", body.trial, 1);
   answer_members(io, body.answer);
   io("confidence", body.confidence);
+  io("kind", body.kind);
   io("track", body.track);
   io("level", body.level);
   io("target", body.target);

@@ -68,7 +68,7 @@ class SessionRecorder {
   /// \param evidence  of the same presentation, stored with the answer or not at all
   void answered(std::chrono::nanoseconds at, const AnswerBody& answer,
                 const std::optional<TrialEvidence>& evidence = std::nullopt);
-  /// \param reason  in clear: must say nothing about the stimulus, and be nobody's words
+  /// \param reason  in clear: a fixed phrase that says nothing about the stimulus, never free text
   /// \param detail  sealed but for the faults' names, with a padding that does not depend on a
   ///   flight record of up to 3,000 ticks, and of a longer one depends on whole thousands
   void interrupted(std::chrono::nanoseconds at, int trial, const std::string& reason,

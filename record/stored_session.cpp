@@ -395,9 +395,9 @@ void StoredSession::accept_together(std::span<const RecordedEvent> events) {
   rows_ = std::move(rows);
   const EventKind last = events.back().event.kind;
   if (is_known_by_heads(last)) {
-    study_.tell_heads({.session = events.back().event.session,
-                       .ended = last == EventKind::closed,
-                       .answers = last == EventKind::answered ? 1 : 0});
+    study_.update_heads({.session = events.back().event.session,
+                         .ended = last == EventKind::closed,
+                         .answers = last == EventKind::answered ? 1 : 0});
   }
   if (erased_key || is_rest(last)) study_.empty_log();
 }

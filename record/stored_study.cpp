@@ -163,7 +163,7 @@ void StoredStudy::keep_heads(HeadKeeper keeper, HeadRecord now) {
   known_ = std::move(now);
 }
 
-void StoredStudy::tell_heads(const HeadNews& news) {
+void StoredStudy::update_heads(const HeadUpdate& news) {
   if (!heads_) return;
   known_.acknowledged += news.answers;
   const std::pair heads = database_.run(

@@ -27,7 +27,7 @@ struct SessionKeys {
 };
 
 /// What a commit means to head files, beside the end of the file's chain.
-struct HeadNews {
+struct HeadUpdate {
   int session = 0;  ///< whose chain grew; 0: none
   bool ended = false;
   std::int64_t answers = 0;  ///< how many came
@@ -73,7 +73,7 @@ class StoredStudy {
   /// \param now  record_of this database
   void keep_heads(HeadKeeper keeper, HeadRecord now);
   /// Tells the keeper of heads, if there is one, what was committed.
-  void tell_heads(const HeadNews& news);
+  void update_heads(const HeadUpdate& news);
   /// The same for an event about a person, whose texts are sealed.
   /// \param body  whole
   void append_about(int session, EventKind kind, std::chrono::nanoseconds at,

@@ -51,7 +51,7 @@ struct StudyStore::Impl {
   template <typename Work>
   void change(Work&& work) {
     study.change(std::forward<Work>(work));
-    study.tell_heads({});
+    study.update_heads({});
   }
 
   [[nodiscard]] const Database& database() const { return study.database(); }
@@ -119,7 +119,7 @@ void StudyStore::sign_with(const Signer& signer) {
 void StudyStore::keep_heads(HeadKeeper keeper) {
   HeadRecord now = record_of(*this);
   impl_->study.keep_heads(std::move(keeper), std::move(now));
-  impl_->study.tell_heads({});
+  impl_->study.update_heads({});
 }
 
 void StudyStore::record_heads(const std::string& also, std::chrono::nanoseconds at) {

@@ -75,7 +75,7 @@ void Course::restart(const BlockRestart& again) {
   choose();
 }
 
-bool Course::was_given_up(int trial) const {
+bool Course::is_void(int trial) const {
   return std::ranges::any_of(schedule_.trials, [&](const Trial& one) {
     const auto restarted = first_trials_.find(one.place.block);
     return one.place.trial == trial && restarted != first_trials_.end() &&

@@ -56,7 +56,7 @@ class Course {
   /// Replaces the rest of the block by the restarted block, which comes before everything else.
   void restart(const BlockRestart& again);
   /// Whether a trial's number became invalid when its block was restarted.
-  [[nodiscard]] bool was_given_up(int trial) const;
+  [[nodiscard]] bool is_void(int trial) const;
   /// Whether the schedule has a trial of this number.
   [[nodiscard]] bool has(int trial) const;
 

@@ -9,7 +9,9 @@
 #include "engine/rendering/gains.hpp"
 #include "study/languages.hpp"
 #include "study/pack_upkeep.hpp"
+#include "study/practice.hpp"
 #include "study/prepare_advice.hpp"
+#include "study/protocol.hpp"
 #include "study/signed_pack.hpp"
 #include "study/stimulus_field.hpp"
 
@@ -38,12 +40,13 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// An image of the study. Its stimuli, one for each method, are adjacent in the key.
+/// An image of the study or of its practice. Its fields, one for each method, are adjacent in the
+/// key.
 struct ImageOfStudy {
-  int class_index = 0;
-  int exemplar = 0;
+  StimulusIndex stimulus;  ///< of the first of them
   std::filesystem::path path;
-  std::size_t first_stimulus = 0;
+  std::size_t first_field = 0;
+  std::size_t fields = 0;
   Digest pixels{};
   std::vector<std::string> remarks;  ///< engine::remarks_on
   std::int64_t size_px = 0;
@@ -53,35 +56,54 @@ struct ImageOfStudy {
 
 /// What follows from all fields together.
 struct MeasuredFields {
-  engine::StudyGains gains;
-  std::vector<std::string> remarks;  ///< on gains by level
-  std::vector<std::uint8_t> flat;    ///< whether nothing of a field can be felt
+  engine::StudyGains gains;             ///< of the study's own fields
+  std::vector<engine::Gains> of_field;  ///< of all, practice last
+  std::vector<std::string> remarks;     ///< on gains by level
+  std::vector<std::uint8_t> flat;       ///< whether nothing of a field can be felt
 };
+
+bool is_of_same_image(const StimulusIndex& one, const StimulusIndex& other) {
+  return one.class_index == other.class_index && one.exemplar == other.exemplar;
+}
 
 std::vector<ImageOfStudy> images_of(const Study& study) {
   std::vector<ImageOfStudy> images;
-  for (int c = 0; c < static_cast<int>(study.classes.size()); ++c) {
-    const auto& paths = study.classes[static_cast<std::size_t>(c)].images;
-    for (int e = 0; e < static_cast<int>(paths.size()); ++e) {
-      const std::size_t first = images.size() * static_cast<std::size_t>(study.presented_methods());
+  std::size_t place = 0;
+  for (const StimulusIndex& field : presented_fields(study)) {
+    if (images.empty() || !is_of_same_image(images.back().stimulus, field)) {
+      const auto& paths = study.class_at(field.class_index).images;
       ImageOfStudy& image = images.emplace_back();
-      image.class_index = c;
-      image.exemplar = e;
-      image.path = study.folder / paths[static_cast<std::size_t>(e)];
-      image.first_stimulus = first;
+      image.stimulus = field;
+      image.path = study.folder / paths[static_cast<std::size_t>(field.exemplar)];
+      image.first_field = place;
     }
+    ++images.back().fields;
+    ++place;
   }
   return images;
 }
 
 std::string fault_of(const Study& study, const ImageOfStudy& image, const std::string& what) {
-  return study.source + ": /classes/" + std::to_string(image.class_index) + "/images/" +
-         std::to_string(image.exemplar) + ": " + what;
+  return study.source + ": " + place_of_image(study, image.stimulus) + ": " + what;
+}
+
+bool is_practised(const Study& study, const ImageOfStudy& image) {
+  return study.is_practised(image.stimulus.class_index);
 }
 
 [[noreturn]] void refuse_image(const Study& study, const ImageOfStudy& image,
                                const std::string& what) {
   throw StudyError(fault_of(study, image, what));
+}
+
+/// A practice picture may be larger than the plane.
+void require_large_enough(const Study& study, const ImageOfStudy& image, int width, int height,
+                          const PlaneGeometry& plane) {
+  if (width >= plane.width_px && height >= plane.height_px) return;
+  refuse_image(study, image,
+               one_line(image.path.string()) + ": has fewer pixels than the study's plane, " +
+                   std::to_string(plane.width_px) + " x " + std::to_string(plane.height_px) +
+                   "; take a larger image");
 }
 
 /// Names all pictures that cannot be read, so that a set of many is mended in one go.
@@ -103,27 +125,32 @@ class Preparation {
   Preparation(const StudyKey& key, std::filesystem::path folder, const Progress& progress,
               const PrepareOptions& options)
       : key_(key),
+        fields_(key.fields()),
         folder_(std::move(folder)),
         progress_(progress),
         options_(options),
         earlier_(folder_, key),
         images_(images_of(key.study)),
-        entries_(key.stimuli.size()),
-        is_draft_(key.stimuli.size()),
-        is_damaged_(key.stimuli.size()),
-        solver_warnings_(key.stimuli.size()) {
-    report_.stimuli.resize(key.stimuli.size());
+        entries_(fields_.size()),
+        is_draft_(fields_.size()),
+        is_damaged_(fields_.size()),
+        solver_warnings_(fields_.size()),
+        prepared_(fields_.size()) {
     for (const engine::PackEntry& entry : earlier_.drafts()) drafts_[entry.code] = entry;
   }
 
   PrepareReport run() {
     check_images_exist(key_.study);
+    if (!key_.practice.empty()) plane_ = plane_of(key_.study);
     // Before the fields: of a picture that changes meanwhile, sessions are refused.
     pictures_ = picture_digests(key_.study);
     provide_fields();
     measure();
     finish();
     advise();
+    const auto practice = prepared_.begin() + std::ssize(key_.stimuli);
+    report_.stimuli.assign(prepared_.begin(), practice);
+    report_.practice.assign(practice, prepared_.end());
     return std::move(report_);
   }
 
@@ -164,7 +191,7 @@ class Preparation {
     std::vector<ImageOfStudy*> order;
     for (ImageOfStudy& image : images_) order.push_back(&image);
     std::ranges::sort(order, {}, [this](const ImageOfStudy* image) {
-      return std::string_view(key_.stimuli[image->first_stimulus].code);
+      return std::string_view(fields_[image->first_field].code);
     });
     return order;
   }
@@ -176,20 +203,22 @@ class Preparation {
     if (image.size_px > options_.large_image_px && !large_too) return;
     image.pixels = FieldHasher().add(std::int64_t{grey.width()}).add(grey.samples()).finish();
     std::optional<TakenTexture> taken;
-    for (int m = 0; m < key_.study.presented_methods(); ++m) {
-      const std::size_t i = image.first_stimulus + static_cast<std::size_t>(m);
-      provide_field(i, grey, taken);
+    for (std::size_t i = 0; i < image.fields; ++i) {
+      provide_field(image.first_field + i, grey, taken);
     }
     image.is_done = true;
   }
 
   /// Whether a later stimulus of the same image uses the same texture.
   [[nodiscard]] bool is_needed_again(std::size_t i) const {
-    const StimulusIndex& stimulus = key_.stimuli[i].stimulus;
-    const auto& methods = key_.study.methods;
-    const auto own = without_control(methods[static_cast<std::size_t>(stimulus.method)]);
-    for (int m = stimulus.method + 1; m < key_.study.presented_methods(); ++m) {
-      if (without_control(methods[static_cast<std::size_t>(m)]) == own) return true;
+    const auto texture_of = [this](const StimulusIndex& stimulus) {
+      return without_control(key_.study.methods[static_cast<std::size_t>(stimulus.method)]);
+    };
+    const StimulusIndex& own = fields_[i].stimulus;
+    for (std::size_t later = i + 1; later < fields_.size(); ++later) {
+      const StimulusIndex& other = fields_[later].stimulus;
+      if (!is_of_same_image(own, other)) break;
+      if (texture_of(other) == texture_of(own)) return true;
     }
     return false;
   }
@@ -198,7 +227,9 @@ class Preparation {
     try {
       engine::Picture picture = engine::read_picture(image.path);
       image.remarks = engine::remarks_on(picture.notes);
-      return std::move(picture.grey);
+      if (!is_practised(key_.study, image)) return std::move(picture.grey);
+      require_large_enough(key_.study, image, picture.grey.width(), picture.grey.height(), plane_);
+      return middle_of(picture.grey, plane_);
     } catch (const FileError& error) {
       refuse_image(key_.study, image, error.what());
     }
@@ -206,9 +237,9 @@ class Preparation {
 
   void provide_field(std::size_t i, const GreyImage& image, std::optional<TakenTexture>& taken) {
     const Clock::time_point start = Clock::now();
-    const engine::ExtractionOptions method = method_of(key_.study, key_.stimuli[i].stimulus);
+    const engine::ExtractionOptions method = method_of(key_.study, fields_[i].stimulus);
     const Digest tag = input_tag(key_.master, image, method, key_.study.rendering);
-    const std::string& code = key_.stimuli[i].code;
+    const std::string& code = fields_[i].code;
     const auto earlier = earlier_.find(code, tag);
     if (earlier) {
       entries_[i] = earlier->entry;
@@ -223,7 +254,7 @@ class Preparation {
 
   void build(std::size_t i, const GreyImage& image, const engine::ExtractionOptions& method,
              const Digest& tag, std::optional<TakenTexture>& taken) {
-    const auto& [code, stimulus] = key_.stimuli[i];
+    const auto& [code, stimulus] = fields_[i];
     const BuiltField built =
         build_field(image, method, key_.study.rendering, taken, is_needed_again(i));
     entries_[i] = {
@@ -232,9 +263,9 @@ class Preparation {
   }
 
   void note_provided(std::size_t i, bool reused, Clock::time_point start) {
-    const StimulusIndex& stimulus = key_.stimuli[i].stimulus;
-    PreparedStimulus& prepared = report_.stimuli[i];
-    prepared.class_label = key_.study.classes[static_cast<std::size_t>(stimulus.class_index)].label;
+    const StimulusIndex& stimulus = fields_[i].stimulus;
+    PreparedStimulus& prepared = prepared_[i];
+    prepared.class_label = key_.study.class_at(stimulus.class_index).label;
     prepared.exemplar = stimulus.exemplar;
     prepared.method = key_.study.methods[static_cast<std::size_t>(stimulus.method)].label;
     prepared.reused = reused;
@@ -256,7 +287,7 @@ class Preparation {
     if (is_draft_[i] != 0) drafts_[entries_[i].code] = entries_[i];
     if (building_ && seconds_since(recorded_) > 1.0) write_drafts();
     ++done_;
-    if (progress_) progress_(done_, static_cast<int>(key_.stimuli.size()));
+    if (progress_) progress_(done_, static_cast<int>(fields_.size()));
   }
 
   void write_drafts() {
@@ -289,13 +320,21 @@ class Preparation {
       if (is_large(views[i])) describe(i, views[i]);
     }
     for (std::size_t i = 0; i < entries_.size(); ++i) {
-      PreparedStimulus& prepared = report_.stimuli[i];
-      prepared.gains = entries_[i].gains = measured_.gains.of_field[i];
+      PreparedStimulus& prepared = prepared_[i];
+      prepared.gains = entries_[i].gains = measured_.of_field[i];
       prepared.bytes = size_of_field(i);
     }
   }
 
   void choose_gains(std::span<const engine::FieldView> views) {
+    choose_study_gains(views.first(key_.stimuli.size()));
+    measured_.of_field = measured_.gains.of_field;
+    std::ranges::copy(practice_gains(views.subspan(key_.stimuli.size()), measured_.gains.of_field,
+                                     key_.study.rendering),
+                      std::back_inserter(measured_.of_field));
+  }
+
+  void choose_study_gains(std::span<const engine::FieldView> views) {
     if (!key_.study.level) {
       measured_.gains = engine::choose_gains(views, key_.study.rendering);
       return;
@@ -312,8 +351,8 @@ class Preparation {
   void describe(std::size_t i, engine::FieldView field) {
     measured_.flat[i] = is_flat(field) ? 1 : 0;
     if (!options_.statistics) return;
-    report_.stimuli[i].statistics =
-        engine::field_statistics(field, measured_.gains.of_field[i], key_.study.rendering);
+    prepared_[i].statistics =
+        engine::field_statistics(field, measured_.of_field[i], key_.study.rendering);
   }
 
   [[nodiscard]] std::uintmax_t size_of_field(std::size_t i) const {
@@ -359,6 +398,7 @@ class Preparation {
   void advise() {
     std::uintmax_t pixels_of_study = 0;
     for (const ImageOfStudy& image : images_) {
+      if (is_practised(key_.study, image)) continue;
       pixels_of_study += static_cast<std::uintmax_t>(image.size_px);
     }
     report_.skipped = skipped_work(key_.study, pixels_of_study);
@@ -379,6 +419,9 @@ class Preparation {
     for (auto& warning : validity_warnings(key_.study)) {
       report_.warnings.push_back(std::move(warning));
     }
+    for (auto& warning : key_.study.task->advice(key_.study)) {
+      report_.warnings.push_back(std::move(warning));
+    }
     if (auto warning = label_warning(key_.study); !warning.empty()) {
       report_.warnings.push_back(std::move(warning));
     }
@@ -392,26 +435,29 @@ class Preparation {
     for (auto& warning : twin_warnings(key_.study, pixels)) {
       report_.warnings.push_back(std::move(warning));
     }
-    for (std::size_t i = 0; i < key_.stimuli.size(); ++i) {
+    for (std::size_t i = 0; i < fields_.size(); ++i) {
       if (!solver_warnings_[i].empty()) report_.warnings.push_back(solver_warnings_[i]);
       if (measured_.flat[i] == 0) continue;
-      report_.warnings.push_back(described(key_.study, key_.stimuli[i].stimulus) +
+      report_.warnings.push_back(described(key_.study, fields_[i].stimulus) +
                                  ": is flat, nothing of it can be felt; take another picture");
     }
   }
 
   const StudyKey& key_;
+  std::vector<KeyedStimulus> fields_;  ///< the key's
   std::filesystem::path folder_;
   const Progress& progress_;
   PrepareOptions options_;
   EarlierFields earlier_;
   std::vector<ImageOfStudy> images_;
+  PlaneGeometry plane_;  ///< where there is practice
   std::vector<Digest> pictures_;
   std::vector<engine::PackEntry> entries_;
   std::vector<std::uint8_t> is_draft_;  ///< whether a field is to be put into its place
   std::vector<std::uint8_t> is_damaged_;
   std::vector<std::string> solver_warnings_;
   MeasuredFields measured_;
+  std::vector<PreparedStimulus> prepared_;
   PrepareReport report_;
 
   std::mutex mutex_;  ///< guards the members below
@@ -470,49 +516,12 @@ std::filesystem::path pack_in_reach(const StudyCodes& codes,
   return named;
 }
 
-namespace {
-
-[[noreturn]] void refuse_practice_image(const Study& study, std::size_t index,
-                                        const std::string& what) {
-  throw StudyError(one_line(study.source + ": /practice/classes/" + std::to_string(index) +
-                            "/images/0: " + what));
-}
-
-/// As a session needs them (PracticeSet).
-void require_large_enough(const Study& study, std::size_t index, const PlaneGeometry& plane) {
-  const auto path = study.folder / study.practice.classes[index].images.front();
-  try {
-    const auto [width, height] = engine::size_of_image(path);
-    if (width >= plane.width_px && height >= plane.height_px) return;
-  } catch (const FileError& error) {
-    refuse_practice_image(study, index, error.what());
-  }
-  refuse_practice_image(study, index,
-                        path.string() + ": has fewer pixels than the study's plane, " +
-                            std::to_string(plane.width_px) + " x " +
-                            std::to_string(plane.height_px) + "; take a larger image");
-}
-
-/// Practice images are not in the pack, but a missing one should be found before a session needs
-/// it.
-void check_practice_images_exist(const Study& study) {
-  if (study.trials.practice == 0) return;
-  for (std::size_t i = 0; i < study.practice.classes.size(); ++i) {
-    const auto path = study.folder / study.practice.classes[i].images.front();
-    if (is_there(path)) continue;
-    refuse_practice_image(study, i, path.string() + ": does not exist; correct the path");
-  }
-}
-
-}  // namespace
-
 void check_images_exist(const Study& study) {
   for (const ImageOfStudy& image : images_of(study)) {
     if (is_there(image.path)) continue;
     refuse_image(study, image,
                  one_line(image.path.string()) + ": does not exist; correct the path");
   }
-  check_practice_images_exist(study);
   for (const std::string& file : picture_files(study.session)) {
     if (is_there(study.folder / file)) continue;
     throw StudyError(one_line(study.source + ": /session: the instructions show " +
@@ -546,17 +555,18 @@ PlaneGeometry plane_of(const Study& study) {
   }
   std::erase(faults, "");
   refuse_images(std::move(faults));
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    if (sizes[i] == sizes[0]) continue;
-    refuse_image(study, images[i],
-                 one_line(images[i].path.string()) + ": has " + words(sizes[i]) + ", and " +
-                     one_line(images[0].path.string()) + " has " + words(sizes[0]) +
-                     "; all must be as large as the plane that is felt: crop them to one size with "
-                     "`touchtrial stimuli import`");
-  }
   const PlaneGeometry plane{study.rendering.pitch_mm, sizes[0].second, sizes[0].first};
-  for (std::size_t i = 0; study.trials.practice > 0 && i < study.practice.classes.size(); ++i) {
-    require_large_enough(study, i, plane);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    if (is_practised(study, images[i])) {
+      require_large_enough(study, images[i], sizes[i].first, sizes[i].second, plane);
+    } else if (sizes[i] != sizes[0]) {
+      refuse_image(
+          study, images[i],
+          one_line(images[i].path.string()) + ": has " + words(sizes[i]) + ", and " +
+              one_line(images[0].path.string()) + " has " + words(sizes[0]) +
+              "; all must be as large as the plane that is felt: crop them to one size with "
+              "`touchtrial stimuli import`");
+    }
   }
   return plane;
 }

@@ -63,7 +63,8 @@ struct SkippedWork {
 };
 
 struct PrepareReport {
-  std::vector<PreparedStimulus> stimuli;
+  std::vector<PreparedStimulus> stimuli;   ///< of StudyCodes::stimuli
+  std::vector<PreparedStimulus> practice;  ///< of StudyCodes::practice
   std::vector<SkippedWork> skipped;
   std::vector<std::string> warnings;
 };
@@ -101,10 +102,11 @@ void check_images_exist(const Study& study);
 /// Called after each stimulus, from any thread, but never by two threads at the same time.
 using Progress = std::function<void(int done, int of)>;
 
-/// Extracts, renders and writes every presented stimulus whose field is missing, damaged or made
-/// from different input. Then chooses the gains, signs the table of contents with the digests of
-/// the pictures that participants see, puts everything into its place, and removes fields that no
-/// stimulus uses any more. What the key did not sign is built anew, with a warning.
+/// Extracts, renders and writes every field of the key that is missing, damaged or made from
+/// different input. Then chooses the gains (of practice: practice_gains), signs the table of
+/// contents with the digests of the pictures that participants see, puts everything into its place,
+/// and removes fields that no stimulus uses any more. What the key did not sign is built anew, with
+/// a warning.
 /// A run that fails leaves the pack as it was; if a picture is at fault, it leaves finished fields
 /// to the next one, as a run that is killed does. One that is killed while it puts them into their
 /// places leaves a pack that cannot be presented and that the next one completes. A run with

@@ -11,7 +11,7 @@ namespace touchtrial::study {
 namespace {
 
 std::string image_in_words(const Study& study, int class_index, int exemplar) {
-  const StudyClass& shown = study.classes[static_cast<std::size_t>(class_index)];
+  const StudyClass& shown = study.class_at(class_index);
   const auto& image = shown.images[static_cast<std::size_t>(exemplar)];
   return one_line("class \"" + shown.label + "\", image " + image.string());
 }

@@ -4,6 +4,7 @@
 #include "study/study.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 
 namespace touchtrial::study {
@@ -17,7 +18,12 @@ std::vector<const Protocol*>& known_protocols() {
 }  // namespace
 
 Fields Task::fields(const Study& study) const {
-  return {.methods = study.methods};
+  Fields fields{.methods = study.methods};
+  if (study.trials.practice == 0) return fields;
+  for (std::size_t i = 0; i < study.practice.classes.size(); ++i) {
+    fields.practice.push_back({.class_index = static_cast<int>(study.classes.size() + i)});
+  }
+  return fields;
 }
 
 void add_protocol(const Protocol& protocol) {
@@ -40,11 +46,7 @@ const Protocol* find_protocol(std::string_view name) {
 }
 
 std::string picture_of(const Study& study, const Trial& trial) {
-  if (!trial.picture) return "";
-  const auto shown = static_cast<std::size_t>(*trial.picture);
-  const std::size_t of_study = study.classes.size();
-  return shown < of_study ? study.classes[shown].label
-                          : study.practice.classes.at(shown - of_study).label;
+  return trial.picture ? study.class_at(*trial.picture).label : "";
 }
 
 bool chooses_classes(const Study& study) {
@@ -78,6 +80,25 @@ Ask ask_of(const Study& study) {
 
 std::vector<Choice> choices_of(const Study& study) {
   return ask_of(study).choices();
+}
+
+std::vector<StimulusIndex> presented_fields(const Study& study) {
+  std::vector<StimulusIndex> fields;
+  for (int c = 0; c < static_cast<int>(study.classes.size()); ++c) {
+    const auto images = static_cast<int>(study.class_at(c).images.size());
+    for (int e = 0; e < images; ++e) {
+      for (int m = 0; m < study.presented_methods(); ++m) fields.push_back({c, e, m});
+    }
+  }
+  std::ranges::copy(study.task->fields(study).practice, std::back_inserter(fields));
+  return fields;
+}
+
+std::string place_of_image(const Study& study, const StimulusIndex& field) {
+  const bool practised = study.is_practised(field.class_index);
+  const int before = practised ? static_cast<int>(study.classes.size()) : 0;
+  return (practised ? "/practice/classes/" : "/classes/") +
+         std::to_string(field.class_index - before) + "/images/" + std::to_string(field.exemplar);
 }
 
 Practice practice_of(const Study& study, const ScheduleDraw& draw, int round) {

@@ -10,6 +10,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,11 +25,12 @@ struct Practice {
   int rounds = 0;                   ///< maximum
 };
 
-/// The fields that trials may present beside those of each image with each method of the study
-/// file.
+/// The fields that trials may present.
 struct Fields {
-  std::vector<StudyMethod> methods;  ///< in place of the study file's
-  std::vector<Plane> mixtures{};     ///< every mix of two fields
+  /// In place of the study file's. There is a field of each image with each of those presented.
+  std::vector<StudyMethod> methods;
+  std::vector<StimulusIndex> practice{};  ///< fields of practice classes
+  std::vector<Plane> mixtures{};          ///< every mix of two fields
   /// Planes are compared with each other and with blank ones: their walls all lie at one height,
   /// and their gains are applied to forces.
   bool levelled = false;
@@ -50,9 +52,15 @@ class Task {
   [[nodiscard]] virtual std::string in_clear() const { return {}; }
   /// The name and version of the rule that makes orders; the seal commits to it.
   [[nodiscard]] virtual std::string rule(const Study& study) const = 0;
+  /// What `prepare` warns of: options that are allowed but probably unintended, each after its
+  /// place in the study file.
+  [[nodiscard]] virtual std::vector<std::string> advice(const Study& /*study*/) const { return {}; }
   /// The number of scored trials of one participant at one visit, or of all visits that divide the
   /// methods.
   [[nodiscard]] virtual int scored_trials(const Study& study) const = 0;
+  /// The number of one session's catch trials that have a right answer.
+  [[nodiscard]] virtual int answered_catches(const Study& /*study*/) const { return 0; }
+  /// By default every practice class with the first method, if there is practice.
   [[nodiscard]] virtual Fields fields(const Study& study) const;
 
   /// How the trial at a place goes. All trials of a study ask the same question.
@@ -82,6 +90,8 @@ struct Protocol {
   int min_methods = 1;
   bool adaptive = false;    ///< answers decide what comes next
   bool all_methods = true;  ///< participants get all of the study's methods; if not, only the first
+  /// The registered questions that its analysis answers; a study cannot register another.
+  std::span<const Estimand> estimands{};
 };
 
 /// Registers a protocol under its name. Call before the first study is read. Not thread-safe.
@@ -103,6 +113,12 @@ void add_protocol(const Protocol& protocol);
 /// The schedule of that order.
 /// \throws StudyError if the order is impossible for the study
 [[nodiscard]] Schedule make_schedule(const Study& study, const ScheduleDraw& draw);
+
+/// Every field that a study may present, which `prepare` makes and the key names: by class, image
+/// and method, then those of practice.
+[[nodiscard]] std::vector<StimulusIndex> presented_fields(const Study& study);
+/// The place in the study file of a field's image, for errors.
+[[nodiscard]] std::string place_of_image(const Study& study, const StimulusIndex& field);
 
 /// What the trials of a study ask, but for controls.
 [[nodiscard]] Ask ask_of(const Study& study);

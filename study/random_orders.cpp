@@ -274,8 +274,8 @@ bool limited_order_exists(const std::vector<int>& counts, int max_run, RunBefore
 }
 
 bool limited_orders_are_countable(const std::vector<int>& counts, int max_run) {
-  constexpr double kMostStates = 150'000.0;
-  constexpr double kMostRuns = 2'000'000.0;
+  constexpr double kMaxStates = 150'000.0;
+  constexpr double kMaxRuns = 2'000'000.0;
   const auto symbols = static_cast<int>(counts.size());
   const int copies = *std::ranges::max_element(counts);
   double states = std::min(symbols, copies + 1);
@@ -283,7 +283,7 @@ bool limited_orders_are_countable(const std::vector<int>& counts, int max_run) {
     states *= static_cast<double>(symbols + copies - i + 1) / i;
   }
   const double runs = states * std::min(symbols, copies) * std::min(max_run, copies);
-  return states <= kMostStates && runs <= kMostRuns;
+  return states <= kMaxStates && runs <= kMaxRuns;
 }
 
 std::optional<std::vector<int>> draw_limited_order(const std::vector<int>& counts, int max_run,

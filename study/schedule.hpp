@@ -56,9 +56,10 @@ struct Plane {
   friend bool operator==(const Plane&, const Plane&) = default;
 };
 
-/// The step of a track that an adaptive order presents.
+/// The step of a track that an adaptive order presents. Catch trials are steps of tracks too, which
+/// choose nothing.
 struct Level {
-  int track = 0;  ///< from 1; 0: a catch trial, which belongs to no track
+  int track = 0;  ///< from 1; 0: none
   int level = 0;  ///< index into the track's levels
 
   friend bool operator==(const Level&, const Level&) = default;

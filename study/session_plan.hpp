@@ -73,7 +73,7 @@ struct MaskingPlan {
 };
 
 /// The largest letters for which every screen has room.
-inline constexpr double kLargestTextScale = 1.5;
+inline constexpr double kMaxTextScale = 1.5;
 
 /// The study file's "session".
 struct SessionPlan {
@@ -81,7 +81,7 @@ struct SessionPlan {
   /// Pages of instructions by language; empty: the program's own.
   std::map<std::string, std::vector<std::string>> instructions;
   std::map<std::string, Texts> texts;  ///< by language; in place of the program's own
-  double text_scale = 1.0;  ///< of the letters on the participant's screens, 1 to kLargestTextScale
+  double text_scale = 1.0;     ///< of the letters on the participant's screens, 1 to kMaxTextScale
   bool high_contrast = false;  ///< whether these screens are black on white
   Sight sight = Sight::curtain;
   MaskingPlan masking;
@@ -134,7 +134,15 @@ enum class RegisteredVisits { all, first, last };
 enum class Estimand {
   mean_accuracy,  ///< mean over participants of the share of right answers, against chance
   difference,     ///< mean over participants of the accuracy with one method less that with another
+  mean_threshold,  ///< mean over participants of the threshold at one standard, without a test
+  threshold_difference,  ///< the same at one standard less that at another, against 0
+  threshold_equality,    ///< whether all differences of standards lie within a margin
 };
+
+/// Whether its unit is dB, the unit of a threshold; otherwise it is a share of right answers.
+[[nodiscard]] constexpr bool is_of_thresholds(Estimand estimand) noexcept {
+  return estimand != Estimand::mean_accuracy && estimand != Estimand::difference;
+}
 
 enum class RegisteredTest {
   t,          ///< Student's t test over participants
@@ -145,7 +153,7 @@ enum class RegisteredTest {
 /// How the error rate is spent over registered looks (Lan, DeMets 1983).
 enum class Spending { obrien_fleming, pocock };
 
-/// "mean-accuracy" or "difference"
+/// "mean-accuracy", "difference", "mean-threshold", "threshold-difference" or "threshold-equality"
 [[nodiscard]] std::string_view name_of(Estimand estimand);
 /// "t", "sign-flip" or "crossover"
 [[nodiscard]] std::string_view name_of(RegisteredTest test);
@@ -155,23 +163,38 @@ enum class Spending { obrien_fleming, pocock };
 /// The registered reasons for leaving a session out, besides that it was stopped or its participant
 /// withdrew.
 struct ExclusionRules {
-  std::vector<std::string> deviations;     ///< codes, the program's first, that leave one out
+  std::vector<std::string> deviations{};   ///< codes, the program's first, that leave one out
   std::optional<double> invalid_trials{};  ///< share of its trials; a session with more is left out
+  /// Catch trials that somebody may answer wrongly; a session with more of them is left out.
+  std::optional<int> missed_catch{};
 
   friend bool operator==(const ExclusionRules&, const ExclusionRules&) = default;
+};
+
+/// A standard of thresholds as a registration names it. What the study has once need not be named.
+struct RegisteredStandard {
+  std::string label;  ///< of a class; may be empty
+  std::optional<double> value{};
+
+  friend bool operator==(const RegisteredStandard&, const RegisteredStandard&) = default;
 };
 
 /// The part of a registration that the program holds a study against.
 struct RegisteredAnalysis {
   Estimand estimand = Estimand::mean_accuracy;
-  std::vector<std::string> methods;  ///< labels: the first less the second; empty: the study's two
+  /// Labels: the first less the second; empty: the study's two.
+  std::vector<std::string> methods{};
+  /// Of thresholds: a difference is the first less the second; empty: all that the study has.
+  std::vector<RegisteredStandard> standards{};
   RegisteredTest test = RegisteredTest::t;
-  bool one_sided = true;                    ///< against larger values
-  double alpha = 0.05;                      ///< 1e-6 .. 0.5
-  std::optional<double> smallest_effect{};  ///< worth having: an accuracy, or a difference
+  bool one_sided = true;  ///< against larger values
+  double alpha = 0.05;    ///< 1e-6 .. 0.5
+  /// Worth having: an accuracy, a difference of accuracies, or one of thresholds, in dB.
+  std::optional<double> smallest_effect{};
   /// Of non-inferiority: by how much the first method may be worse and still be as good; in (0, 1].
+  /// Of threshold_equality: by how much two thresholds may differ and still be the same, in dB.
   std::optional<double> margin{};
-  std::vector<int> looks;  ///< numbers of participants at interim looks, ascending
+  std::vector<int> looks{};  ///< numbers of participants at interim looks, ascending
   Spending spending = Spending::obrien_fleming;
   std::optional<ExclusionRules> exclusion_rules{};
   RegisteredVisits visits = RegisteredVisits::all;

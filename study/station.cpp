@@ -154,8 +154,8 @@ int order_block_of(const Study& study, std::span<const Station> stations, int en
 }
 
 std::vector<Station> stations_named(std::span<const std::string> names) {
-  if (names.empty() || names.size() > kMostStations) {
-    throw UsageError("a plan is for 1 to " + std::to_string(kMostStations) + " stations");
+  if (names.empty() || names.size() > kMaxStations) {
+    throw UsageError("a plan is for 1 to " + std::to_string(kMaxStations) + " stations");
   }
   std::vector<Station> stations;
   std::set<std::string> known;
@@ -177,7 +177,7 @@ int enrolments_of(std::span<const Station> stations) noexcept {
 
 void hand_out_enrolments(std::span<Station> stations, int participants) {
   const int had = enrolments_of(stations);
-  if (stations.empty() || participants < had || participants > kMostEnrolments) {
+  if (stations.empty() || participants < had || participants > kMaxEnrolments) {
     throw std::invalid_argument("hand_out_enrolments: no stations, or an impossible number");
   }
   const std::vector<int> more = shares(stations, participants - had);

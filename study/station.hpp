@@ -23,8 +23,8 @@ struct EnrolmentRange {
   friend bool operator==(const EnrolmentRange&, const EnrolmentRange&) = default;
 };
 
-inline constexpr int kMostEnrolments = 1'000'000;
-inline constexpr std::size_t kMostStations = 1000;
+inline constexpr int kMaxEnrolments = 1'000'000;
+inline constexpr std::size_t kMaxStations = 1000;
 /// The only station of a study that nobody divided; all enrolment numbers are its own.
 inline constexpr const char* kOnlyStation = "main";
 
@@ -72,7 +72,7 @@ enum class Draws { people, rehearsal };
                                  int enrolment, Draws draws = Draws::people);
 
 /// Stations without numbers and secrets.
-/// \param names  1 to kMostStations
+/// \param names  1 to kMaxStations
 /// \throws UsageError if there are too few or too many names, a name is not 1 to 32 of
 ///   [0-9A-Za-z+-_], or a name occurs twice
 [[nodiscard]] std::vector<Station> stations_named(std::span<const std::string> names);
@@ -82,7 +82,7 @@ enum class Draws { people, rehearsal };
 
 /// Hands out the next numbers until all stations together have `participants`. Each station gets
 /// consecutive numbers, so many that the totals differ as little as possible.
-/// \param participants  from enrolments_of(stations) to kMostEnrolments
+/// \param participants  from enrolments_of(stations) to kMaxEnrolments
 /// \throws std::invalid_argument if there are no stations or `participants` is out of range
 void hand_out_enrolments(std::span<Station> stations, int participants);
 

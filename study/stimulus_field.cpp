@@ -73,7 +73,11 @@ engine::ExtractionOptions method_of(const Study& study, const StimulusIndex& sti
   const auto& method = study.methods[static_cast<std::size_t>(stimulus.method)];
   engine::ExtractionOptions options = method;
   if (options.control == engine::Control::none) return options;
-  const StudyClass& shown = study.classes[static_cast<std::size_t>(stimulus.class_index)];
+  const StudyClass& shown = study.class_at(stimulus.class_index);
+  if (study.is_practised(stimulus.class_index)) {
+    options.control_seed = RandomStream(study.seed, "control of practice " + shown.label).bits();
+    return options;
+  }
   const auto& image = shown.images[static_cast<std::size_t>(stimulus.exemplar)];
   const Digest identity =
       FieldHasher().add(shown.label).add(image.string()).add(method.label).finish();

@@ -221,6 +221,15 @@ std::string Study::presented_labels() const {
   return listed(std::span(methods).first(presented), ", ", &StudyMethod::label);
 }
 
+const StudyClass& Study::class_at(int class_index) const {
+  if (!is_practised(class_index)) return classes.at(static_cast<std::size_t>(class_index));
+  return practice.classes.at(static_cast<std::size_t>(class_index) - classes.size());
+}
+
+bool Study::is_practised(int class_index) const noexcept {
+  return class_index >= static_cast<int>(classes.size());
+}
+
 int Study::scored_trials() const {
   return task->scored_trials(*this) * (visits.methods == VisitMethods::all ? visits.count : 1);
 }

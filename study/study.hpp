@@ -135,6 +135,11 @@ struct Study {
   [[nodiscard]] int presented_methods() const;
   /// Their labels with commas between them.
   [[nodiscard]] std::string presented_labels() const;
+  /// The class of an index. Practice classes follow the study's.
+  /// \throws std::out_of_range if there is no such class
+  [[nodiscard]] const StudyClass& class_at(int class_index) const;
+  /// Whether a class is one of practice.
+  [[nodiscard]] bool is_practised(int class_index) const noexcept;
   /// The number of scored presentations of one participant, over all visits.
   [[nodiscard]] int scored_trials() const;
   /// The number of visits without which a participant does not count: all, or the first if the

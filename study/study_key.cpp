@@ -6,6 +6,7 @@
 #include "study/study_sections.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 namespace touchtrial::study {
@@ -21,11 +22,12 @@ std::string first_hex(const Digest& digest, std::size_t bytes) {
 /// The code of a stimulus. It depends only on the stimulus itself, so that a stimulus keeps its
 /// code when others are added or removed.
 std::string code_for(const SecretKey& code_key, const Study& study, const StimulusIndex& stimulus) {
-  const StudyClass& shown = study.classes[static_cast<std::size_t>(stimulus.class_index)];
+  const StudyClass& shown = study.class_at(stimulus.class_index);
+  const bool practised = study.is_practised(stimulus.class_index);
   const auto& image = shown.images[static_cast<std::size_t>(stimulus.exemplar)];
   const auto& method = study.methods[static_cast<std::size_t>(stimulus.method)];
   const Digest identity = FieldHasher()
-                              .add("touchtrial code 1")
+                              .add(practised ? "touchtrial practice code 1" : "touchtrial code 1")
                               .add(shown.label)
                               .add(image.string())
                               .add(method.label)
@@ -33,24 +35,19 @@ std::string code_for(const SecretKey& code_key, const Study& study, const Stimul
   return first_hex(keyed_hash(code_key, ByteView(identity)), kCodeBytes);
 }
 
-std::vector<KeyedStimulus> keyed_stimuli(const SecretKey& master, const Study& study) {
-  const SecretKey code_key = derive_key(master, "codes");
-  std::vector<KeyedStimulus> stimuli;
+/// Makes the codes of all fields of the key's study.
+void give_codes(StudyKey& key) {
+  const SecretKey code_key = derive_key(key.master, "codes");
+  key.stimuli.clear();
+  key.practice.clear();
   std::set<std::string> codes;
-  for (int c = 0; c < static_cast<int>(study.classes.size()); ++c) {
-    const auto images = static_cast<int>(study.classes[static_cast<std::size_t>(c)].images.size());
-    for (int e = 0; e < images; ++e) {
-      for (int m = 0; m < study.presented_methods(); ++m) {
-        const StimulusIndex stimulus{c, e, m};
-        stimuli.push_back({code_for(code_key, study, stimulus), stimulus});
-        if (codes.insert(stimuli.back().code).second) continue;
-        throw StudyError("study " + study.name + ": /classes/" + std::to_string(c) + "/images/" +
-                         std::to_string(e) +
-                         ": has the code of another stimulus; rename the image or the label");
-      }
-    }
+  for (const StimulusIndex& field : presented_fields(key.study)) {
+    auto& list = key.study.is_practised(field.class_index) ? key.practice : key.stimuli;
+    list.push_back({code_for(code_key, key.study, field), field});
+    if (codes.insert(list.back().code).second) continue;
+    throw StudyError("study " + key.study.name + ": " + place_of_image(key.study, field) +
+                     ": has the code of another stimulus; rename the image or the label");
   }
-  return stimuli;
 }
 
 std::string catch_code_of(const SecretKey& master) {
@@ -107,6 +104,12 @@ void add_plans(nlohmann::json& configuration, const StudyKey& key) {
 
 }  // namespace
 
+std::vector<KeyedStimulus> StudyCodes::fields() const {
+  std::vector<KeyedStimulus> fields = stimuli;
+  std::ranges::copy(practice, std::back_inserter(fields));
+  return fields;
+}
+
 std::optional<StimulusIndex> StudyCodes::stimulus_of(const std::string& code) const {
   const auto found = std::ranges::find(stimuli, code, &KeyedStimulus::code);
   if (found == stimuli.end()) return std::nullopt;
@@ -114,8 +117,9 @@ std::optional<StimulusIndex> StudyCodes::stimulus_of(const std::string& code) co
 }
 
 const std::string& StudyCodes::code_of(const StimulusIndex& stimulus) const {
-  const auto found = std::ranges::find(stimuli, stimulus, &KeyedStimulus::stimulus);
-  if (found == stimuli.end()) {
+  const auto& list = study.is_practised(stimulus.class_index) ? practice : stimuli;
+  const auto found = std::ranges::find(list, stimulus, &KeyedStimulus::stimulus);
+  if (found == list.end()) {
     throw StudyError("study " + study.name + ": does not present class " +
                      std::to_string(stimulus.class_index) + ", image " +
                      std::to_string(stimulus.exemplar) + ", method " +
@@ -163,7 +167,7 @@ StudyKey make_study_key(const Study& study, Entropy& entropy, bool simulated) {
   key.catch_code = catch_code_of(key.master);
   key.investigator_box = key.box().public_half;
   key.investigator_signature = key.signer().public_half();
-  divide(key, {{.name = kOnlyStation, .ranges = {{1, kMostEnrolments}}}});
+  divide(key, {{.name = kOnlyStation, .ranges = {{1, kMaxEnrolments}}}});
   return rekeyed(key, study);
 }
 
@@ -175,7 +179,7 @@ StudyKey simulated_study_key(const Study& study) {
 StudyKey rekeyed(const StudyKey& key, const Study& study) {
   StudyKey changed = key;
   changed.study = study;
-  changed.stimuli = keyed_stimuli(key.master, study);
+  give_codes(changed);
   changed.configuration = blinded_configuration(changed);
   changed.seal = study_seal(changed);
   return changed;

@@ -25,7 +25,8 @@ struct KeyedStimulus {
 struct StudyCodes {
   std::string study_id;  ///< hexadecimal; derived from the master secret, reveals nothing about it
   Study study;           ///< as sealed: labels, image names, methods
-  std::vector<KeyedStimulus> stimuli;  ///< every presented class x exemplar x method
+  std::vector<KeyedStimulus> stimuli;   ///< every presented class x exemplar x method
+  std::vector<KeyedStimulus> practice;  ///< those of practice, which no schedule names
   /// The code of the plane without texture. It looks like the code of a stimulus; no pack has a
   /// field with this code.
   std::string catch_code;
@@ -36,8 +37,11 @@ struct StudyCodes {
   std::filesystem::path pack_folder;   ///< the pack's place when the file was written
   bool simulated = false;
 
-  /// \return the stimulus with this code, or nothing if there is none
+  /// All fields of the study's pack: `stimuli`, then `practice`.
+  [[nodiscard]] std::vector<KeyedStimulus> fields() const;
+  /// \return the one of `stimuli` with this code, or nothing if there is none
   [[nodiscard]] std::optional<StimulusIndex> stimulus_of(const std::string& code) const;
+  /// The code of a field.
   /// \throws StudyError if the study does not present the stimulus
   [[nodiscard]] const std::string& code_of(const StimulusIndex& stimulus) const;
 };
@@ -70,7 +74,8 @@ struct StationKey : StudyCodes {
 /// Makes a new key with one station. `entropy` supplies the master secret, for the purpose
 /// "touchtrial study key master", from which all other secrets and the codes are derived. A code
 /// depends only on the master secret, the class label, the image path as written and the method
-/// label, so a stimulus keeps its code when others are added or removed.
+/// label, so a stimulus keeps its code when others are added or removed, and on whether it is of
+/// practice, so that the code of a texture tells nothing when practice becomes a class.
 /// \throws StudyError if two stimuli get the same code (probability 2^-64 for each pair)
 [[nodiscard]] StudyKey make_study_key(const Study& study, Entropy& entropy, bool simulated);
 
@@ -129,8 +134,9 @@ void save_station_key(const std::filesystem::path& path, const StationKey& key);
                                     const std::filesystem::path& file, const std::string& option);
 
 /// The study's seal, which is written before trial 1: SHA-256 over key (master secret, whether it
-/// is simulated, meaning of each code), schedule rule, seed and blinded configuration. The study's
-/// folder, the layout of its file and its stations do not enter.
+/// is simulated, meaning of each code), schedule rule, seed and blinded configuration. The codes of
+/// practice follow from the secret and from the practice section, of which the configuration has a
+/// keyed hash. The study's folder, the layout of its file and its stations do not enter.
 [[nodiscard]] Digest study_seal(const StudyKey& key);
 
 }  // namespace touchtrial::study

@@ -2,6 +2,7 @@
 /// checksum over it, so that a change of any byte is detected.
 #include "core/errors.hpp"
 #include "study/key_protection.hpp"
+#include "study/protocol.hpp"
 #include "study/study_key.hpp"
 
 #include <algorithm>
@@ -24,18 +25,20 @@ class StoredEntropy final : public Entropy {
   SecretKey master_;
 };
 
-/// Of both files.
-constexpr int kVersion = 3;
-
 /// One kind of file and its words.
 struct Kind {
   std::string_view format;
+  int version;
   std::string_view title;
-  std::string_view remedy;  ///< where such a file comes from
+  std::string_view remedy;   ///< where such a file comes from
+  std::string_view renewal;  ///< what to do with a file of another version
 };
-constexpr Kind kKey{"touchtrial-key", "key", "give the .key file that `prepare` wrote"};
-constexpr Kind kStation{"touchtrial-station", "station file",
-                        "give the .station file that `prepare` or `plan` wrote"};
+constexpr Kind kKey{"touchtrial-key", 3, "key", "give the .key file that `prepare` wrote",
+                    "use the program that wrote it"};
+constexpr Kind kStation{"touchtrial-station", 4, "station file",
+                        "give the .station file that `prepare` or `plan` wrote",
+                        "run `touchtrial prepare`, which writes it anew with the pack, or use the "
+                        "program that wrote it"};
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& what) {
   throw FileError(one_line(path.string() + ": " + what));
@@ -74,15 +77,14 @@ std::string text_of_document(json document) {
   return document.dump(2) + "\n";
 }
 
-json stimuli_to_json(const StudyCodes& codes) {
+json stimuli_to_json(const std::vector<KeyedStimulus>& stimuli, const Study& study) {
   json list = json::array();
-  for (const auto& [code, stimulus] : codes.stimuli) {
-    const StudyClass& shown = codes.study.classes[static_cast<std::size_t>(stimulus.class_index)];
-    list.push_back(
-        {{"code", code},
-         {"label", shown.label},
-         {"image", shown.images[static_cast<std::size_t>(stimulus.exemplar)].string()},
-         {"method", codes.study.methods[static_cast<std::size_t>(stimulus.method)].label}});
+  for (const auto& [code, stimulus] : stimuli) {
+    const StudyClass& shown = study.class_at(stimulus.class_index);
+    list.push_back({{"code", code},
+                    {"label", shown.label},
+                    {"image", shown.images[static_cast<std::size_t>(stimulus.exemplar)].string()},
+                    {"method", study.methods[static_cast<std::size_t>(stimulus.method)].label}});
   }
   return list;
 }
@@ -97,7 +99,7 @@ std::vector<EnrolmentRange> ranges_from(const json& list) {
   std::vector<EnrolmentRange> ranges;
   for (const json& ends : list) {
     const EnrolmentRange range{ends.at(0).get<int>(), ends.at(1).get<int>()};
-    if (range.first < 1 || range.last < range.first || range.last > kMostEnrolments) {
+    if (range.first < 1 || range.last < range.first || range.last > kMaxEnrolments) {
       throw FileError("a station's enrolment numbers are impossible");
     }
     ranges.push_back(range);
@@ -110,13 +112,13 @@ json common_document(const StudyCodes& codes, const Kind& kind, const std::files
   // An empty folder means the working directory; it is written relative to the key as well.
   const auto study_folder = codes.study.folder.empty() ? "." : codes.study.folder;
   return {{"format", kind.format},
-          {"version", kVersion},
+          {"version", kind.version},
           {"study_id", codes.study_id},
           {"simulated", codes.simulated},
           {"study", codes.study.text},
           {"study_folder", relative_to_key(study_folder, path)},
           {"pack_folder", relative_to_key(codes.pack_folder, path)},
-          {"stimuli", stimuli_to_json(codes)}};
+          {"stimuli", stimuli_to_json(codes.stimuli, codes.study)}};
 }
 
 Study study_from(const json& document, const std::filesystem::path& path) {
@@ -157,7 +159,7 @@ StudyKey key_of(const json& document, const std::filesystem::path& path) {
   divide(key, std::move(stations));
   key.pack_folder = found_from_key(document.at("pack_folder").get<std::string>(), path);
   const bool same = key.study_id == document.at("study_id").get<std::string>() &&
-                    stimuli_to_json(key) == document.at("stimuli");
+                    stimuli_to_json(key.stimuli, key.study) == document.at("stimuli");
   if (!same) refuse_damaged(path, kKey);
   return key;
 }
@@ -169,6 +171,7 @@ json document_of(const StationKey& key, const std::filesystem::path& path) {
   document["secret"] = to_hex(key.station.secret);
   document["certificate"] = to_hex(ByteView(key.certificate));
   document["catch_code"] = key.catch_code;
+  document["practice"] = stimuli_to_json(key.practice, key.study);
   document["configuration"] = key.configuration;
   document["seal"] = to_hex(key.seal);
   document["investigator_box"] = to_hex(key.investigator_box);
@@ -176,25 +179,24 @@ json document_of(const StationKey& key, const std::filesystem::path& path) {
   return document;
 }
 
-/// The stimuli of a station file, whose codes the station cannot derive.
-std::vector<KeyedStimulus> stimuli_from(const json& list, const Study& study) {
-  std::vector<KeyedStimulus> stimuli;
-  for (int c = 0; c < static_cast<int>(study.classes.size()); ++c) {
-    const auto images = static_cast<int>(study.classes[static_cast<std::size_t>(c)].images.size());
-    for (int e = 0; e < images; ++e) {
-      for (int m = 0; m < study.presented_methods(); ++m) {
-        stimuli.push_back({list.at(stimuli.size()).at("code").get<std::string>(), {c, e, m}});
-      }
-    }
+/// Takes the fields of a station file, whose codes the station cannot derive.
+/// \return whether the file names the study's fields and no others
+bool take_codes(const json& document, StationKey& key) {
+  for (const StimulusIndex& field : presented_fields(key.study)) {
+    const bool practised = key.study.is_practised(field.class_index);
+    auto& list = practised ? key.practice : key.stimuli;
+    const json& named = document.at(practised ? "practice" : "stimuli").at(list.size());
+    list.push_back({named.at("code").get<std::string>(), field});
   }
-  return stimuli;
+  return stimuli_to_json(key.stimuli, key.study) == document.at("stimuli") &&
+         stimuli_to_json(key.practice, key.study) == document.at("practice");
 }
 
 StationKey station_of_document(const json& document, const std::filesystem::path& path) {
   StationKey key;
   key.study = study_from(document, path);
   key.study_id = document.at("study_id").get<std::string>();
-  key.stimuli = stimuli_from(document.at("stimuli"), key.study);
+  const bool is_whole = take_codes(document, key);
   key.catch_code = document.at("catch_code").get<std::string>();
   key.configuration = document.at("configuration").get<std::string>();
   key.seal = digest_from(document.at("seal"));
@@ -211,7 +213,7 @@ StationKey station_of_document(const json& document, const std::filesystem::path
       station_statement(key.study_id, key.station.name, key.signer().public_half());
   const bool is_own =
       certificate && is_signed_by(key.investigator_signature, statement, *certificate);
-  if (!is_own || stimuli_to_json(key) != document.at("stimuli")) refuse_damaged(path, kStation);
+  if (!is_own || !is_whole) refuse_damaged(path, kStation);
   std::ranges::copy(*certificate, key.certificate.begin());
   return key;
 }
@@ -223,9 +225,9 @@ void check_format(const json& document, const std::filesystem::path& path, const
     refuse(path,
            "is not a Touchtrial " + std::string(kind.title) + "; " + std::string(kind.remedy));
   }
-  if (document["version"] != kVersion) {
+  if (document["version"] != kind.version) {
     refuse(path, "is a " + std::string(kind.title) + " of version " + document["version"].dump() +
-                     ", not " + std::to_string(kVersion) + "; use the program that wrote it");
+                     ", not " + std::to_string(kind.version) + "; " + std::string(kind.renewal));
   }
 }
 

@@ -14,11 +14,15 @@ namespace touchtrial::study {
 namespace {
 
 constexpr std::size_t kLongestStatement = 4000;  // bytes
-constexpr int kMostParticipants = 100'000;
-constexpr std::size_t kMostLooks = 20;
-constexpr std::size_t kMostCodes = 64;
+constexpr int kMaxParticipants = 100'000;
+constexpr std::size_t kMaxLooks = 20;
+constexpr std::size_t kMaxCodes = 64;
 constexpr std::size_t kLongestCode = 64;  // bytes
-constexpr double kLeastAlpha = 1e-6;
+constexpr int kMaxCatchTrials = 1000;
+constexpr std::size_t kMaxStandards = 64;
+constexpr NumberRange kStandardRange{-200.0, 200.0};
+constexpr NumberRange kDecibels{0.0, 200.0, true};  ///< of an effect or a margin
+constexpr double kMinAlpha = 1e-6;
 
 /// The number of an item of the study's own day sheet: 3 of "no-day-sheet-3".
 std::optional<int> day_sheet_item(std::string_view code) {
@@ -34,10 +38,11 @@ void read_statement(const JsonObject& object, std::string_view key, std::string&
 }
 
 ExclusionRules read_exclusion_rules(const JsonValue& place) {
-  const JsonObject object = place.object({"deviations", "own_deviations", "invalid_trials"});
+  const JsonObject object =
+      place.object({"deviations", "own_deviations", "invalid_trials", "missed_catch"});
   ExclusionRules rules;
   if (const auto member = object.find("deviations")) {
-    for (const JsonValue& code : member->items(0, kMostCodes)) {
+    for (const JsonValue& code : member->items(0, kMaxCodes)) {
       rules.deviations.push_back(read_line(code, kLongestCode));
       if (is_deviation_code(rules.deviations.back())) continue;
       code.refuse("is no code that the program records, which are " + listed(kDeviationCodes) +
@@ -46,13 +51,16 @@ ExclusionRules read_exclusion_rules(const JsonValue& place) {
     }
   }
   if (const auto member = object.find("own_deviations")) {
-    for (const JsonValue& code : member->items(0, kMostCodes)) {
+    for (const JsonValue& code : member->items(0, kMaxCodes)) {
       rules.deviations.push_back(read_line(code, kLongestCode));
     }
   }
   std::stable_partition(rules.deviations.begin(), rules.deviations.end(), is_deviation_code);
   if (const auto member = object.find("invalid_trials")) {
     rules.invalid_trials = member->number({.low = 0.0, .high = 1.0});
+  }
+  if (const auto member = object.find("missed_catch")) {
+    rules.missed_catch = static_cast<int>(member->integer(0, kMaxCatchTrials));
   }
   return rules;
 }
@@ -63,10 +71,21 @@ std::vector<std::string> read_pair(const JsonValue& place) {
   return methods;
 }
 
+std::vector<RegisteredStandard> read_standards(const JsonValue& place) {
+  std::vector<RegisteredStandard> standards;
+  for (const JsonValue& item : place.items(0, kMaxStandards)) {
+    const JsonObject object = item.object({"class", "value"});
+    RegisteredStandard& standard = standards.emplace_back();
+    if (const auto member = object.find("class")) standard.label = read_plain_name(*member);
+    if (const auto member = object.find("value")) standard.value = member->number(kStandardRange);
+  }
+  return standards;
+}
+
 std::vector<int> read_looks(const JsonValue& place) {
   std::vector<int> looks;
-  for (const JsonValue& look : place.items(0, kMostLooks)) {
-    const int participants = static_cast<int>(look.integer(2, kMostParticipants));
+  for (const JsonValue& look : place.items(0, kMaxLooks)) {
+    const int participants = static_cast<int>(look.integer(2, kMaxParticipants));
     if (!looks.empty() && participants <= looks.back()) {
       look.refuse("is not more than the look before; list looks in ascending order");
     }
@@ -75,15 +94,56 @@ std::vector<int> read_looks(const JsonValue& place) {
   return looks;
 }
 
-constexpr std::string_view kAnalysisKeys[] = {"methods",         "test",   "sides", "alpha",
-                                              "smallest_effect", "margin", "looks", "spending",
-                                              "exclusion_rules", "visits"};
+constexpr std::string_view kAnalysisKeys[] = {
+    "methods",         "standards", "test",           "sides",    "alpha",
+    "smallest_effect", "margin",    "looks",          "spending", "smallest_effect_db",
+    "margin_db",       "visits",    "exclusion_rules"};
+
+/// The keys of some estimands alone.
+constexpr std::string_view kKeysOfAccuracies[] = {"methods", "smallest_effect", "margin"};
+constexpr std::string_view kKeysOfThresholds[] = {"standards", "smallest_effect_db", "margin_db"};
+constexpr std::string_view kKeysOfTests[] = {"test",     "sides",     "looks",
+                                             "spending", "margin_db", "smallest_effect_db"};
+
+void refuse_keys(const JsonObject& object, std::span<const std::string_view> keys,
+                 const std::string& what) {
+  for (const std::string_view key : keys) {
+    if (const auto member = object.find(key)) member->refuse(what);
+  }
+}
+
+/// Refuses keys that mean nothing for the estimand.
+void check_keys(const JsonObject& object, Estimand estimand) {
+  const std::string of = " \"" + std::string(name_of(estimand)) + "\"; remove it";
+  if (!is_of_thresholds(estimand)) {
+    return refuse_keys(object, kKeysOfThresholds, "is about thresholds, and not about" + of);
+  }
+  refuse_keys(object, kKeysOfAccuracies, "is about right answers, and not about" + of);
+  if (estimand == Estimand::mean_threshold) {
+    return refuse_keys(
+        object, kKeysOfTests,
+        "belongs to a test; \"mean-threshold\" is an estimate without one: remove it");
+  }
+  const auto refuse = [&](const char* key, const char* what) {
+    if (const auto member = object.find(key)) member->refuse(what);
+  };
+  if (estimand == Estimand::threshold_difference) {
+    return refuse("margin_db", "belongs to \"threshold-equality\"; remove it, or register that");
+  }
+  refuse("sides", "belongs to no equality, which is two one-sided tests; remove it");
+  refuse("smallest_effect_db", "is given for an equality, whose size is \"margin_db\"; remove it");
+  static_cast<void>(object.at("margin_db"));
+}
 
 /// The usual test of an estimand. Flips of signs are about 0, so a margin needs a t test.
 RegisteredAnalysis usual_analysis(Estimand estimand, bool has_margin, RegisteredTest usual_test) {
   RegisteredAnalysis analysis;
   analysis.estimand = estimand;
   if (estimand == Estimand::mean_accuracy) return analysis;
+  if (is_of_thresholds(estimand)) {
+    analysis.one_sided = estimand == Estimand::threshold_equality;
+    return analysis;
+  }
   analysis.test =
       has_margin && usual_test == RegisteredTest::sign_flip ? RegisteredTest::t : usual_test;
   analysis.one_sided = has_margin;
@@ -101,13 +161,16 @@ std::optional<RegisteredAnalysis> read_analysis(const JsonObject& object,
     }
     return std::nullopt;
   }
-  RegisteredAnalysis analysis = usual_analysis(estimand->choice(kEstimandNames),
-                                               object.find("margin").has_value(), usual_test);
+  const Estimand estimated = estimand->choice(kEstimandNames);
+  check_keys(object, estimated);
+  RegisteredAnalysis analysis =
+      usual_analysis(estimated, object.find("margin").has_value(), usual_test);
   if (const auto member = object.find("methods")) analysis.methods = read_pair(*member);
+  if (const auto member = object.find("standards")) analysis.standards = read_standards(*member);
   if (const auto member = object.find("test")) analysis.test = member->choice(kRegisteredTestNames);
   if (const auto member = object.find("sides")) analysis.one_sided = member->choice(kSidesNames);
   if (const auto member = object.find("alpha")) {
-    analysis.alpha = member->number({.low = kLeastAlpha, .high = 0.5});
+    analysis.alpha = member->number({.low = kMinAlpha, .high = 0.5});
   }
   if (const auto member = object.find("smallest_effect")) {
     analysis.smallest_effect = member->number({.low = 0.0, .high = 1.0, .open_low = true});
@@ -115,6 +178,10 @@ std::optional<RegisteredAnalysis> read_analysis(const JsonObject& object,
   if (const auto member = object.find("margin")) {
     analysis.margin = member->number({.low = 0.0, .high = 1.0, .open_low = true});
   }
+  if (const auto member = object.find("smallest_effect_db")) {
+    analysis.smallest_effect = member->number(kDecibels);
+  }
+  if (const auto member = object.find("margin_db")) analysis.margin = member->number(kDecibels);
   if (const auto member = object.find("looks")) analysis.looks = read_looks(*member);
   if (const auto member = object.find("spending")) {
     analysis.spending = member->choice(kSpendingNames);
@@ -135,7 +202,41 @@ nlohmann::json to_json(const ExclusionRules& rules) {
     text["own_deviations"] = std::vector(own, rules.deviations.end());
   }
   if (rules.invalid_trials) text["invalid_trials"] = *rules.invalid_trials;
+  if (rules.missed_catch) text["missed_catch"] = *rules.missed_catch;
   return text;
+}
+
+nlohmann::json to_json(const std::vector<RegisteredStandard>& standards) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const RegisteredStandard& one : standards) {
+    nlohmann::json standard = nlohmann::json::object();
+    if (!one.label.empty()) standard["class"] = one.label;
+    if (one.value) standard["value"] = *one.value;
+    all.push_back(std::move(standard));
+  }
+  return all;
+}
+
+/// The keys of the analysis that say what is estimated, and by which test.
+void put_question(nlohmann::json& text, const RegisteredAnalysis& analysis) {
+  const bool of_thresholds = is_of_thresholds(analysis.estimand);
+  const std::string unit = of_thresholds ? "_db" : "";
+  text["estimand"] = name_in(kEstimandNames, analysis.estimand);
+  if (of_thresholds) {
+    text["standards"] = to_json(analysis.standards);
+  } else {
+    text["methods"] = analysis.methods;
+  }
+  text["alpha"] = analysis.alpha;
+  if (analysis.smallest_effect) text["smallest_effect" + unit] = *analysis.smallest_effect;
+  if (analysis.margin) text["margin" + unit] = *analysis.margin;
+  if (analysis.estimand == Estimand::mean_threshold) return;
+  text["test"] = name_in(kRegisteredTestNames, analysis.test);
+  if (analysis.estimand != Estimand::threshold_equality) {
+    text["sides"] = name_in(kSidesNames, analysis.one_sided);
+  }
+  text["looks"] = analysis.looks;
+  text["spending"] = name_in(kSpendingNames, analysis.spending);
 }
 
 void check_methods(const JsonValue& file, const Study& study) {
@@ -180,6 +281,12 @@ void check_crossover(const JsonValue& file, const Study& study) {
 
 void check_margin(const JsonValue& file, const RegisteredAnalysis& analysis) {
   if (!analysis.margin) return;
+  if (analysis.estimand == Estimand::threshold_equality) {
+    if (analysis.alpha >= 0.5) {
+      file.refuse_below("/registration/alpha", "must be less than 0.5 with a margin");
+    }
+    return;
+  }
   if (analysis.estimand != Estimand::difference) {
     file.refuse_below("/registration/margin", "belongs to a difference of methods; remove it");
   }
@@ -202,9 +309,32 @@ void check_margin(const JsonValue& file, const RegisteredAnalysis& analysis) {
   }
 }
 
+/// Whether the protocol answers what is registered. Which standards there are is its own matter.
+void check_protocol(const JsonValue& file, const Study& study) {
+  const Estimand estimand = study.registration.analysis->estimand;
+  const std::span<const Estimand> kept = study.protocol->estimands;
+  if (std::ranges::find(kept, estimand) != kept.end()) return;
+  const std::string what = in_quotes(name_of(estimand)) + " is no question that the protocol " +
+                           study.protocol_name() + " answers";
+  const char* const place = "/registration/estimand";
+  if (kept.empty()) {
+    file.refuse_below(place, what +
+                                 "; leave estimand and what belongs to it out, and state the test "
+                                 "in primary_test");
+  }
+  std::vector<std::string> names;
+  for (const Estimand one : kept) names.emplace_back(name_of(one));
+  file.refuse_below(place, what + "; register one that it does: " + listed(names));
+}
+
 void check_estimand(const JsonValue& file, const Study& study) {
   const RegisteredAnalysis& analysis = *study.registration.analysis;
   const char* const place = "/registration/estimand";
+  if (is_of_thresholds(analysis.estimand)) {
+    if (analysis.test == RegisteredTest::t) return;
+    file.refuse_below("/registration/test",
+                      "is about right answers; use \"t\" for thresholds, or leave it out");
+  }
   const bool several = study.presented_methods() > 1;
   if (analysis.estimand == Estimand::difference) {
     if (!several) {
@@ -251,6 +381,24 @@ void check_day_sheet(const JsonValue& file, const Study& study) {
   }
 }
 
+/// Nobody can miss more catch trials than there are.
+void check_missed_catch(const JsonValue& file, const Study& study) {
+  const auto& rules = study.registration.analysis->exclusion_rules;
+  if (!rules || !rules->missed_catch) return;
+  const char* const place = "/registration/exclusion_rules/missed_catch";
+  const int trials = study.task->answered_catches(study);
+  if (trials == 0) {
+    file.refuse_below(place,
+                      "is about catch trials with a right answer, of which the study has "
+                      "none; remove it");
+  }
+  if (*rules->missed_catch >= trials) {
+    file.refuse_below(place, "is " + std::to_string(*rules->missed_catch) + ", but a session has " +
+                                 counted(trials, "catch trial") +
+                                 ", so that nobody misses more; lower it, or remove it");
+  }
+}
+
 void check_looks(const JsonValue& file, const Registration& registration) {
   const std::vector<int>& looks = registration.analysis->looks;
   if (looks.empty() || looks.back() < registration.participants) return;
@@ -284,14 +432,30 @@ std::string_view name_of(Spending spending) {
 }
 
 Registration read_registration(const JsonValue& place, RegisteredTest usual_test) {
-  const JsonObject object =
-      place.object({"hypothesis", "participants", "stopping_rule", "exclusions", "primary_test",
-                    "estimand", "methods", "test", "sides", "alpha", "smallest_effect", "margin",
-                    "looks", "spending", "exclusion_rules", "safety_record_years", "visits"});
+  const JsonObject object = place.object({"hypothesis",
+                                          "participants",
+                                          "stopping_rule",
+                                          "exclusions",
+                                          "primary_test",
+                                          "estimand",
+                                          "methods",
+                                          "standards",
+                                          "test",
+                                          "sides",
+                                          "alpha",
+                                          "smallest_effect",
+                                          "margin",
+                                          "smallest_effect_db",
+                                          "margin_db",
+                                          "looks",
+                                          "spending",
+                                          "exclusion_rules",
+                                          "safety_record_years",
+                                          "visits"});
   Registration registration;
   read_statement(object, "hypothesis", registration.hypothesis);
   if (const auto member = object.find("participants")) {
-    registration.participants = static_cast<int>(member->integer(0, kMostParticipants));
+    registration.participants = static_cast<int>(member->integer(0, kMaxParticipants));
   }
   read_statement(object, "stopping_rule", registration.stopping_rule);
   read_statement(object, "exclusions", registration.exclusions);
@@ -312,15 +476,7 @@ nlohmann::json to_json(const Registration& registration) {
                          {"safety_record_years", registration.safety_record_years}};
   if (!registration.analysis) return text;
   const RegisteredAnalysis& analysis = *registration.analysis;
-  text["estimand"] = name_in(kEstimandNames, analysis.estimand);
-  text["methods"] = analysis.methods;
-  text["test"] = name_in(kRegisteredTestNames, analysis.test);
-  text["sides"] = name_in(kSidesNames, analysis.one_sided);
-  text["alpha"] = analysis.alpha;
-  if (analysis.smallest_effect) text["smallest_effect"] = *analysis.smallest_effect;
-  if (analysis.margin) text["margin"] = *analysis.margin;
-  text["looks"] = analysis.looks;
-  text["spending"] = name_in(kSpendingNames, analysis.spending);
+  put_question(text, analysis);
   if (analysis.exclusion_rules) text["exclusion_rules"] = to_json(*analysis.exclusion_rules);
   if (analysis.visits != RegisteredVisits::all) {
     text["visits"] = name_in(kRegisteredVisitsNames, analysis.visits);
@@ -331,6 +487,7 @@ nlohmann::json to_json(const Registration& registration) {
 void check_registration(const JsonValue& file, const Study& study) {
   const Registration& registration = study.registration;
   if (!registration.analysis) return;
+  check_protocol(file, study);
   check_estimand(file, study);
   check_margin(file, *registration.analysis);
   if (registration.analysis->visits != RegisteredVisits::all) {
@@ -344,6 +501,7 @@ void check_registration(const JsonValue& file, const Study& study) {
   }
   check_looks(file, registration);
   check_day_sheet(file, study);
+  check_missed_catch(file, study);
 }
 
 namespace {
@@ -353,7 +511,32 @@ std::string per_cent_text(double share) {
   return number_text(std::round(1e10 * share) / 1e8);
 }
 
+/// "bark at -18", or what of it is named.
+std::string standard_words(const RegisteredStandard& standard) {
+  if (!standard.value) return standard.label;
+  return standard.label + (standard.label.empty() ? "" : " at ") + number_text(*standard.value);
+}
+
+std::string threshold_words(const RegisteredAnalysis& analysis) {
+  std::vector<std::string> standards;
+  for (const RegisteredStandard& one : analysis.standards) standards.push_back(standard_words(one));
+  const std::string mean = "mean over participants of the threshold";
+  switch (analysis.estimand) {
+    case Estimand::mean_threshold:
+      return mean + (standards.empty() ? "" : ", standard " + standards.front());
+    case Estimand::threshold_difference:
+      if (standards.empty()) return mean + " at the first standard less that at the second";
+      return mean + ", standard " + standards.front() + " less standard " + standards.back();
+    default:
+      break;
+  }
+  return "equality of the thresholds of " +
+         (standards.empty() ? "all standards" : "the standards " + listed(standards, " and ")) +
+         ": means over participants of all differences of two";
+}
+
 std::string estimand_words(const RegisteredAnalysis& analysis) {
+  if (is_of_thresholds(analysis.estimand)) return threshold_words(analysis);
   if (analysis.estimand == Estimand::mean_accuracy) {
     return "mean over participants of the share of right answers, against chance";
   }
@@ -378,6 +561,11 @@ std::string name_in_words(RegisteredTest test) {
 }
 
 std::string test_words(const RegisteredAnalysis& analysis) {
+  if (analysis.estimand == Estimand::mean_threshold) return "none: an estimate with its interval";
+  if (analysis.estimand == Estimand::threshold_equality) {
+    return name_in_words(analysis.test) +
+           ", two one-sided for every difference, all of which must reject";
+  }
   return name_in_words(analysis.test) + (analysis.one_sided ? ", one-sided" : ", two-sided");
 }
 
@@ -395,9 +583,39 @@ std::string rules_words(const ExclusionRules& rules) {
   if (rules.invalid_trials) {
     words.push_back("more than " + per_cent_text(*rules.invalid_trials) + " % of trials not valid");
   }
+  if (rules.missed_catch) {
+    words.push_back("more than " + counted(*rules.missed_catch, "missed catch trial"));
+  }
   if (words.empty()) return "none, besides sessions stopped early and participants who withdrew";
   return "a session with " + listed(words, " or ") +
          "; besides sessions stopped early and participants who withdrew";
+}
+
+using Field = std::pair<std::string, std::string>;
+
+Field margin_field(const RegisteredAnalysis& analysis) {
+  const std::string level = per_cent_text(1.0 - 2.0 * analysis.alpha) + " %";
+  if (is_of_thresholds(analysis.estimand)) {
+    return {"margin", "the same if every difference is less than " + number_text(*analysis.margin) +
+                          " dB either way; decided by the " + level +
+                          " intervals; nothing follows if more than half of the participants have "
+                          "no threshold at one of the standards"};
+  }
+  return {"margin", "as good if worse by less than " + per_cent_text(*analysis.margin) +
+                        " points; decided by the " + level +
+                        " t interval, and only if both methods are above chance"};
+}
+
+/// The margin, or what is worth having.
+Field size_field(const RegisteredAnalysis& analysis) {
+  if (analysis.margin) return margin_field(analysis);
+  const auto worth = [&]() -> std::string {
+    if (!analysis.smallest_effect) return "not stated";
+    if (is_of_thresholds(analysis.estimand)) return number_text(*analysis.smallest_effect) + " dB";
+    const bool accuracy = analysis.estimand == Estimand::mean_accuracy;
+    return per_cent_text(*analysis.smallest_effect) + (accuracy ? " % right" : " points");
+  };
+  return {"smallest worth having", worth()};
 }
 
 }  // namespace
@@ -405,17 +623,7 @@ std::string rules_words(const ExclusionRules& rules) {
 std::vector<std::pair<std::string, std::string>> fields_of(const Registration& registration) {
   if (!registration.analysis) return {};
   const RegisteredAnalysis& analysis = *registration.analysis;
-  const bool accuracy = analysis.estimand == Estimand::mean_accuracy;
-  const std::string worth = analysis.smallest_effect ? per_cent_text(*analysis.smallest_effect) +
-                                                           (accuracy ? " % right" : " points")
-                                                     : "not stated";
-  const std::pair<std::string, std::string> size =
-      analysis.margin
-          ? std::pair<std::string, std::string>(
-                "margin", "as good if worse by less than " + per_cent_text(*analysis.margin) +
-                              " points; decided by the " +
-                              per_cent_text(1.0 - 2.0 * analysis.alpha) + " % t interval")
-          : std::pair<std::string, std::string>("smallest worth having", worth);
+  const Field size = size_field(analysis);
   std::vector<std::pair<std::string, std::string>> fields = {
       {"estimand", estimand_words(analysis)},
       {"test", test_words(analysis)},

@@ -209,15 +209,15 @@ nlohmann::json to_json(const PracticePlan& practice) {
 }
 
 VisitPlan read_visits(const JsonValue& place) {
-  constexpr double kMostDays = 3650.0;
+  constexpr double kMaxDays = 3650.0;
   const JsonObject object = place.object({"count", "least_days", "most_days", "methods"});
   VisitPlan visits;
   visits.count = static_cast<int>(object.at("count").integer(2, 100));
   if (const auto member = object.find("least_days")) {
-    visits.least_days = member->number({.low = 0.0, .high = kMostDays});
+    visits.least_days = member->number({.low = 0.0, .high = kMaxDays});
   }
   if (const auto member = object.find("most_days")) {
-    visits.most_days = member->number({.low = 0.0, .high = kMostDays, .open_low = true});
+    visits.most_days = member->number({.low = 0.0, .high = kMaxDays, .open_low = true});
     if (*visits.most_days < visits.least_days) {
       member->refuse("is less than \"least_days\", so that no visit could come; raise it");
     }
@@ -237,10 +237,10 @@ nlohmann::json to_json(const VisitPlan& visits) {
 }
 
 GroupPlan read_groups(const JsonValue& place) {
-  constexpr std::size_t kMostGroups = 16;
+  constexpr std::size_t kMaxGroups = 16;
   const JsonObject object = place.object({"labels", "open"});
   GroupPlan groups;
-  for (const JsonValue& item : object.at("labels").items(2, kMostGroups)) {
+  for (const JsonValue& item : object.at("labels").items(2, kMaxGroups)) {
     std::string label = read_plain_name(item);
     if (std::ranges::count(groups.labels, label) > 0) {
       item.refuse(in_quotes(label) + " is the label of another group; labels must be unique");

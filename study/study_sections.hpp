@@ -48,8 +48,12 @@ inline constexpr auto kEqualiseNames =
                                             {"rms", engine::Equalise::rms},
                                             {"level", engine::Equalise::level}});
 
-inline constexpr auto kEstimandNames = std::to_array<Named<Estimand>>(
-    {{"mean-accuracy", Estimand::mean_accuracy}, {"difference", Estimand::difference}});
+inline constexpr auto kEstimandNames =
+    std::to_array<Named<Estimand>>({{"mean-accuracy", Estimand::mean_accuracy},
+                                    {"difference", Estimand::difference},
+                                    {"mean-threshold", Estimand::mean_threshold},
+                                    {"threshold-difference", Estimand::threshold_difference},
+                                    {"threshold-equality", Estimand::threshold_equality}});
 
 inline constexpr auto kRegisteredTestNames =
     std::to_array<Named<RegisteredTest>>({{"t", RegisteredTest::t},

@@ -16,8 +16,8 @@ void check_length(const JsonValue& place, const std::string& text, std::size_t l
                std::to_string(longest) + "; shorten it");
 }
 
-constexpr std::size_t kMostQuestions = 50;
-constexpr std::size_t kMostOptions = 20;
+constexpr std::size_t kMaxQuestions = 50;
+constexpr std::size_t kMaxOptions = 20;
 
 void read_options(const JsonObject& object, const std::string& language, Question& question) {
   const auto options = object.find("options");
@@ -25,7 +25,7 @@ void read_options(const JsonObject& object, const std::string& language, Questio
     if (options) options->refuse("belongs to a question of the kind choice; remove it");
     return;
   }
-  for (const JsonValue& option : object.at("options").items(2, kMostOptions)) {
+  for (const JsonValue& option : object.at("options").items(2, kMaxOptions)) {
     question.options.push_back(read_translated(option, language));
   }
 }
@@ -61,9 +61,9 @@ Question read_question(const JsonValue& place, const std::string& language) {
   return question;
 }
 
-constexpr std::size_t kMostPages = 20;
+constexpr std::size_t kMaxPages = 20;
 constexpr std::size_t kLongestPage = 4000;  // bytes
-constexpr std::size_t kMostItems = 50;
+constexpr std::size_t kMaxItems = 50;
 constexpr std::size_t kLongestItem = 200;  // bytes
 constexpr std::size_t kLongestName = 64;   // bytes
 
@@ -73,7 +73,7 @@ void read_truth(const JsonObject& object, std::string_view key, bool& truth) {
 
 std::vector<std::string> read_pages(const JsonValue& place) {
   std::vector<std::string> pages;
-  for (const JsonValue& item : place.items(1, kMostPages)) {
+  for (const JsonValue& item : place.items(1, kMaxPages)) {
     pages.push_back(read_paragraphs(item, kLongestPage));
     if (pages.back().empty()) item.refuse("is empty; write a page, or remove it");
     check_markup(item, pages.back());
@@ -114,15 +114,15 @@ MaskingPlan read_masking(const JsonValue& place) {
 }
 
 int read_confidence(const JsonValue& place) {
-  constexpr int kMostLevels = 9;
-  const auto levels = static_cast<int>(place.integer(0, kMostLevels));
+  constexpr int kMaxLevels = 9;
+  const auto levels = static_cast<int>(place.integer(0, kMaxLevels));
   if (levels == 1) place.refuse("is 1, must be 0 (not asked) or from 2 to 9 levels");
   return levels;
 }
 
 std::vector<std::string> read_day_sheet(const JsonValue& place) {
   std::vector<std::string> sheet;
-  for (const JsonValue& item : place.items(0, kMostItems)) {
+  for (const JsonValue& item : place.items(0, kMaxItems)) {
     std::string line = read_line(item, kLongestItem);
     if (std::ranges::count(sheet, line) > 0) {
       item.refuse(in_quotes(line) + " is there twice; list it once");
@@ -183,7 +183,7 @@ Translated read_translated(const JsonValue& place, const std::string& language) 
 
 std::vector<Question> read_questions(const JsonValue& place, const std::string& language) {
   std::vector<Question> questions;
-  for (const JsonValue& item : place.items(0, kMostQuestions)) {
+  for (const JsonValue& item : place.items(0, kMaxQuestions)) {
     Question question = read_question(item, language);
     if (std::ranges::count(questions, question.id, &Question::id) > 0) {
       item.refuse_below(
@@ -221,7 +221,7 @@ SessionPlan read_session(const JsonValue& place) {
   if (const auto member = object.find("instructions")) read_instructions(*member, session);
   if (const auto member = object.find("texts")) read_own_texts(*member, session);
   if (const auto member = object.find("text_scale")) {
-    session.text_scale = member->number({.low = 1.0, .high = kLargestTextScale});
+    session.text_scale = member->number({.low = 1.0, .high = kMaxTextScale});
   }
   read_truth(object, "high_contrast", session.high_contrast);
   if (const auto member = object.find("sight")) session.sight = member->choice(kSightNames);

@@ -1,12 +1,17 @@
 #include "analysis/choices/answers.hpp"
 
+#include "analysis/statistics/chance_test.hpp"
+#include "analysis/statistics/common.hpp"
 #include "analysis/statistics/mean_test.hpp"
 #include "analysis/statistics/paired_tests.hpp"
+#include "core/random.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <map>
 
 #include <boost/math/distributions/binomial.hpp>
+#include <boost/math/special_functions/beta.hpp>
 
 namespace touchtrial::choices {
 namespace {
@@ -30,6 +35,20 @@ void adjust_by_holm(std::vector<RightAnswers>& people) {
   for (const RightAnswers& one : people) p.push_back(one.p.value_or(1.0));
   const std::vector<double> adjusted = analysis::holm_adjusted(p);
   for (std::size_t i = 0; i < people.size(); ++i) people[i].p_holm = adjusted[i];
+}
+
+/// The p of 0, 1, .. right answers of n.
+std::vector<double> p_by_count(int n, double guess) {
+  std::vector<double> p;
+  for (int right = 0; right <= n; ++right) p.push_back(*p_of_guessing({n, right}, guess));
+  return p;
+}
+
+/// The number of right answers that `uniform` draws, which is in (0, 1]: the p of its count, or a
+/// smaller one, has this probability.
+int count_of(const std::vector<double>& p, double uniform) {
+  const auto above = std::ranges::partition_point(p, [&](double one) { return one >= uniform; });
+  return static_cast<int>(above - p.begin()) - 1;
 }
 
 /// How often each choice was named and was right, in some trials of one participant.
@@ -110,7 +129,9 @@ MeanEstimate unbounded_mean(std::span<const double> values) {
 }
 
 GroupTest group_test(std::span<const double> values) {
-  return {unbounded_mean(values), analysis::t_test_p(values, 0.0, analysis::Sides::two)};
+  GroupTest test{unbounded_mean(values), analysis::t_test_p(values, 0.0, analysis::Sides::two)};
+  test.alike = test.p && analysis::without_noise(test.mean.sd.value_or(1.0)) == 0.0;
+  return test;
 }
 
 std::optional<AgainstGuessing> against_guessing(std::span<const Person> people, double guess,
@@ -130,6 +151,67 @@ std::optional<AgainstGuessing> against_guessing(std::span<const Person> people, 
   found.pooled = right_answers("", all, guess);
   adjust_by_holm(found.people);
   return found;
+}
+
+Anybody anybody_better(const AgainstGuessing& answers, double guess, int deals) {
+  analysis::AnybodyTest test(static_cast<int>(answers.people.size()), deals);
+  std::vector<double> together(static_cast<std::size_t>(deals) + 1);
+  for (std::size_t i = 0; i < answers.people.size(); ++i) {
+    const Proportion& own = answers.people[i].answers;
+    const std::vector<double> p_of = p_by_count(own.n, guess);
+    RandomStream random(0, "anybody better than guessing", i);
+    std::vector<double> p;
+    for (double& sum : together) {
+      const int right = p.empty() ? own.correct : count_of(p_of, 1.0 - random.uniform());
+      p.push_back(p_of[static_cast<std::size_t>(right)]);
+      sum += right;
+    }
+    test.add(p);
+  }
+  return test.result(together);
+}
+
+std::vector<std::string> those_better(const AgainstGuessing& answers, const Anybody& anybody) {
+  std::vector<std::string> names;
+  if (!anybody.found()) return names;
+  for (const RightAnswers& one : answers.people) {
+    if (one.p.value_or(1.0) <= analysis::kSignificanceLevel) names.push_back(one.participant);
+  }
+  return names;
+}
+
+Detectable detectable_in(const AgainstGuessing& answers, double guess) {
+  Detectable found;
+  if (answers.people.empty()) return found;
+  found.trials = std::ranges::min(answers.people, {}, [](const RightAnswers& one) {
+                   return one.answers.n;
+                 }).answers.n;
+  const double level = analysis::kSignificanceLevel / static_cast<double>(answers.people.size());
+  const std::vector<double> p = p_by_count(found.trials, guess);
+  const auto enough = std::ranges::find_if(p, [&](double one) { return one <= level; });
+  if (enough == p.end()) return found;
+  found.right = static_cast<int>(enough - p.begin());
+  found.share =
+      boost::math::ibeta_inv(static_cast<double>(found.right),
+                             static_cast<double>(found.trials - found.right + 1), kFoundWith);
+  return found;
+}
+
+bool Attention::is_doubtful() const noexcept {
+  return p_holm <= analysis::kSignificanceLevel;
+}
+
+std::vector<Attention> attention_of(const AgainstGuessing& catches) {
+  std::vector<Attention> all;
+  std::vector<double> p;
+  for (const RightAnswers& one : catches.people) {
+    const boost::math::binomial attending(one.answers.n, kAttentive);
+    p.push_back(boost::math::cdf(attending, one.answers.correct));
+    all.push_back({one.participant, p.back()});
+  }
+  const std::vector<double> adjusted = analysis::holm_adjusted(p);
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].p_holm = adjusted[i];
+  return all;
 }
 
 std::vector<ChoiceUse> choice_use_of(std::span<const Person> people,

@@ -30,8 +30,8 @@ using analysis::Prevalence;
 using analysis::RedrawnBlock;
 using analysis::RedrawnClasses;
 
-constexpr int kFewestDeals = 999;
-constexpr int kMostBlockDeals = 1'000'000;  ///< takes at most one second
+constexpr int kMinDeals = 999;
+constexpr int kMaxBlockDeals = 1'000'000;  ///< takes at most one second
 
 /// The place of each scored trial of a method within its block's schedule. A repeated trial keeps
 /// it.
@@ -84,8 +84,8 @@ PlacedBlocks blocks_of(const Outcomes& outcomes, int method) {
 
 /// The number of draws. Large studies need fewer, because the sum over many blocks varies little.
 int deals_for(std::size_t blocks, int most_deals) {
-  const auto affordable = kMostBlockDeals / static_cast<int>(std::max<std::size_t>(1, blocks));
-  return std::clamp(affordable, std::min(kFewestDeals, most_deals), most_deals);
+  const auto affordable = kMaxBlockDeals / static_cast<int>(std::max<std::size_t>(1, blocks));
+  return std::clamp(affordable, std::min(kMinDeals, most_deals), most_deals);
 }
 
 /// The most draws that are affordable; level * (draws + 1) is whole.
@@ -150,7 +150,7 @@ class BlockTests {
   std::optional<OrderDraws> draws_;
 };
 
-constexpr std::size_t kMostMovedTrials = 5'000'000;  ///< takes about a tenth of a second
+constexpr std::size_t kMaxMovedTrials = 5'000'000;  ///< takes about a tenth of a second
 
 /// A block as it was felt.
 struct OrderedBlock {
@@ -220,7 +220,7 @@ std::optional<ChanceTest> chance_of(const Outcomes& outcomes, int method, int mo
   const PlacedBlocks placed = blocks_of(outcomes, method);
   const std::size_t blocks = placed.answers.size();
   const bool redrawn = dealt_order(outcomes.design) == DealtOrder::redrawn;
-  const int deals = redrawn ? deals_for(blocks, most_deals) : kMostChanceDeals;
+  const int deals = redrawn ? deals_for(blocks, most_deals) : kMaxChanceDeals;
   return BlockTests(outcomes, method, placed, deals, known).of(0, blocks);
 }
 
@@ -228,7 +228,7 @@ std::optional<Prevalence> own_prevalence(const Outcomes& outcomes, int method,
                                          KnownMatches* known) {
   const PlacedBlocks placed = blocks_of(outcomes, method);
   const std::vector<int>& people = placed.people;
-  const int deals = draws_for(people.size(), {999, 199}, kMostBlockDeals);
+  const int deals = draws_for(people.size(), {999, 199}, kMaxBlockDeals);
   BlockTests tests(outcomes, method, placed, deals, known);
   Proportion passed;
   double level = 0.0;
@@ -258,7 +258,7 @@ std::optional<OrderEffects> order_of(const Outcomes& outcomes, int method) {
       places.push_back(block.places);
     }
   }
-  const int draws = draws_for(trials, {1999, 999, 199}, kMostMovedTrials);
+  const int draws = draws_for(trials, {1999, 999, 199}, kMaxMovedTrials);
   const auto orders = schedule_draws(outcomes.design, method, places, draws, "order effects");
   RedrawnClasses redraw;  // without one, any order stands for those of the rule
   if (orders) {

@@ -16,7 +16,7 @@
 
 namespace touchtrial::choices {
 
-inline constexpr int kMostChanceDeals = 9999;
+inline constexpr int kMaxChanceDeals = 9999;
 
 /// The chance test of one method's counted trials. If the study's rule is neither a plain shuffle
 /// nor independent draws, the orders are drawn from schedules that the rule makes. In each block,
@@ -24,7 +24,7 @@ inline constexpr int kMostChanceDeals = 9999;
 /// \param most_deals  the most orders that are drawn from schedules
 /// \param known  is used and completed, if not null
 [[nodiscard]] std::optional<analysis::ChanceTest> chance_of(
-    const Outcomes& outcomes, int method, int most_deals = kMostChanceDeals,
+    const Outcomes& outcomes, int method, int most_deals = kMaxChanceDeals,
     analysis::KnownMatches* known = nullptr);
 
 /// The prevalence of people who would pass the chance test of their own trials. Every participant's

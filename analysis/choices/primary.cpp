@@ -1,12 +1,10 @@
 #include "analysis/choices/primary.hpp"
 
-#include "analysis/outcomes/departures.hpp"
 #include "analysis/statistics/common.hpp"
 #include "analysis/statistics/descriptive.hpp"
 #include "analysis/statistics/paired_tests.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
@@ -46,44 +44,6 @@ bool is_difference(const PrimaryQuestion& question) {
   return question.estimand == Estimand::difference;
 }
 
-/// Which sessions and which of their trials enter an estimate.
-struct Selection {
-  std::string name;
-  std::string words;
-  std::set<int> sessions;
-  bool valid_alone = false;
-  bool answered_alone = false;
-
-  [[nodiscard]] bool has(const TrialOutcome& trial) const {
-    return trial.scored && has_ended(trial) && sessions.contains(trial.row.session) &&
-           (!valid_alone || trial.valid()) && (!answered_alone || trial.response);
-  }
-};
-
-std::set<int> joined(std::set<int> sessions, const std::set<int>& more) {
-  sessions.insert(more.begin(), more.end());
-  return sessions;
-}
-
-std::vector<Selection> selections(const Outcomes& outcomes) {
-  const std::set<int> taken = counted_sessions(outcomes);
-  const std::set<int> excluded = excluded_sessions(outcomes);
-  std::set<int> put_back = taken;
-  std::ranges::set_intersection(excluded, outcomes.looked.excluded_afterwards,
-                                std::inserter(put_back, put_back.end()));
-  std::set<int> registered = put_back;
-  for (const auto& [session, rule] : rules_met(outcomes)) registered.erase(session);
-  const bool is_registered = outcomes.design.registration.analysis.has_value();
-  std::string words = is_registered ? "as registered" : "every session that counts";
-  if (put_back != taken) words += "; no exclusion that was made after outcomes were seen";
-  return {{"registered", std::move(words), std::move(registered)},
-          {"taken", "all exclusions as made", taken},
-          {"put_back", "exclusions made after outcomes were seen put back", std::move(put_back)},
-          {"all", "all excluded sessions put back", joined(taken, excluded)},
-          {"valid", "exclusions as made, valid trials alone", taken, true},
-          {"answered", "exclusions as made, trials with a response alone", taken, false, true}};
-}
-
 struct SelectedPeople {
   std::vector<CrossoverPerson> people;
   std::vector<int> sessions;  ///< of each of them, the first
@@ -95,27 +55,6 @@ struct OwnShare {
   Proportion right;
   int first_block = std::numeric_limits<int>::max();
 };
-
-/// The people who have all visits that decide.
-std::set<int> people_with_all_visits(const Outcomes& outcomes, const Selection& selection,
-                                     const FirstSessions& people) {
-  int deciding = 0;
-  for (int visit = 1; visit <= outcomes.design.visits.count; ++visit) {
-    deciding += outcomes.design.decides(visit) ? 1 : 0;
-  }
-  std::map<int, std::set<int>> visits;
-  for (const SessionOutcome& one : outcomes.sessions) {
-    if (!selection.sessions.contains(one.row.session)) continue;
-    if (outcomes.design.decides(one.row.visit)) {
-      visits[people.of(one.row.session)].insert(one.row.visit);
-    }
-  }
-  std::set<int> whole;
-  for (const auto& [person, own] : visits) {
-    if (static_cast<int>(own.size()) == deciding) whole.insert(person);
-  }
-  return whole;
-}
 
 /// The selected trials of each participant with each method.
 std::map<int, std::pair<OwnShare, OwnShare>> shares_of(const PrimaryQuestion& question,
@@ -187,6 +126,20 @@ void put_registered_choice(const PrimaryQuestion& question, int classes,
   result.permutation = crossover_permutation(people, result.null, question.sides);
 }
 
+/// Whether a test by t had none, so that p is that of another one.
+bool has_no_t(const PrimaryQuestion& question, std::span<const CrossoverPerson> people,
+              const PrimaryResult& result) {
+  switch (question.test) {
+    case study::RegisteredTest::t:
+      return analysis::all_alike(differences_of(people));
+    case study::RegisteredTest::crossover:
+      return result.p && !result.crossover->interval;
+    case study::RegisteredTest::sign_flip:
+      break;
+  }
+  return false;
+}
+
 /// With stations as strata, if there are several.
 std::optional<StratifiedMean> over_stations(const PrimaryQuestion& question,
                                             const Outcomes& outcomes,
@@ -204,13 +157,6 @@ std::optional<StratifiedMean> over_stations(const PrimaryQuestion& question,
   std::vector<std::vector<double>> strata;
   for (auto& [station, values] : by_station) strata.push_back(std::move(values));
   return stratified_mean(strata, range_of(question), question.interval_level());
-}
-
-/// ", over all visits"; empty in a study with one.
-std::string visit_words(const study::Study& study) {
-  if (study.visits.count == 1) return "";
-  if (study.decides(1) && study.decides(study.visits.count)) return ", over all visits";
-  return study.decides(1) ? ", at the first visit" : ", at the last visit";
 }
 
 std::string question_words(const PrimaryQuestion& question, const Outcomes& outcomes) {
@@ -261,6 +207,14 @@ std::string test_words(const PrimaryQuestion& question) {
   return fmt::format("{}, {}", test(), question.sides == Sides::one ? "one-sided" : "two-sided");
 }
 
+std::string test_words_without_t(const PrimaryQuestion& question) {
+  const bool crossover = question.test == study::RegisteredTest::crossover;
+  return fmt::format("{} and there is no t, {}",
+                     crossover ? "orders dealt anew, because people do not differ within an order"
+                               : "sign flips over participants, because these do not differ",
+                     question.sides == Sides::one ? "one-sided" : "two-sided");
+}
+
 std::vector<double> differences_of(std::span<const CrossoverPerson> people) {
   std::vector<double> differences;
   for (const CrossoverPerson& one : people) differences.push_back(one.difference);
@@ -296,6 +250,25 @@ std::vector<CrossoverPerson> primary_values(const PrimaryQuestion& question,
   return people_of(question, outcomes, {{}, {}, counted_sessions(outcomes)}).people;
 }
 
+std::vector<analysis::AboveChance> above_chance(const PrimaryQuestion& question,
+                                                const Outcomes& outcomes,
+                                                const Selection& selection) {
+  std::vector<double> first;
+  std::vector<double> second;
+  for (const auto& [session, own] : shares_of(question, outcomes, selection)) {
+    const auto& [of_first, of_second] = own;
+    if (of_first.right.n == 0 || of_second.right.n == 0) continue;
+    first.push_back(*of_first.right.share());
+    second.push_back(*of_second.right.share());
+  }
+  const double chance = 1.0 / static_cast<double>(outcomes.classes.size());
+  const auto held = [&](int method, const std::vector<double>& shares) {
+    return analysis::AboveChance{outcomes.methods[method], analysis::participant_mean(shares).mean,
+                                 t_test_p(shares, chance, Sides::one)};
+  };
+  return {held(question.first, first), held(question.second, second)};
+}
+
 std::optional<PrimaryResult> primary_result(const Outcomes& outcomes) {
   const std::optional<PrimaryQuestion> question =
       primary_question(outcomes.design, static_cast<int>(outcomes.methods.size()));
@@ -326,6 +299,12 @@ std::optional<PrimaryResult> primary_result(const Outcomes& outcomes) {
     result.interval_level = at_level.interval_level();
   }
   put_registered_choice(at_level, classes, people.front().people, result);
+  if (has_no_t(at_level, people.front().people, result)) {
+    result.test = test_words_without_t(at_level);
+  }
+  if (question->margin) {
+    result.above_chance = above_chance(*question, outcomes, chosen.front());
+  }
   result.stations = over_stations(at_level, outcomes, people.front());
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const PrimaryEstimate found =

@@ -3,7 +3,7 @@
 /// docs/statistics.md, "The registered question".
 #pragma once
 
-#include "analysis/choices/people.hpp"
+#include "analysis/choices/selections.hpp"
 #include "analysis/report/registered.hpp"
 
 #include <optional>
@@ -46,10 +46,19 @@ struct PrimaryQuestion {
 /// "one-sample t test over participants, one-sided"
 [[nodiscard]] std::string test_words(const PrimaryQuestion& question);
 
+/// What gives p in place of a t test of people who do not differ: "sign flips over participants,
+/// because these do not differ and there is no t, one-sided"
+[[nodiscard]] std::string test_words_without_t(const PrimaryQuestion& question);
+
 /// Every counted participant's accuracy with the first method, or difference of accuracies; of two
 /// methods in blocks with the order and its block.
 [[nodiscard]] std::vector<CrossoverPerson> primary_values(const PrimaryQuestion& question,
                                                           const Outcomes& outcomes);
+
+/// Of a difference: whether people who have both methods are above chance with each of them.
+[[nodiscard]] std::vector<analysis::AboveChance> above_chance(const PrimaryQuestion& question,
+                                                              const Outcomes& outcomes,
+                                                              const Selection& selection);
 
 struct PrimaryEstimate {
   std::optional<double> estimate{};

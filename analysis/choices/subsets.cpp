@@ -46,8 +46,8 @@ using Group = std::pair<int, std::string>;
 
 Group group_of_exemplar(const Outcomes& outcomes, const TrialOutcome& trial) {
   const auto [class_index, exemplar, method] = trial.stimulus;
-  constexpr int kMostExemplars = 1 << 16;
-  return {class_index * kMostExemplars + exemplar,
+  constexpr int kMaxExemplars = 1 << 16;
+  return {class_index * kMaxExemplars + exemplar,
           outcomes.classes[class_index] + ": " + outcomes.exemplars[class_index][exemplar]};
 }
 

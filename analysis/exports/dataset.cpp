@@ -56,7 +56,9 @@ Meanings of_trials() {
                       {"presented", "had not ended when the session did"}};
   const Levels kinds{{"scored", "may enter the report"},
                      {"lead-in", "starts a block and is not scored"},
-                     {"catch", "a plane without texture, or a trial of no track; not scored"},
+                     {"catch",
+                      "a plane without texture, or the highest level of a track whose procedure "
+                      "does not hear of the answer; not scored"},
                      {"control", "with the hand off the device; not scored"}};
   return {
       {"trial", {"Number of the trial in its session, from 1"}},
@@ -104,8 +106,7 @@ Meanings of_trials() {
        {"Whether the session was paused while the answer was awaited, so that it has no reaction "
         "times"}},
       {"gain_db", {"Gain at which the plane was presented, re the prepared one", "dB"}},
-      {"track",
-       {"Track that the trial belongs to, from 1; none for a catch trial and with the hand off"}},
+      {"track", {"Track that the trial belongs to, from 1; none with the hand off"}},
       {"standard", {"What the track is about: a texture, and what comparisons differ from"}},
       {"level_db",
        {"Level of the comparison: of detection its gain, of discrimination 20 log10 of the "

@@ -32,7 +32,7 @@ DataCell correctness_of(const TrialView& trial) {
 
 /// A trial with several planes: of which class and method its track is.
 bool is_of_track(const TrialView& trial) {
-  return trial.outcome->chosen && trial.outcome->role == study::Role::scored;
+  return trial.outcome->chosen && trial.outcome->chosen->track > 0;
 }
 
 DataCell method_of(const TrialView& trial) {

@@ -74,7 +74,7 @@ QuestionSummary question_summary(const std::string& id, const study::Question* q
       }
     }
     if (is_public) summary.others = keep_large_bands(summary.options, 0);
-  } else if (!is_public || summary.answered >= kFewestOfBand) {
+  } else if (!is_public || summary.answered >= kMinOfBand) {
     summary.numbers = quartiles(std::move(numbers));
   }
   return summary;

@@ -74,7 +74,7 @@ struct Outcomes;
 
 /// What participants said in answer to closing questions, by question, in the order in which they
 /// are asked. Of several sessions, a participant's last answer counts. A public report shows no
-/// texts, and neither options that fewer than kFewestOfBand people chose nor numbers of so few.
+/// texts, and neither options that fewer than kMinOfBand people chose nor numbers of so few.
 [[nodiscard]] std::vector<QuestionSummary> summaries_of(const Outcomes& outcomes);
 
 }  // namespace touchtrial::analysis

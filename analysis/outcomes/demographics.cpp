@@ -95,11 +95,11 @@ std::map<int, Demographics> demographics_of(const std::vector<QuestionAnswer>& a
 
 int keep_large_bands(std::vector<Band>& bands, int others) {
   std::erase_if(bands, [&](const Band& band) {
-    if (band.people >= kFewestOfBand) return false;
+    if (band.people >= kMinOfBand) return false;
     others += band.people;
     return true;
   });
-  while (others > 0 && others < kFewestOfBand && !bands.empty()) {
+  while (others > 0 && others < kMinOfBand && !bands.empty()) {
     const auto least = std::ranges::min_element(bands, {}, &Band::people);
     others += least->people;
     bands.erase(least);

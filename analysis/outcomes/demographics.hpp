@@ -32,7 +32,7 @@ struct QuestionAnswer;
     const std::vector<QuestionAnswer>& answers, const study::Study& study);
 
 /// The least number of people that a band shows. Fewer could be recognised.
-inline constexpr int kFewestOfBand = 5;
+inline constexpr int kMinOfBand = 5;
 
 /// People in one band.
 struct Band {
@@ -43,13 +43,13 @@ struct Band {
 /// How a group of people divides by one characteristic.
 struct Characteristic {
   std::string name;         ///< "age", "sex", "handedness"
-  std::vector<Band> bands;  ///< each of kFewestOfBand people or more; empty: nothing can be shown
-  /// People in smaller bands and people who did not say, together: 0, or kFewestOfBand and more.
+  std::vector<Band> bands;  ///< each of kMinOfBand people or more; empty: nothing can be shown
+  /// People in smaller bands and people who did not say, together: 0, or kMinOfBand and more.
   /// The smallest band goes in with them if they are too few by themselves.
   int others = 0;
 };
 
-/// Takes out bands of fewer than kFewestOfBand people, and the smallest band too while a few others
+/// Takes out bands of fewer than kMinOfBand people, and the smallest band too while a few others
 /// would tell how many they are by what the bands leave of the whole.
 /// \param others  people in no band
 /// \return the people in no band now

@@ -15,13 +15,17 @@
 namespace touchtrial::analysis {
 namespace {
 
+/// Whether a trial ended as it was planned to.
+bool has_ended(const TrialOutcome& trial) {
+  return trial.row.state == record::TrialState::answered ||
+         trial.row.state == record::TrialState::timed_out;
+}
+
 /// The sessions with more than this share of scored trials that break the validity rule.
 std::set<int> with_invalid_trials(const Outcomes& outcomes, double share) {
   std::map<int, Proportion> invalid;
   for (const TrialOutcome& trial : outcomes.trials) {
-    const bool ended = trial.row.state == record::TrialState::answered ||
-                       trial.row.state == record::TrialState::timed_out;
-    if (!trial.scored || !ended) continue;
+    if (!trial.scored || !has_ended(trial)) continue;
     Proportion& own = invalid[trial.row.session];
     ++own.n;
     if (!trial.valid()) ++own.correct;
@@ -117,9 +121,10 @@ void add_late_decisions(const Outcomes& outcomes, Departures& departures) {
   };
   const LookRecord& looked = outcomes.looked;
   std::map<int, std::string> reasons = exclusion_reasons(outcomes);
-  const auto [excluded, who] = late(looked.excluded_afterwards, [&](const SessionOutcome& one) {
-    return reasons[one.row.session];
-  });
+  std::set<int> without_rule = looked.excluded_afterwards;
+  for (const int session : with_missed_catches(outcomes)) without_rule.erase(session);
+  const auto [excluded, who] =
+      late(without_rule, [&](const SessionOutcome& one) { return reasons[one.row.session]; });
   if (excluded > 0) {
     departures.push_back(counted(excluded, "session") + " excluded after outcomes were seen" +
                          after_colon(who) + ".");
@@ -155,10 +160,11 @@ void add_rules(const Outcomes& outcomes, Departures& departures) {
                          " excluded for a reason that no registered rule states" +
                          after_colon(who) + ".");
   }
+  const std::set<int> left_out = with_missed_catches(outcomes);
   const auto [kept, whose] =
       sessions_with(outcomes, [&](const SessionOutcome& one) -> std::optional<std::string> {
         const auto rule = met.find(one.row.session);
-        if (!one.counted || rule == met.end()) return {};
+        if (!one.counted || rule == met.end() || left_out.contains(one.row.session)) return {};
         return rule->second;
       });
   if (kept > 0) {
@@ -200,12 +206,33 @@ std::map<int, std::string> rules_met(const Outcomes& outcomes) {
       }
     }
   }
-  if (!rules.invalid_trials) return met;
-  for (const int session : with_invalid_trials(outcomes, *rules.invalid_trials)) {
-    met.emplace(session, fmt::format("more than {:.4g}% of trials not valid",
-                                     100.0 * *rules.invalid_trials));
+  if (rules.invalid_trials) {
+    for (const int session : with_invalid_trials(outcomes, *rules.invalid_trials)) {
+      met.emplace(session, fmt::format("more than {:.4g}% of trials not valid",
+                                       100.0 * *rules.invalid_trials));
+    }
+  }
+  for (const int session : with_missed_catches(outcomes)) {
+    met.emplace(session, "more than " + counted(*rules.missed_catch, "missed catch trial"));
   }
   return met;
+}
+
+std::set<int> with_missed_catches(const Outcomes& outcomes) {
+  const auto& registered = outcomes.design.registration.analysis;
+  if (!registered || !registered->exclusion_rules) return {};
+  const std::optional<int>& most = registered->exclusion_rules->missed_catch;
+  if (!most) return {};
+  std::map<int, int> missed;
+  for (const TrialOutcome& trial : outcomes.trials) {
+    const bool asked = trial.role == study::Role::catch_trial && trial.right.has_value();
+    if (asked && has_ended(trial) && !trial.correct()) ++missed[trial.row.session];
+  }
+  std::set<int> sessions;
+  for (const auto& [session, own] : missed) {
+    if (own > *most) sessions.insert(session);
+  }
+  return sessions;
 }
 
 std::vector<std::string> departures_of(const Outcomes& outcomes, bool ended_at_look) {

@@ -5,6 +5,7 @@
 #include "analysis/outcomes/outcomes.hpp"
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,10 @@ namespace touchtrial::analysis {
 
 /// The sessions that a registered rule leaves out, each with the first rule that does, in words.
 [[nodiscard]] std::map<int, std::string> rules_met(const Outcomes& outcomes);
+
+/// Those of them that miss more catch trials than the registered rule allows. Only outcomes show
+/// it, so the analysis leaves them out, excluded or not.
+[[nodiscard]] std::set<int> with_missed_catches(const Outcomes& outcomes);
 
 /// Every departure from the plan, one sentence or two each, the gravest first.
 ///

@@ -93,8 +93,7 @@ TrialOutcome outcome_of(const record::TrialRow& row, const SessionOutcome& sessi
     trial.chosen = {*row.track, *row.level, *row.target};
     trial.stimulus = study.task->about(study, {*row.track, *row.level});
     trial.right = *row.target;
-    const bool in_track = trial.role == study::Role::scored;
-    if (in_track && *row.track == 0) trial.role = study::Role::catch_trial;
+    if (row.kind == name_of(study::Role::catch_trial)) trial.role = study::Role::catch_trial;
   }
   trial.scored = trial.role == study::Role::scored;
   trial.counted = session.counted && trial.scored && ended;
@@ -125,7 +124,7 @@ std::vector<Demographics> said_by_participants(const Outcomes& outcomes,
 }
 
 /// Adds what the study's dealing says of each session that is shown.
-void add_dealt(const Outcomes& outcomes, Collection& collection) {
+void add_assignment(const Outcomes& outcomes, Collection& collection) {
   std::map<int, const SessionOutcome*> shown;
   for (const SessionOutcome& one : outcomes.sessions) shown[one.row.session] = &one;
   const std::vector<std::string>& groups = outcomes.design.groups.labels;
@@ -154,7 +153,7 @@ void add_spreads(const std::vector<record::TrialRow>& trials,
 }
 
 /// Answers, incidents and demographics of the sessions that are shown.
-void take_what_was_said(const OpenedSessions& opened, const study::Study& study,
+void add_questionnaires(const OpenedSessions& opened, const study::Study& study,
                         Outcomes& outcomes) {
   SessionKeys keys;
   for (const SessionOutcome& one : outcomes.sessions) {
@@ -215,8 +214,8 @@ Outcomes opened(const record::StudyStore& store, const study::StudyKey& key, Sho
                              key.group_of(row.enrolment, draws)};
     outcomes.sessions.push_back(sessions[row.session]);
   }
-  add_dealt(outcomes, outcomes.collection);
-  take_what_was_said(sessions_opened, key.study, outcomes);
+  add_assignment(outcomes, outcomes.collection);
+  add_questionnaires(sessions_opened, key.study, outcomes);
   const auto schedules = open_schedules(events, key, keys);
   Measures measures;
   const std::vector<record::TrialRow> trials = sessions_opened.take_trials(measures);

@@ -25,7 +25,7 @@ struct SessionOutcome {
 
 /// What an adaptive order chose for a trial.
 struct ChosenLevel {
-  int track = 0;   ///< from 1; 0: a catch trial, which belongs to no track
+  int track = 0;   ///< from 1; 0: none
   int level = 0;   ///< index into the track's levels
   int target = 0;  ///< index of the right choice
 

@@ -1,4 +1,4 @@
-/// \file How collection stands: who is done, who is open, what is left to do. Uses what a database
+/// \file Collection status: which participants are done or open, and what is left to do. Uses what a database
 /// stores in clear, and says nothing about outcomes.
 #pragma once
 

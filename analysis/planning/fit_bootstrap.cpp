@@ -106,7 +106,7 @@ double LocalAnswers::log_likelihood(const Cells& counts, std::span<const double>
       answers_at(layout, place, change, answers);
       for (std::size_t c = 0; c < classes_; ++c) {
         const double count = counts[layout][row + c];
-        if (count > 0.0) sum += count * std::log(std::max(answers[c], kLeastProbability));
+        if (count > 0.0) sum += count * std::log(std::max(answers[c], kMinProbability));
         for (std::size_t i = 0; i < slopes.size(); ++i) {
           slopes[i] += (count - presented * answers[c]) * log_slopes_[layout][row + c][i];
         }

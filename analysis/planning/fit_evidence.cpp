@@ -123,7 +123,7 @@ double g_squared(const Confusions& observed, const Confusions& expected) {
 }
 
 double believed(double probability) noexcept {
-  return std::clamp(probability, kLeastProbability, 1.0);
+  return std::clamp(probability, kMinProbability, 1.0);
 }
 
 Cells cells_of(const AnswerTable& table, const FitCounts& counts) {

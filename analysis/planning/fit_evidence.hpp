@@ -73,9 +73,9 @@ class FitEvidence {
 };
 
 /// The least probability that an observed answer is taken to have.
-inline constexpr double kLeastProbability = 1e-12;
+inline constexpr double kMinProbability = 1e-12;
 
-/// \return the probability, between kLeastProbability and 1
+/// \return the probability, between kMinProbability and 1
 [[nodiscard]] double believed(double probability) noexcept;
 
 /// \return the table's probabilities

@@ -7,9 +7,9 @@ namespace touchtrial::planning {
 namespace {
 
 // Beyond these bounds, answers are perfect, at chance, or all the same.
-constexpr double kLeastFeatureNoise = 1e-3;
-constexpr double kMostFeatureNoise = 10.0;
-constexpr double kMostLogOdds = 20.0;
+constexpr double kMinFeatureNoise = 1e-3;
+constexpr double kMaxFeatureNoise = 10.0;
+constexpr double kMaxLogOdds = 20.0;
 /// The step of ln(feature_noise) for the derivative.
 constexpr double kStep = 2e-4;
 
@@ -40,14 +40,14 @@ FitProblem::FitProblem(const AnswerModel& model, const FitEvidence& evidence,
       eliminated_(eliminated),
       classes_free_(free.classes) {
   // Without any noise, the probabilities would be step functions.
-  subject_.feature_noise = std::max(subject_.feature_noise, kLeastFeatureNoise);
+  subject_.feature_noise = std::max(subject_.feature_noise, kMinFeatureNoise);
   if (free.feature_noise)
-    add({ParameterKind::feature_noise}, std::log(kLeastFeatureNoise), std::log(kMostFeatureNoise));
-  if (free.lapse) add({ParameterKind::lapse}, 0.0, kMostLapse);
-  if (free.position) add({ParameterKind::position}, -kMostLogOdds, kMostLogOdds);
+    add({ParameterKind::feature_noise}, std::log(kMinFeatureNoise), std::log(kMaxFeatureNoise));
+  if (free.lapse) add({ParameterKind::lapse}, 0.0, kMaxLapse);
+  if (free.position) add({ParameterKind::position}, -kMaxLogOdds, kMaxLogOdds);
   const auto classes = static_cast<int>(model_.classes().size());
   for (int c = 0; free.classes && c < classes; ++c) {
-    if (c != eliminated_) add({ParameterKind::class_bias, c}, -kMostLogOdds, kMostLogOdds);
+    if (c != eliminated_) add({ParameterKind::class_bias, c}, -kMaxLogOdds, kMaxLogOdds);
   }
   for (const PictureLayout& layout : evidence_.layouts()) nearness_.push_back(nearness_of(layout));
 }
@@ -101,7 +101,7 @@ std::vector<double> FitProblem::numbers_of(const simulation::SubjectModel& subje
   for (const Parameter& parameter : parameters_) {
     switch (parameter.kind) {
       case ParameterKind::feature_noise:
-        numbers.push_back(std::log(std::max(subject.feature_noise, kLeastFeatureNoise)));
+        numbers.push_back(std::log(std::max(subject.feature_noise, kMinFeatureNoise)));
         break;
       case ParameterKind::lapse:
         numbers.push_back(subject.lapse);

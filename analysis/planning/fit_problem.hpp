@@ -12,7 +12,7 @@
 namespace touchtrial::planning {
 
 /// More lapses than this leave answers at chance.
-inline constexpr double kMostLapse = 0.98;
+inline constexpr double kMaxLapse = 0.98;
 
 /// The parameters that are estimated; the others stay as in the subject model.
 struct FreeParameters {

@@ -35,8 +35,8 @@ std::vector<double> information_of(const FitCounts& counts, const FitProblem::Ta
 /// \param matrix  row-major, symmetric, n x n
 /// \return nothing if it is not positive definite to about 10 digits
 std::optional<std::vector<double>> inverse_of(std::vector<double> matrix, std::size_t n) {
-  constexpr double kLeastShare = 1e-10;
-  if (!factorise(matrix, n, kLeastShare)) return std::nullopt;
+  constexpr double kMinShare = 1e-10;
+  if (!factorise(matrix, n, kMinShare)) return std::nullopt;
   std::vector<double> inverse(n * n, 0.0);
   for (std::size_t column = 0; column < n; ++column) {
     std::vector<double> x(n, 0.0);
@@ -51,7 +51,7 @@ std::optional<std::vector<double>> inverse_of(std::vector<double> matrix, std::s
 /// Square root of 3.84, the 95 % point of chi-square with one degree of freedom.
 constexpr double kRoot = 1.959964;
 constexpr double kCloseEnough = 0.02;
-constexpr int kMostFits = 12;
+constexpr int kMaxFits = 12;
 /// An end nearer to a bound than this is the bound, which says nothing about the data.
 constexpr double kHair = 1e-6;
 /// In standard errors: only failed fits end nearer to the best point.
@@ -115,7 +115,7 @@ std::optional<double> end_of(const Fitted& fitted, std::size_t number, double bo
   double near_root = 0.0;
   double value = inside(middle + sign * kRoot * deviation);
   std::vector<double> start = moved(fitted, number, value);
-  for (int fit = 0; fit < kMostFits; ++fit) {
+  for (int fit = 0; fit < kMaxFits; ++fit) {
     const Held held = best_with(fitted, number, value, start);
     if (std::abs(held.root - kRoot) < kCloseEnough) {
       return is_end(value) ? std::optional(value) : std::nullopt;
@@ -183,7 +183,7 @@ std::vector<double> monte_carlo_errors(const Fitted& fitted) {
         const double presented = presentations(counts[layout], cell - answer, classes);
         const double p = fitted.tangent.table.answers(static_cast<int>(layout), place)[answer];
         const double apart = own.answers(static_cast<int>(layout), place)[answer] - p;
-        const double weight = presented * apart / std::max(p, kLeastProbability);
+        const double weight = presented * apart / std::max(p, kMinProbability);
         for (std::size_t i = 0; i < n; ++i) {
           score[i] += weight * fitted.tangent.slopes[i][layout][cell];
         }

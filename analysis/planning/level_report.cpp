@@ -25,7 +25,7 @@ using simulation::PlaneLevels;
 using simulation::StimulusLevel;
 using simulation::StimulusLevels;
 
-constexpr std::size_t kMostCompared = 40;
+constexpr std::size_t kMaxCompared = 40;
 constexpr const char* kBlank = "blank plane";
 
 constexpr const char* kTitle = "Strength of the stimuli";
@@ -314,7 +314,7 @@ Json json_of(const PlaneLevels& levels) {
 
 Json json_of_differences(const study::Study& study, const StimulusLevels& levels) {
   Json list = Json::array();
-  if (levels.stimuli.size() > kMostCompared) return list;
+  if (levels.stimuli.size() > kMaxCompared) return list;
   for (std::size_t a = 0; a < levels.stimuli.size(); ++a) {
     for (std::size_t b = a + 1; b < levels.stimuli.size(); ++b) {
       for (std::size_t i = 0; i < levels.blank.size(); ++i) {
@@ -474,7 +474,7 @@ std::unique_ptr<const analysis::Results> with_levels(
   return std::make_unique<LevelledResults>(std::move(results), study, std::move(levels));
 }
 
-std::unique_ptr<const analysis::Results> with_levels_elsewhere(
+std::unique_ptr<const analysis::Results> with_levels_note(
     std::unique_ptr<const analysis::Results> results) {
   return std::make_unique<ResultsAndMore>(
       std::move(results),

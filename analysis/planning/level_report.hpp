@@ -41,7 +41,7 @@ namespace touchtrial::planning {
     simulation::StimulusLevels levels);
 
 /// Results with a section that says where the levels are, which were not computed.
-[[nodiscard]] std::unique_ptr<const analysis::Results> with_levels_elsewhere(
+[[nodiscard]] std::unique_ptr<const analysis::Results> with_levels_note(
     std::unique_ptr<const analysis::Results> results);
 
 }  // namespace touchtrial::planning

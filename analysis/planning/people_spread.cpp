@@ -38,7 +38,7 @@ struct Person {
 };
 
 std::vector<Person> chosen(std::span<const CountedPerson> people) {
-  const std::size_t count = std::min(people.size(), kMostPeopleOfSpread);
+  const std::size_t count = std::min(people.size(), kMaxPeopleOfSpread);
   std::vector<Person> persons;
   for (std::size_t i = 0; i < count; ++i) {
     const CountedPerson& one = people[i * people.size() / count];
@@ -144,7 +144,7 @@ Point maximised(const SpreadLikelihood& likelihood, const Point& start, const Fr
   const Bounds bounds{{bound(free.noise, start.log_noise, likelihood.least()),
                        bound(free.lapse, start.lapse, 0.0), bound(free.spread, start.spread, 0.0)},
                       {bound(free.noise, start.log_noise, likelihood.most()),
-                       bound(free.lapse, start.lapse, kMostLapse),
+                       bound(free.lapse, start.lapse, kMaxLapse),
                        bound(free.spread, start.spread, kSpreads.back())}};
   const SmoothFunction function = [&](std::span<const double> at, std::span<double> slopes) {
     const std::vector<Curve> curves = likelihood.curves(at[1]);
@@ -221,7 +221,7 @@ void check(const NoiseAnswers& answers, const SpreadStart& start) {
   if (answers.answers.size() < 4 || !(answers.step > 0.0) || answers.classes < 1) {
     throw std::invalid_argument("people_spread: four amounts of noise or more, and classes");
   }
-  if (!(start.spread >= 0.0) || !(start.lapse >= 0.0 && start.lapse <= kMostLapse)) {
+  if (!(start.spread >= 0.0) || !(start.lapse >= 0.0 && start.lapse <= kMaxLapse)) {
     throw std::invalid_argument("people_spread: a spread and a lapse are 0 or more");
   }
 }

@@ -44,7 +44,7 @@ struct PeopleSpread {
 };
 
 /// The most people whose answers are used; of more, as many are evenly chosen.
-inline constexpr std::size_t kMostPeopleOfSpread = 400;
+inline constexpr std::size_t kMaxPeopleOfSpread = 400;
 
 /// Maximises the likelihood of all participants' answers if each has one noise in all trials, whose
 /// logarithm is normal over people; everybody lapses equally often. Cost: under 1 s for 20 people.

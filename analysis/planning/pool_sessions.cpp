@@ -56,7 +56,7 @@ bool hold_session(const PoolSetting& setting, int number, int visit,
   opening.device = simulation::recorded_device(setting.subject);
   opening.simulated = true;
   session.open({}, opening, study::schedule_to_json(schedule, key));
-  participant.come_to(visit, simulation::course_of(key.study, schedule));
+  participant.start_visit(visit, simulation::course_of(key.study, schedule));
   static_cast<void>(
       session::run_session_in_virtual_time(session, key, setting.source, participant));
   return session.presentations_left() == 0;

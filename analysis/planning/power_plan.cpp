@@ -14,8 +14,8 @@
 namespace touchtrial::planning {
 namespace {
 
-constexpr int kMostExplorations = 100'000;
-constexpr int kMostTrainings = 1'000;
+constexpr int kMaxExplorations = 100'000;
+constexpr int kMaxTrainings = 1'000;
 
 void require_range(const char* option, int value, int low, int high) {
   if (value >= low && value <= high) return;
@@ -26,13 +26,13 @@ void settle_sizes(PowerPlan& plan) {
   if (plan.participants.empty()) {
     throw UsageError("--participants: no size is given; give one or more, for instance 8,12,16");
   }
-  if (plan.participants.size() > kMostPowerSizes) {
+  if (plan.participants.size() > kMaxPowerSizes) {
     throw UsageError(fmt::format("--participants: {} sizes are given; give {} at most",
-                                 plan.participants.size(), kMostPowerSizes));
+                                 plan.participants.size(), kMaxPowerSizes));
   }
   for (const int size : plan.participants) {
     // One participant gives no interval over participants.
-    require_range("--participants", size, 2, kMostPowerParticipants);
+    require_range("--participants", size, 2, kMaxPowerParticipants);
   }
   std::ranges::sort(plan.participants);
   const auto twice = std::ranges::adjacent_find(plan.participants);
@@ -54,15 +54,15 @@ std::string digest_of(const simulation::SubjectModel& subject) {
 
 void settle(PowerPlan& plan) {
   settle_sizes(plan);
-  require_range("--runs", plan.runs, 1, kMostPowerRuns);
-  require_range("--explorations", plan.explorations, 1, kMostExplorations);
-  require_range("--trainings", plan.trainings, 1, kMostTrainings);
+  require_range("--runs", plan.runs, 1, kMaxPowerRuns);
+  require_range("--explorations", plan.explorations, 1, kMaxExplorations);
+  require_range("--trainings", plan.trainings, 1, kMaxTrainings);
   const std::int64_t all =
       static_cast<std::int64_t>(plan.participants.size()) * std::int64_t{plan.runs};
-  if (all > kMostPowerRunsInAll) {
+  if (all > kMaxPowerRunsInAll) {
     throw UsageError(fmt::format(
         "--runs: {} runs of {} sizes are {} in all; give fewer runs or sizes, {} in all at most",
-        plan.runs, plan.participants.size(), all, kMostPowerRunsInAll));
+        plan.runs, plan.participants.size(), all, kMaxPowerRunsInAll));
   }
 }
 

@@ -13,11 +13,11 @@
 
 namespace touchtrial::planning {
 
-inline constexpr int kMostPowerRuns = 100'000;
-inline constexpr int kMostPowerParticipants = 10'000;
-inline constexpr std::size_t kMostPowerSizes = 64;
+inline constexpr int kMaxPowerRuns = 100'000;
+inline constexpr int kMaxPowerParticipants = 10'000;
+inline constexpr std::size_t kMaxPowerSizes = 64;
 /// Runs of all sizes together.
-inline constexpr std::int64_t kMostPowerRunsInAll = 1'000'000;
+inline constexpr std::int64_t kMaxPowerRunsInAll = 1'000'000;
 
 struct PowerPlan {
   std::vector<int> participants;  ///< sizes, rising, each once

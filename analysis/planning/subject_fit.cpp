@@ -155,19 +155,19 @@ std::optional<PeopleSpread> spread_of(const AnswerModel& model, const FitCounts&
                                       const simulation::SubjectModel& subject,
                                       const FreeParameters& used) {
   if (counts.people.size() < 2) return std::nullopt;
-  constexpr double kLeastNoise = 0.01;
-  constexpr double kMostNoise = 10.0;
-  NoiseAnswers answers{std::log(kLeastNoise), 0.25, counts.classes.size(), {}};
+  constexpr double kMinNoise = 0.01;
+  constexpr double kMaxNoise = 10.0;
+  NoiseAnswers answers{std::log(kMinNoise), 0.25, counts.classes.size(), {}};
   simulation::SubjectModel one = subject;
   one.feature_noise_spread = 0.0;
   one.lapse = 0.0;
   one.lapse_spread = 0.0;
-  for (double at = answers.least_log_noise; at <= std::log(kMostNoise); at += answers.step) {
+  for (double at = answers.least_log_noise; at <= std::log(kMaxNoise); at += answers.step) {
     one.feature_noise = std::exp(at);
     answers.answers.push_back(cells_of(model.answers(one, counts.layouts), counts));
   }
   return people_spread(answers, counts.people,
-                       {std::log(subject.feature_noise), std::min(mean_lapse(subject), kMostLapse),
+                       {std::log(subject.feature_noise), std::min(mean_lapse(subject), kMaxLapse),
                         subject.feature_noise_spread, used.feature_noise, used.lapse});
 }
 

@@ -102,6 +102,9 @@ constexpr std::array kPublications = {
                 "Tan HZ, Reed CM, Durlach NI (2010). Optimum information transfer rates for "
                 "communication through haptic and other sensory modalities. IEEE Transactions on "
                 "Haptics 3(2), 98-108."},
+    Publication{Source::tobin, "tobin1958",
+                "Tobin J (1958). Estimation of relationships for limited dependent variables. "
+                "Econometrica 26(1), 24-36."},
     Publication{
         Source::townsend_landon, "townsend1982",
         "Townsend JT, Landon DE (1982). An experimental and theoretical investigation of the "

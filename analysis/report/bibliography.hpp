@@ -36,6 +36,7 @@ enum class Source {
   senn,
   student,
   tan_reed_durlach,
+  tobin,
   townsend_landon,
   viechtbauer,
   wagner,

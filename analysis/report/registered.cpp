@@ -37,7 +37,23 @@ std::string share_text(double share, bool is_difference) {
                      is_difference ? " points" : "%");
 }
 
-/// The interval, unless all participants are alike: that it has no width is no certainty.
+/// A value of the estimand, with its unit.
+std::string value_text(const PrimaryResult& result, double value) {
+  if (study::is_of_thresholds(result.estimand)) {
+    return fmt::format("{}{:.1f} dB", value < 0.0 ? "−" : "", std::abs(value));
+  }
+  return share_text(value, result.estimand == study::Estimand::difference);
+}
+
+bool is_equality(const PrimaryResult& result) {
+  return result.estimand == study::Estimand::threshold_equality;
+}
+
+bool is_estimate(const PrimaryResult& result) {
+  return result.estimand == study::Estimand::mean_threshold;
+}
+
+/// The interval, unless it has no width.
 std::optional<Interval> telling_interval(const PrimaryResult& result) {
   const std::optional<Interval>& interval = result.registered().interval;
   return interval && interval->low < interval->high ? interval : std::nullopt;
@@ -48,7 +64,7 @@ std::string words_on_worth(const PrimaryResult& result) {
   const std::optional<Interval> interval = telling_interval(result);
   if (!result.smallest_effect || !interval) return "";
   const double worth = *result.smallest_effect;
-  const std::string least = share_text(worth, result.estimand == study::Estimand::difference);
+  const std::string least = value_text(result, worth);
   if (interval->low >= worth) {
     return " The interval lies above " + least + ", the smallest registered as worth having.";
   }
@@ -62,7 +78,7 @@ std::string words_on_worth(const PrimaryResult& result) {
 /// What the interval says of the margin: "as good" may be better, or still a little worse.
 std::string words_on_margin(const PrimaryResult& result) {
   const std::optional<Interval> interval = telling_interval(result);
-  if (!result.margin || !interval) return "";
+  if (!result.margin || !interval || is_equality(result)) return "";
   const std::string level = fmt::format(" The {:.6g}% interval", 100.0 * result.interval_level);
   const std::string margin = share_text(-*result.margin, true);
   if (interval->high < -*result.margin) {
@@ -81,16 +97,60 @@ std::string words_on_margin(const PrimaryResult& result) {
   return above + ", and contains 0.";
 }
 
-/// What a reader of the interval might miss: that it ends where possible values end, or has no
-/// width.
+/// Whether an interval lies beyond the margin of an equality.
+bool lies_beyond(const std::optional<Interval>& interval, double margin) {
+  return interval && (interval->low >= margin || interval->high <= -margin);
+}
+
+/// The differences of an equality that are not shown to lie within the margin.
+std::string words_on_pairs(const PrimaryResult& result) {
+  if (!is_equality(result)) return "";
+  const std::string level = fmt::format("{:.6g}% interval", 100.0 * result.interval_level);
+  const std::string margin = "±" + value_text(result, *result.margin);
+  std::string words;
+  for (const PrimaryPair& pair : result.pairs) {
+    if (pair.p && *pair.p <= result.level) continue;
+    if (!pair.interval) {
+      words += " " + pair.words + " has no interval.";
+    } else {
+      words += fmt::format(
+          " The {} of {} {} {}, the registered margin.", level, pair.words,
+          lies_beyond(pair.interval, *result.margin) ? "lies beyond" : "does not lie within",
+          margin);
+    }
+  }
+  if (words.empty())
+    words = fmt::format(" Every {} lies within {}, the registered margin.", level, margin);
+  return words;
+}
+
+/// Of non-inferiority: the methods with which people may only have guessed.
+std::string words_on_guessing(const PrimaryResult& result) {
+  std::vector<std::string> arms;
+  for (const AboveChance& one : result.above_chance) {
+    if (one.p && *one.p <= result.level) continue;
+    const std::string mean = one.mean ? share_text(*one.mean, false) : "no mean";
+    arms.push_back(fmt::format("{} ({}{})", one.method, mean,
+                               one.p ? fmt::format(", p = {}", p_value(*one.p)) : ""));
+  }
+  if (arms.empty()) return "";
+  return fmt::format(
+      " Answers with {} are not shown to be above chance: equally bad is not as good, so nothing "
+      "follows.",
+      listed(arms, " and "));
+}
+
+/// What a reader of the interval might miss: that it ends where possible values end, or that
+/// there is none.
 std::string words_on_ends(const PrimaryResult& result) {
   const PrimaryChoice& choice = result.registered();
-  if (!choice.interval || !choice.estimate) return "";
+  if (!result.p || !choice.estimate || choice.participants < 2) return "";
   if (!telling_interval(result)) {
     return std::string(result.crossover ? " Within an order of methods participants"
                                         : " Participants") +
-           " do not differ; that the interval has no width is no certainty.";
+           " do not differ, so that there is no t interval; that is no certainty.";
   }
+  if (study::is_of_thresholds(result.estimand)) return "";
   const double least = result.estimand == study::Estimand::difference ? -1.0 : 0.0;
   const bool low = choice.interval->low == least && *choice.estimate > least;
   const bool high = choice.interval->high == 1.0 && *choice.estimate < 1.0;
@@ -102,10 +162,10 @@ std::string words_on_ends(const PrimaryResult& result) {
 std::string words_on_sides(const PrimaryResult& result) {
   const std::optional<Interval> interval = telling_interval(result);
   if (!interval || !result.bound || result.margin || interval->low > result.null) return "";
-  const bool difference = result.estimand == study::Estimand::difference;
+  const bool of_accuracy = result.estimand == study::Estimand::mean_accuracy;
   return fmt::format(
       " The two-sided interval reaches {}; the lower limit of the one-sided test, {}, does not.",
-      difference ? "0" : "chance", share_text(*result.bound, difference));
+      of_accuracy ? "chance" : "0", value_text(result, *result.bound));
 }
 
 bool has_one_order(const PrimaryResult& result) {
@@ -150,7 +210,11 @@ std::string obstacle(const PrimaryResult& result, const StudyCourse& course) {
     return "All participants had the methods in the same order, so that an effect of the method "
            "and one of the period cannot be told apart.";
   }
-  if (!result.p) return "There are too few participants for the test.";
+  if (!result.nothing_follows.empty()) return result.nothing_follows;
+  if (is_estimate(result) && !result.registered().interval) {
+    return "There are too few participants for an interval.";
+  }
+  if (!is_estimate(result) && !result.p) return "There are too few participants for the test.";
   const bool reached = course.planned == 0 || course.completed >= course.planned;
   const bool may_stop = may_stop_at_look(result, course);
   if (!course.closed && !may_stop) return "Collecting is not over.";
@@ -158,6 +222,7 @@ std::string obstacle(const PrimaryResult& result, const StudyCourse& course) {
     return fmt::format("Collecting ended with {} of {} planned participants.", course.completed,
                        course.planned);
   }
+  if (is_estimate(result)) return "";
   if (course.unregistered_looks > 0 && *result.p <= result.level) {
     return fmt::format("After {} the error rate of the test is not known.",
                        counted(course.unregistered_looks, "unregistered look"));
@@ -177,6 +242,7 @@ std::string obstacle(const PrimaryResult& result, const StudyCourse& course) {
 }
 
 bool is_against(const PrimaryResult& result) {
+  if (is_equality(result)) return false;
   return result.registered().estimate.value_or(result.null) <= result.null;
 }
 
@@ -188,6 +254,7 @@ std::string name_of(Verdict verdict) {
       std::to_array<Named<Verdict>>({{"supported", supported},
                                      {"not supported", not_supported},
                                      {"undecided", undecided},
+                                     {"estimated", estimated},
                                      {"not registered", not_registered}});
   return std::string(name_in(kNames, verdict));
 }
@@ -225,8 +292,8 @@ double level_of(const PrimaryResult& result, const StudyCourse& course, study::S
   if (!course.at_registered_look && shares.back() < 1.0) shares.push_back(1.0);
   const AlphaSpending kind =
       spending == study::Spending::pocock ? AlphaSpending::pocock : AlphaSpending::obrien_fleming;
-  constexpr double kLeastLevel = 1e-9;
-  return std::max(kLeastLevel, nominal_levels(result.alpha, result.sides, kind, shares).back());
+  constexpr double kMinLevel = 1e-9;
+  return std::max(kMinLevel, nominal_levels(result.alpha, result.sides, kind, shares).back());
 }
 
 void judge(PrimaryResult& result, const StudyCourse& course) {
@@ -241,10 +308,21 @@ void judge(PrimaryResult& result, const StudyCourse& course) {
     return decide(Verdict::not_registered,
                   "The study file registers no estimand and no test, so nothing is decided here.");
   }
-  const std::string worth =
-      words_on_worth(result) + words_on_margin(result) + words_on_ends(result);
+  const std::string worth = words_on_worth(result) + words_on_margin(result) +
+                            words_on_ends(result) + (result.note.empty() ? "" : " " + result.note);
   const std::string hindered = obstacle(result, course);
   if (!hindered.empty()) return decide(Verdict::undecided, hindered + worth);
+  if (is_estimate(result)) {
+    return decide(Verdict::estimated,
+                  "An estimate was registered, and no test." + worth + words_on_number(course));
+  }
+  if (is_equality(result) && *result.p > result.level) {
+    const bool beyond = std::ranges::any_of(result.pairs, [&](const PrimaryPair& pair) {
+      return lies_beyond(pair.interval, *result.margin);
+    });
+    return decide(beyond ? Verdict::not_supported : Verdict::undecided,
+                  compared_p(result) + words_on_pairs(result) + worth);
+  }
   if (*result.p > result.level) {
     const std::optional<Interval> interval = telling_interval(result);
     const std::optional<double> least =
@@ -256,8 +334,11 @@ void judge(PrimaryResult& result, const StudyCourse& course) {
     return decide(Verdict::not_supported,
                   "The test rejects, but in the direction opposite to the hypothesis." + worth);
   }
-  decide(Verdict::supported, compared_p(result) + words_on_sides(result) + worth +
-                                 words_on_early_end(result, course) + words_on_number(course));
+  const std::string guessing = words_on_guessing(result);
+  if (!guessing.empty()) return decide(Verdict::undecided, compared_p(result) + guessing + worth);
+  decide(Verdict::supported, compared_p(result) + words_on_sides(result) + words_on_pairs(result) +
+                                 worth + words_on_early_end(result, course) +
+                                 words_on_number(course));
 }
 
 }  // namespace touchtrial::analysis

@@ -18,23 +18,43 @@ enum class Verdict {
   supported,       ///< the registered test rejects, in the registered direction
   not_supported,   ///< it does not, and what would be worth having is excluded, or was not stated
   undecided,       ///< the study cannot tell, or not by the registered test
+  estimated,       ///< an estimate was registered, without a test, and here it is
   not_registered,  ///< nothing was registered that could be decided
 };
 
-/// "supported", "not supported", "undecided", "not registered"
+/// "supported", "not supported", "undecided", "estimated", "not registered"
 [[nodiscard]] std::string name_of(Verdict verdict);
 
 /// The estimate under one choice of sessions and trials.
 struct PrimaryChoice {
-  std::string name;   ///< "registered", "taken", "put_back", "all", "valid", "answered"
+  std::string name;   ///< Selection::name
   std::string words;  ///< what it leaves out
   int participants = 0;
   int trials = 0;
   std::optional<double> estimate{};
-  std::optional<Interval> interval{};  ///< Student's, at PrimaryResult::interval_level
+  std::optional<Interval> interval{};  ///< at PrimaryResult::interval_level
+  /// Of an equality: the difference that reaches furthest from 0, in words; the estimate is its.
+  std::string pair{};
 };
 
-/// The question that decides a study, and its answer.
+/// One of the differences of an equality.
+struct PrimaryPair {
+  std::string words;  ///< "bark, standard -18 dB, less bark, standard -12 dB"
+  int participants = 0;
+  std::optional<double> estimate{};
+  std::optional<Interval> interval{};
+  std::optional<double> p{};  ///< the larger one of the two one-sided tests
+};
+
+/// Whether people can do it at all with a method.
+struct AboveChance {
+  std::string method;
+  std::optional<double> mean{};  ///< accuracy
+  std::optional<double> p{};     ///< of the one-sided t test against chance
+};
+
+/// The question that decides a study, and its answer. Values are shares of right answers, or dB of
+/// thresholds (study::is_of_thresholds).
 struct PrimaryResult {
   study::Estimand estimand = study::Estimand::mean_accuracy;
   std::string words;  ///< the estimand with the study's labels
@@ -45,13 +65,20 @@ struct PrimaryResult {
   double level = 0.05;  ///< that p must not exceed; less than alpha at an interim look or after one
   double interval_level = 0.95;  ///< 1 - alpha, or 1 - 2 alpha with a margin
   std::optional<double> smallest_effect{};
-  std::optional<double> margin{};        ///< of non-inferiority; the null hypothesis is -margin
+  std::optional<double> margin{};        ///< of non-inferiority, whose null is -margin, or equality
   std::optional<double> p{};             ///< of the registered choice
   std::optional<double> bound{};         ///< one-sided: the lower limit that goes with the test
   std::vector<PrimaryChoice> choices{};  ///< the registered one first
   /// Of the registered choice, if the test is the period-adjusted one.
   std::optional<CrossoverEstimate> crossover{};
   std::optional<CrossoverPermutation> permutation{};
+  std::vector<PrimaryPair> pairs{};  ///< of an equality: all differences, of the registered choice
+  /// Of non-inferiority, by the registered choice: two methods that fail alike are not as good as
+  /// each other.
+  std::vector<AboveChance> above_chance{};
+  /// Why nothing follows from the data, whatever a test says, in a sentence; empty: something may.
+  std::string nothing_follows{};
+  std::string note{};  ///< what belongs to the estimate, in a sentence; may be empty
   Verdict verdict = Verdict::not_registered;
   std::string because{};       ///< why, in one sentence or more
   bool ended_at_look = false;  ///< collecting ended at a registered look, as registered
@@ -85,11 +112,14 @@ struct StudyCourse {
 
 /// Decides on the registered question: sets `verdict` and `because`.
 ///
-/// It is undecided if all participants had one order of two methods in blocks, if the test needs
-/// more participants, if the study is open, ended before its planned number of participants, or has
-/// a p that is within its level after an unregistered look, or after a registered one with more
-/// participants than planned; and if p is above its level while the interval contains the smallest
-/// effect worth having, does not lie below minus the margin, or has no width.
+/// It is undecided if all participants had one order of two methods in blocks, if nothing follows
+/// from the data, if the test or the interval needs more participants, if the study is open, ended
+/// before its planned number of participants, or has a p that is within its level after an
+/// unregistered look, or after a registered one with more participants than planned; and if p is
+/// above its level while the interval contains the smallest effect worth having, does not lie below
+/// minus the margin, or does not exist; or if an equality is not shown, and no difference lies
+/// beyond its margin; or if a method seems as good that is not shown to be above chance, or whose
+/// rival is not.
 /// \pre result has at least one choice
 void judge(PrimaryResult& result, const StudyCourse& course);
 

@@ -10,13 +10,40 @@ using Json = nlohmann::ordered_json;
 
 Json rules_object(const std::optional<study::ExclusionRules>& rules) {
   if (!rules) return nullptr;
-  return {{"deviations", rules->deviations},
-          {"invalid_trials", figure_json(rules->invalid_trials)}};
+  Json object{{"deviations", rules->deviations},
+              {"invalid_trials", figure_json(rules->invalid_trials)}};
+  if (rules->missed_catch) object["missed_catch"] = *rules->missed_catch;
+  return object;
+}
+
+Json standards_array(const std::vector<study::RegisteredStandard>& standards) {
+  return array_json(standards, [](const study::RegisteredStandard& one) {
+    return Json{{"class", one.label.empty() ? Json(nullptr) : Json(one.label)},
+                {"value", figure_json(one.value)}};
+  });
+}
+
+/// What a registration of thresholds has; what it cannot have is null.
+Json registered_thresholds(const study::Registration& registration) {
+  const study::RegisteredAnalysis& analysis = *registration.analysis;
+  const bool tested = analysis.estimand != study::Estimand::mean_threshold;
+  return {{"estimand", study::name_of(analysis.estimand)},
+          {"standards", standards_array(analysis.standards)},
+          {"test", tested ? Json(study::name_of(analysis.test)) : Json(nullptr)},
+          {"sides", tested ? Json(analysis.one_sided ? "one" : "two") : Json(nullptr)},
+          {"alpha", analysis.alpha},
+          {"smallest_effect_db", figure_json(analysis.smallest_effect)},
+          {"margin_db", figure_json(analysis.margin)},
+          {"participants", registration.participants},
+          {"looks", analysis.looks},
+          {"spending", study::name_of(analysis.spending)},
+          {"exclusion_rules", rules_object(analysis.exclusion_rules)}};
 }
 
 Json registered_object(const study::Registration& registration) {
   if (!registration.analysis) return nullptr;
   const study::RegisteredAnalysis& analysis = *registration.analysis;
+  if (study::is_of_thresholds(analysis.estimand)) return registered_thresholds(registration);
   return {{"estimand", study::name_of(analysis.estimand)},
           {"methods", analysis.methods},
           {"test", study::name_of(analysis.test)},
@@ -31,12 +58,49 @@ Json registered_object(const study::Registration& registration) {
 }
 
 Json choice_object(const PrimaryChoice& choice) {
-  return {{"choice", choice.name},
-          {"words", choice.words},
-          {"participants", choice.participants},
-          {"trials", choice.trials},
-          {"estimate", figure_json(choice.estimate)},
-          {"interval", interval_json(choice.interval)}};
+  Json object{{"choice", choice.name},
+              {"words", choice.words},
+              {"participants", choice.participants},
+              {"trials", choice.trials},
+              {"estimate", figure_json(choice.estimate)},
+              {"interval", interval_json(choice.interval)}};
+  if (!choice.pair.empty()) object["pair"] = choice.pair;
+  return object;
+}
+
+Json pairs_array(const std::vector<PrimaryPair>& pairs) {
+  return array_json(pairs, [](const PrimaryPair& pair) {
+    return Json{{"pair", pair.words},
+                {"participants", pair.participants},
+                {"estimate", figure_json(pair.estimate)},
+                {"interval", interval_json(pair.interval)},
+                {"p", figure_json(pair.p)}};
+  });
+}
+
+Json above_chance_array(const std::vector<AboveChance>& methods) {
+  return array_json(methods, [](const AboveChance& one) {
+    return Json{{"method", one.method}, {"mean", figure_json(one.mean)}, {"p", figure_json(one.p)}};
+  });
+}
+
+void put_estimation(Json& object, const PrimaryResult& primary) {
+  if (study::is_of_thresholds(primary.estimand)) {
+    put_method(object,
+               "estimate, interval and bounds in dB: mean over participants, each of whom weighs "
+               "the same, of the normal distribution that is most likely for everybody, those "
+               "without a threshold by their bounds; interval: profile likelihood at "
+               "interval_level (1 - alpha, or 1 - 2 alpha with a margin), which is Student's if "
+               "everybody has a threshold; p of the registered choice alone",
+               {"student1908", "tobin1958"});
+    return;
+  }
+  put_method(
+      object,
+      "estimate: mean over participants, each of whom weighs the same; interval: Student's "
+      "t, two-sided, at interval_level (1 - alpha, or 1 - 2 alpha with a margin); bound: the "
+      "one-sided test's lower limit; p of the registered choice alone",
+      {"student1908", "phipson2010"});
 }
 
 Json crossover_object(const PrimaryResult& primary) {
@@ -106,12 +170,12 @@ Json primary_object(const StudyHead& head) {
   for (const PrimaryChoice& choice : primary.choices) {
     object["choices"].push_back(choice_object(choice));
   }
-  put_method(
-      object,
-      "estimate: mean over participants, each of whom weighs the same; interval: Student's "
-      "t, two-sided, at interval_level (1 - alpha, or 1 - 2 alpha with a margin); bound: the "
-      "one-sided test's lower limit; p of the registered choice alone",
-      {"student1908", "phipson2010"});
+  if (study::is_of_thresholds(primary.estimand)) object["unit"] = "dB";
+  if (!primary.pairs.empty()) object["pairs"] = pairs_array(primary.pairs);
+  if (!primary.above_chance.empty()) {
+    object["above_chance"] = above_chance_array(primary.above_chance);
+  }
+  put_estimation(object, primary);
   object["stations"] = stations_object(primary.stations);
   return object;
 }

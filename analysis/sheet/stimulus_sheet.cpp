@@ -6,6 +6,8 @@
 #include "engine/metrics/picture_statistics.hpp"
 #include "engine/pictures/colour_image.hpp"
 #include "engine/rendering/field_statistics.hpp"
+#include "study/practice.hpp"
+#include "study/prepare.hpp"
 #include "study/stimulus_field.hpp"
 
 #include <algorithm>
@@ -45,8 +47,32 @@ std::string words_of(const engine::Gains& gains) {
          " mN";
 }
 
-Table empty_table(std::size_t method) {
-  Table table{fmt::format("stimuli-{}", method + 1),
+/// The stimuli of a section.
+struct Group {
+  std::string id;
+  std::string title;
+  std::vector<study::KeyedStimulus> stimuli;
+};
+
+/// Those of each method, then those of practice.
+std::vector<Group> groups_of(const study::StudyKey& key) {
+  std::vector<Group> groups;
+  for (const study::StudyMethod& method : key.study.methods) {
+    groups.push_back({fmt::format("method-{}", groups.size() + 1), method.label, {}});
+  }
+  for (const study::KeyedStimulus& keyed : key.stimuli) {
+    groups[static_cast<std::size_t>(keyed.stimulus.method)].stimuli.push_back(keyed);
+  }
+  groups.push_back({"practice", "Practice", key.practice});
+  std::erase_if(groups, [](const Group& group) { return group.stimuli.empty(); });
+  for (Group& group : groups) {
+    std::ranges::sort(group.stimuli, {}, &study::KeyedStimulus::stimulus);
+  }
+  return groups;
+}
+
+Table empty_table(std::size_t group) {
+  Table table{fmt::format("stimuli-{}", group + 1),
               "Stimuli and their codes, and the statistics of their fields",
               {{"stimulus", Align::left}, {"code", Align::left}, {"image", Align::left}}};
   for (const char* title :
@@ -82,10 +108,10 @@ class Stimuli {
 
   void add(const study::KeyedStimulus& keyed, Table& table, Tiles& tiles) {
     const study::StimulusIndex& stimulus = keyed.stimulus;
-    const study::StudyClass& of =
-        key_.study.classes[static_cast<std::size_t>(stimulus.class_index)];
+    const study::StudyClass& of = key_.study.class_at(stimulus.class_index);
     const auto exemplar = static_cast<std::size_t>(stimulus.exemplar);
-    const auto [image, notes] = engine::read_picture(key_.study.folder / of.images[exemplar]);
+    const auto [picture, notes] = engine::read_picture(key_.study.folder / of.images[exemplar]);
+    const GreyImage image = felt_part(picture, stimulus);
     const engine::PackEntry& entry = checked_entry(keyed, image, of.images[exemplar]);
     const engine::MappedField field = pack_.map(keyed.code);
     Plane<float> plane =
@@ -112,7 +138,7 @@ class Stimuli {
          words_of(entry.gains), fmt::format("{:.2g}", patch.force_of_unit_arrow * n_per_grey)});
     tiles.labels.push_back(title);
     tiles.cells.push_back(
-        {engine::png_bytes(fitted(image)),
+        {engine::png_bytes(fitted(picture)),
          engine::png_bytes(fitted(enhanced_picture(std::move(plane)))),
          engine::png_bytes(engine::force_arrows(texture, force, patch, kPictureSide_px))});
   }
@@ -128,6 +154,13 @@ class Stimuli {
   }
 
  private:
+  /// What the field was made of.
+  [[nodiscard]] GreyImage felt_part(const GreyImage& picture,
+                                    const study::StimulusIndex& stimulus) const {
+    if (!key_.study.is_practised(stimulus.class_index)) return picture;
+    return study::middle_of(picture, study::plane_of(key_.study));
+  }
+
   [[nodiscard]] const engine::PackEntry& checked_entry(const study::KeyedStimulus& keyed,
                                                        const GreyImage& image,
                                                        const std::filesystem::path& name) const {
@@ -160,11 +193,12 @@ Picture picture_of(const Tiles& tiles, std::size_t number) {
 
 Document make_stimulus_sheet(const study::StudyKey& key, const engine::Pack& pack,
                              const std::function<void(int done, int of)>& progress) {
-  if (key.stimuli.size() > kMaxSheetStimuli) {
+  const std::size_t all = key.fields().size();
+  if (all > kMaxSheetStimuli) {
     throw UsageError(fmt::format(
         "stimuli sheet: the study has {} stimuli, more than the {} that one sheet holds; make "
         "sheets of studies with fewer images",
-        key.stimuli.size(), kMaxSheetStimuli));
+        all, kMaxSheetStimuli));
   }
   Stimuli stimuli(key, pack);
   if (pack.manifest().study_id != key.study_id) {
@@ -180,25 +214,17 @@ Document make_stimulus_sheet(const study::StudyKey& key, const engine::Pack& pac
   const Tiles no_tiles{{"picture", "texture", "lateral force"}, {}, {}, kTileSide_px};
   std::size_t done = 0;
   std::size_t pictures = 0;
-  for (std::size_t method = 0; method < key.study.methods.size(); ++method) {
-    std::vector<study::KeyedStimulus> own;
-    std::ranges::copy_if(key.stimuli, std::back_inserter(own),
-                         [&](const study::KeyedStimulus& one) {
-                           return one.stimulus.method == static_cast<int>(method);
-                         });
-    if (own.empty()) continue;
-    std::ranges::sort(own, {}, &study::KeyedStimulus::stimulus);
-    Table table = empty_table(method);
+  for (const Group& group : groups_of(key)) {
+    Table table = empty_table(sheet.sections.size());
     std::vector<Block> drawn;
     Tiles tiles = no_tiles;
-    for (const study::KeyedStimulus& one : own) {
+    for (const study::KeyedStimulus& one : group.stimuli) {
       stimuli.add(one, table, tiles);
-      if (progress) progress(static_cast<int>(++done), static_cast<int>(key.stimuli.size()));
-      if (tiles.cells.size() < kStimuliOfPicture && &one != &own.back()) continue;
+      if (progress) progress(static_cast<int>(++done), static_cast<int>(all));
+      if (tiles.cells.size() < kStimuliOfPicture && &one != &group.stimuli.back()) continue;
       drawn.emplace_back(picture_of(std::exchange(tiles, no_tiles), ++pictures));
     }
-    Section& section = sheet.sections.emplace_back(
-        Section{fmt::format("method-{}", method + 1), key.study.methods[method].label, {}});
+    Section& section = sheet.sections.emplace_back(Section{group.id, group.title, {}});
     section.blocks.emplace_back(std::move(table));
     std::ranges::move(drawn, std::back_inserter(section.blocks));
   }

@@ -69,7 +69,7 @@ constexpr int kLongestCountedBlock = 400;
 /// Probabilities below this at a distribution's ends are left out.
 constexpr double kNegligible = 1e-290;
 /// A p is never 0. All probabilities left out as negligible add up to less than this.
-constexpr double kSmallestP = 1e-280;
+constexpr double kMinP = 1e-280;
 
 void require_in_range(int classes, int index) {
   if (index < 0 || index >= classes) {
@@ -292,7 +292,7 @@ std::optional<ChanceTest> chance_test(int classes, std::span<const AnsweredBlock
       deal_anew(classes, blocks, redraw, deals, test);
       break;
   }
-  test.p = std::max(test.p, kSmallestP);
+  test.p = std::max(test.p, kMinP);
   return test;
 }
 

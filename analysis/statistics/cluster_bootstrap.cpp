@@ -134,6 +134,24 @@ std::optional<Interval> bootstrap_mean(std::span<const double> values, std::uint
   return expanded_percentiles(std::move(means), values.size(), level);
 }
 
+std::optional<Interval> bootstrap_statistic(std::size_t participants,
+                                            const StatisticOfDrawn& statistic, std::uint64_t index,
+                                            int draws, double level) {
+  require_arguments(participants, draws, level);
+  if (participants < 2) return std::nullopt;
+  RandomStream random(0, "bootstrap of a statistic", index);
+  IndexDraws drawn(random, participants);
+  std::vector<std::size_t> people(participants);
+  std::vector<double> values(static_cast<std::size_t>(draws));
+  for (double& value : values) {
+    auto next = people.begin();
+    drawn.each(participants, [&](std::size_t i) { *next++ = i; });
+    value = statistic(people);
+  }
+  require_finite(values, "a bootstrap");
+  return expanded_percentiles(std::move(values), participants, level);
+}
+
 std::optional<Interval> bootstrap_ratio(std::span<const Ratio> participants, std::uint64_t index,
                                         int draws, double level) {
   require_arguments(participants.size(), draws, level);

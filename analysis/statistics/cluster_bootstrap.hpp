@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -16,7 +17,7 @@ namespace touchtrial::analysis {
 
 inline constexpr int kBootstrapDraws = 9999;
 /// With fewer, the ends of a bootstrap interval are the most extreme draws.
-inline constexpr std::size_t kFewestForBootstrap = 6;
+inline constexpr std::size_t kMinForBootstrap = 6;
 
 /// The ends of a bootstrap interval: expanded percentiles. Plain percentiles treat the spread
 /// between participants as known; expanded ones lie further out, at Phi(-t sqrt(n / (n - 1))) on
@@ -50,6 +51,21 @@ inline constexpr std::size_t kFewestForBootstrap = 6;
                                                      std::uint64_t index = 0,
                                                      int draws = kBootstrapDraws,
                                                      double level = kConfidenceLevel);
+
+/// A statistic of the participants with these indices, each as often as it is among them.
+using StatisticOfDrawn = std::function<double(std::span<const std::size_t> drawn)>;
+
+/// The interval of any statistic over participants, by the same method.
+/// \param participants  their number
+/// \param index  chooses the stream of random numbers
+/// \param draws  >= 1
+/// \return nothing with fewer than two participants
+/// \throws std::invalid_argument if a number is not finite, or an argument is out of range
+[[nodiscard]] std::optional<Interval> bootstrap_statistic(std::size_t participants,
+                                                          const StatisticOfDrawn& statistic,
+                                                          std::uint64_t index = 0,
+                                                          int draws = kBootstrapDraws,
+                                                          double level = kConfidenceLevel);
 
 /// One participant's part of a ratio of two sums.
 struct Ratio {

@@ -108,13 +108,13 @@ CrossoverEstimate crossover_estimate(std::span<const CrossoverPerson> people, do
   const auto freedom = static_cast<double>(people.size() - 2);
   const double error = standard_error(groups, freedom);
   const boost::math::students_t_distribution<> distribution(freedom);
-  const double reach = error * quantile(complement(distribution, 0.5 * (1.0 - level)));
-  estimate.interval = reach_around(*estimate.effect, reach);
-  estimate.period_interval = reach_around(*estimate.period, reach);
   if (error == 0.0) {
     estimate.p = crossover_permutation(people, null, sides)->p;
     return estimate;
   }
+  const double reach = error * quantile(complement(distribution, 0.5 * (1.0 - level)));
+  estimate.interval = reach_around(*estimate.effect, reach);
+  estimate.period_interval = reach_around(*estimate.period, reach);
   const double t = (*estimate.effect - null) / error;
   estimate.p = sides == Sides::one
                    ? cdf(complement(distribution, t))

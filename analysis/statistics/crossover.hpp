@@ -27,7 +27,8 @@ struct CrossoverEstimate {
   std::optional<double> effect{};  ///< first method less second; nothing without both groups
   std::optional<double> period{};  ///< second period less first, likewise
   /// Student's, with a pooled variance and two degrees fewer than participants; within [-1, 1].
-  /// Nothing with fewer than three participants or without both groups.
+  /// Nothing with fewer than three participants, without both groups, or if nobody differs from the
+  /// own group.
   std::optional<Interval> interval{};
   std::optional<Interval> period_interval{};
   std::optional<double> p{};  ///< of the effect, by the same t

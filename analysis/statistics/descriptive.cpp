@@ -22,6 +22,12 @@ double standard_deviation(std::span<const double> values, double mean, double di
   return std::sqrt(squares / divisor);
 }
 
+bool all_alike(std::span<const double> values) {
+  if (values.size() < 2) return false;
+  const auto n = static_cast<double>(values.size());
+  return without_noise(standard_deviation(values, mean_of(values), n - 1.0)) == 0.0;
+}
+
 MeanEstimate participant_mean(std::span<const double> values, Interval range, double level) {
   require_level(level);
   require_finite(values, "a mean");

@@ -18,17 +18,24 @@ namespace touchtrial::analysis {
 [[nodiscard]] double standard_deviation(std::span<const double> values, double mean,
                                         double divisor);
 
+/// Whether two values or more do not differ, but for rounding. Student's t, and with it his
+/// interval, then does not exist: nothing is known of how people differ.
+[[nodiscard]] bool all_alike(std::span<const double> values);
+
 /// A mean over participants and Student's t interval around it. Participants are the unit of which
 /// a study has a sample; pooling all trials as if they were independent makes intervals too narrow.
 struct MeanEstimate {
   int participants = 0;
   std::optional<double> mean;  ///< nothing without participants
-  Interval interval;           ///< the whole range with fewer than two participants
+  Interval
+      interval;  ///< the whole range with fewer than two participants; a point if all are alike
   std::optional<double> sd{};  ///< between participants, n - 1; nothing with fewer than two
 
-  /// The interval to show: `interval`, or nothing with fewer than two participants.
+  /// The interval to show: `interval`, or nothing with fewer than two participants, and if all are
+  /// alike: an interval without width would look like certainty.
   [[nodiscard]] std::optional<Interval> known_interval() const noexcept {
-    return participants < 2 ? std::nullopt : std::optional(interval);
+    return participants > 1 && interval.low < interval.high ? std::optional(interval)
+                                                            : std::nullopt;
   }
 };
 

@@ -12,9 +12,9 @@
 namespace touchtrial::analysis {
 namespace {
 
-constexpr int kFewestSteps = 800;    ///< of Simpson's rule
+constexpr int kMinSteps = 800;       ///< of Simpson's rule
 constexpr double kStepsOfSd = 16.0;  ///< in the standard deviation of an increment, at least
-constexpr double kMostSteps = 100'000;
+constexpr double kMaxSteps = 100'000;
 constexpr double kFarthest = 9.0;  ///< standard deviations beyond which nothing is left
 
 double above(double z) {
@@ -31,8 +31,8 @@ double spent_one_sided(double alpha, AlphaSpending spending, double share) {
 
 /// An even number of steps, for which no increment is narrower than a few of them.
 int steps_between(double low, double high, double least_sd) {
-  const double wanted = std::min(kMostSteps, (high - low) * kStepsOfSd / least_sd);
-  const int steps = std::max(kFewestSteps, static_cast<int>(wanted));
+  const double wanted = std::min(kMaxSteps, (high - low) * kStepsOfSd / least_sd);
+  const int steps = std::max(kMinSteps, static_cast<int>(wanted));
   return steps + steps % 2;
 }
 

@@ -26,8 +26,8 @@ std::optional<double> t_test_p(std::span<const double> values, double null, Side
   const auto n = static_cast<double>(values.size());
   const double mean = mean_of(values);
   const double distance = without_noise(mean - null);
-  const double sd = without_noise(standard_deviation(values, mean, n - 1.0));
-  if (sd == 0.0) return p_of_equals(distance, values.size(), sides);
+  if (all_alike(values)) return p_of_equals(distance, values.size(), sides);
+  const double sd = standard_deviation(values, mean, n - 1.0);
   const boost::math::students_t_distribution<> distribution(n - 1.0);
   const double t = distance / (sd / std::sqrt(n));
   if (sides == Sides::one) return cdf(complement(distribution, t));

@@ -27,14 +27,15 @@ struct PairedAccuracy {
 struct MethodComparison {
   int participants = 0;
   std::optional<double> difference;     ///< mean over participants of first minus second
-  Interval interval{-1.0, 1.0};         ///< t interval of that mean, within [-1, 1]
+  Interval interval{-1.0, 1.0};         ///< MeanEstimate::interval, within [-1, 1]
   std::optional<double> p;              ///< sign_flip_p of the differences
   std::optional<double> db;             ///< decibels of the two means
   std::optional<Interval> bootstrap{};  ///< bootstrap_mean of the differences
 
-  /// The interval to show: `interval`, or nothing with fewer than two participants.
+  /// As MeanEstimate::known_interval.
   [[nodiscard]] std::optional<Interval> known_interval() const noexcept {
-    return participants < 2 ? std::nullopt : std::optional(interval);
+    return participants > 1 && interval.low < interval.high ? std::optional(interval)
+                                                            : std::nullopt;
   }
 };
 

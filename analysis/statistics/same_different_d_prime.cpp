@@ -14,7 +14,7 @@ namespace touchtrial::analysis {
 namespace {
 
 /// No share of answers needs a larger d'.
-constexpr double kLargestDistance = 50.0;
+constexpr double kMaxDistance = 50.0;
 
 double area_below(double z) {
   return boost::math::cdf(boost::math::normal_distribution<>(), z);
@@ -36,12 +36,12 @@ template <typename Rising>
 double distance_with(const Rising& share_of, double share) {
   std::uintmax_t most_steps = 200;
   const auto excess = [&](double d) { return share_of(d) - share; };
-  const double most = excess(kLargestDistance);
-  if (most <= 0.0) return kLargestDistance;
+  const double most = excess(kMaxDistance);
+  if (most <= 0.0) return kMaxDistance;
   const double least = excess(0.0);
   if (least >= 0.0) return 0.0;
   const std::pair<double, double> bracket =
-      boost::math::tools::toms748_solve(excess, 0.0, kLargestDistance, least, most,
+      boost::math::tools::toms748_solve(excess, 0.0, kMaxDistance, least, most,
                                         boost::math::tools::eps_tolerance<double>(44), most_steps);
   return std::midpoint(bracket.first, bracket.second);
 }
@@ -66,7 +66,7 @@ std::optional<SameDifferentFit> independent_d_prime(const SameDifferent& shares)
   // 2 Phi(x) - 1 = erf(x / sqrt 2), without subtraction.
   const double above_chance = std::erf(0.5 * (z_hits - z_false) / std::numbers::sqrt2);
   const double one = 0.5 * (1.0 + std::sqrt(above_chance));
-  const double d = one < 1.0 ? 2.0 * z_of(one) : kLargestDistance;
+  const double d = one < 1.0 ? 2.0 * z_of(one) : kMaxDistance;
   return SameDifferentFit{d, -0.5 * (z_hits + z_false)};
 }
 

@@ -99,8 +99,9 @@ std::optional<StratifiedMean> stratified_mean(std::span<const std::vector<double
   const double degrees = values - result.strata;
   if (degrees < 1.0) return result;
   const double variance = without_noise(squares / degrees);
+  if (variance == 0.0) return result;
   result.interval = t_interval(result.mean, std::sqrt(variance / values), degrees, level, range);
-  if (result.strata < kFewestRandomStrata || variance == 0.0) return result;
+  if (result.strata < kMinRandomStrata) return result;
   StratumMeans means;
   for (const std::vector<double>& own : strata) {
     if (!own.empty()) means.add(mean_of(own), variance / static_cast<double>(own.size()));

@@ -11,7 +11,7 @@
 namespace touchtrial::analysis {
 
 /// With fewer, the spread between strata cannot be estimated.
-inline constexpr int kFewestRandomStrata = 6;
+inline constexpr int kMinRandomStrata = 6;
 
 /// The strata as a sample of others.
 struct RandomStrata {
@@ -24,9 +24,9 @@ struct StratifiedMean {
   int strata = 0;
   double mean = 0.0;  ///< of all values, so that a stratum weighs by its participants
   /// For the strata as they are: t from the spread within them, with as many degrees as values less
-  /// strata; nothing without degrees.
+  /// strata; nothing without degrees, or if all are alike within their strata.
   std::optional<Interval> interval{};
-  std::optional<RandomStrata> random{};  ///< from kFewestRandomStrata on
+  std::optional<RandomStrata> random{};  ///< from kMinRandomStrata on
 };
 
 /// \param strata  one number per participant; empty strata are left out

@@ -55,7 +55,7 @@ void SessionCourse::follow(const record::Event& event) {
 void SessionCourse::present(const record::Event& event) {
   const record::TrialBody body = record::trial_from_json(event.body);
   if (!course_.has(body.trial)) fail(event, body.trial, "was presented but not scheduled");
-  if (course_.was_given_up(body.trial)) {
+  if (course_.is_void(body.trial)) {
     fail(event, body.trial, "was presented under its old number after its block was restarted");
   }
   if (is_paused_) fail(event, body.trial, "was presented while the session was paused");
@@ -127,20 +127,17 @@ void SessionCourse::require_chosen(const record::Event& event,
                                    const record::AnswerBody& body) const {
   if (!course_.is_adaptive()) return;  // the sealed schedule says it all
   const study::Trial& due = *course_.current();
-  const auto words = [](const auto& track, const auto& level, const auto& target) {
-    return track && level && target
-               ? fmt::format("track {}, level {}, target {}", *track, *level, *target)
+  const auto words = [](const auto& kind, const auto& track, const auto& level,
+                        const auto& target) {
+    return kind && track && level && target
+               ? fmt::format("track {}, level {}, target {} ({})", *track, *level, *target, *kind)
                : std::string("no level");
   };
-  std::optional<int> track;
-  std::optional<int> level;
-  if (due.level) {
-    track = due.level->track;
-    level = due.level->level;
-  }
-  const std::optional<int> target = due.level ? due.right : std::nullopt;
-  const std::string shown = words(body.track, body.level, body.target);
-  const std::string chosen = words(track, level, target);
+  const std::string shown = words(body.kind, body.track, body.level, body.target);
+  const std::string chosen =
+      due.level ? words(std::optional(std::string(name_of(due.role))),
+                        std::optional(due.level->track), std::optional(due.level->level), due.right)
+                : "no level";
   if (shown == chosen) return;
   fail(event, body.trial,
        fmt::format("presented {} where the procedure chooses {}", shown, chosen));

@@ -286,8 +286,7 @@ std::string check_pack(const record::StudyStore& store, const study::StudyKey* k
   const std::string intact =
       fmt::format("signed, {} fields intact", pack.manifest().entries.size());
   if (key == nullptr) return intact + "; not compared with the key";
-  for (const study::KeyedStimulus& stimulus : key->stimuli)
-    static_cast<void>(pack.entry(stimulus.code));
+  for (const study::KeyedStimulus& field : key->fields()) static_cast<void>(pack.entry(field.code));
   const std::array folders = {key->study.folder, pack.folder().parent_path()};
   const std::size_t shown = study::shown_pictures(key->study).size();
   const std::size_t absent = study::require_pictures(pack, key->study, folders).size();

@@ -210,7 +210,7 @@ analysis::Document document_of(const device::Certificate& certificate) {
   if (!certificate.emulated.empty()) {
     document.stamp = "REHEARSAL";
     document.banners.push_back("REHEARSAL on an emulated device (" + certificate.emulated +
-                               "): proves the program, not a device.");
+                               "): tests the program, not a device.");
   }
   document.header.entries = {{"driver", certificate.driver},
                              {"model", certificate.model},

@@ -1,4 +1,4 @@
-// examples: the ready studies in a folder of one's own; demo: simulated participants through two of
+// examples: copies the ready studies into a folder; demo: simulated participants through two of
 // them.
 #include "app/commands/commands.hpp"
 #include "app/commands/shipped_files.hpp"

@@ -64,7 +64,7 @@ struct NewArguments {
 };
 
 constexpr const char* kUsualName = "my-study";
-constexpr std::size_t kMostGroups = 16;
+constexpr std::size_t kMaxGroups = 16;
 
 bool is_plain_name(std::string_view name) {
   const auto is_plain = [](char c) {
@@ -121,7 +121,7 @@ bool are_groups(const std::string& text) {
   const std::vector<std::string> groups = groups_in(text);
   const std::set<std::string> different(groups.begin(), groups.end());
   return groups.empty() ||
-         (groups.size() >= 2 && groups.size() <= kMostGroups && different.size() == groups.size() &&
+         (groups.size() >= 2 && groups.size() <= kMaxGroups && different.size() == groups.size() &&
           std::ranges::all_of(groups, is_plain_name));
 }
 

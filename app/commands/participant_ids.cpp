@@ -92,7 +92,7 @@ std::vector<std::string> known_ids(const std::filesystem::path& database) {
       }
     }
   } catch (const StoreError&) {
-    // Whoever records in the database is told; a consent is recorded whatever became of it.
+    // The command that writes the database reports the error; consent is recorded regardless.
   }
   try {
     for (const record::PersonalRecord& one : consents_beside(database)) add(one.participant);

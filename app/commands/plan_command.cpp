@@ -178,12 +178,12 @@ void add_plan_command(CLI::App& program, Action& action) {
                   plan_enrolment);
   add_study_argument(command, arguments.study);
   command.add_option("--participants", arguments.participants, "Number of participants in all")
-      ->check(CLI::Range(1, study::kMostEnrolments))
+      ->check(CLI::Range(1, study::kMaxEnrolments))
       ->required();
   auto* stations = command
                        .add_option("--stations", arguments.stations,
                                    "Number of stations, which are named 1, 2, and so on")
-                       ->check(CLI::Range(1, static_cast<int>(study::kMostStations)));
+                       ->check(CLI::Range(1, static_cast<int>(study::kMaxStations)));
   auto* names =
       command
           .add_option("--names", arguments.names, "Names of the stations, instead of --stations")

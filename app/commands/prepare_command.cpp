@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <variant>
@@ -51,22 +52,22 @@ Json stimulus_json(const study::PreparedStimulus& stimulus) {
 }
 
 // A hand strokes a plane of this size from a forearm's rest.
-constexpr double kSmallestPlaneMm = 20.0;
-constexpr double kLargestPlaneMm = 250.0;
+constexpr double kMinPlaneMm = 20.0;
+constexpr double kMaxPlaneMm = 250.0;
 
 /// \return what is to be said about a plane that is not a hand's; else empty
 std::string remark_on(const PlaneGeometry& plane) {
-  if (std::min(plane.width_mm(), plane.height_mm()) < kSmallestPlaneMm) {
+  if (std::min(plane.width_mm(), plane.height_mm()) < kMinPlaneMm) {
     return fmt::format(
         "too small to be stroked, below {:g} mm: take larger pictures, or raise "
         "/rendering/pitch_mm",
-        kSmallestPlaneMm);
+        kMinPlaneMm);
   }
-  if (std::max(plane.width_mm(), plane.height_mm()) > kLargestPlaneMm) {
+  if (std::max(plane.width_mm(), plane.height_mm()) > kMaxPlaneMm) {
     return fmt::format(
         "larger than a hand reaches, above {:g} mm: crop the pictures with `touchtrial stimuli "
         "import`, or lower /rendering/pitch_mm",
-        kLargestPlaneMm);
+        kMaxPlaneMm);
   }
   return "";
 }
@@ -104,6 +105,10 @@ std::string prepare_json(const study::PrepareReport& report, const study::PackPl
     stimuli.back()["levels"] =
         Json::parse(planning::levels_json(levels_of(stimulus, study, levels)));
   }
+  Json practice = Json::array();
+  for (const study::PreparedStimulus& stimulus : report.practice) {
+    practice.push_back(stimulus_json(stimulus));
+  }
   Json skipped = Json::array();
   for (const study::SkippedWork& work : report.skipped) {
     skipped.push_back({{"what", work.what}, {"why", work.why}, {"bytes", work.bytes}});
@@ -115,6 +120,7 @@ std::string prepare_json(const study::PrepareReport& report, const study::PackPl
                          {"height_mm", plane.height_mm()},
                          {"remark", remark_on(plane)}}},
                        {"stimuli", stimuli},
+                       {"practice", practice},
                        {"blank", {{"levels", Json::parse(planning::levels_json(levels.blank))}}},
                        {"provisional", levels.provisional},
                        {"differences", Json::parse(planning::differences_json(study, levels))},
@@ -155,10 +161,13 @@ std::string table_of(const study::PrepareReport& report) {
       "200 mm/s");
   for (const study::PreparedStimulus& stimulus : report.stimuli)
     text += stimulus_row(stimulus, width);
+  if (!report.practice.empty()) text += "practice:\n";
+  for (const study::PreparedStimulus& stimulus : report.practice)
+    text += stimulus_row(stimulus, width);
   return text;
 }
 
-/// One line: all stimuli share their gains, unless they are equalised.
+/// One line: all stimuli of the study share their gains, unless they are equalised.
 std::string gains_of(const study::PrepareReport& report, engine::ModelKind model) {
   if (report.stimuli.empty()) return "";
   const engine::Gains first = report.stimuli.front().gains;
@@ -176,9 +185,12 @@ std::string gains_of(const study::PrepareReport& report, engine::ModelKind model
 }
 
 std::string line_of_totals(const study::PrepareReport& report) {
-  const auto reused = std::count_if(report.stimuli.begin(), report.stimuli.end(),
-                                    [](const study::PreparedStimulus& s) { return s.reused; });
-  const auto total = static_cast<std::ptrdiff_t>(report.stimuli.size());
+  std::ptrdiff_t reused = 0;
+  std::ptrdiff_t total = 0;
+  for (const auto* const list : {&report.stimuli, &report.practice}) {
+    reused += std::ranges::count(*list, true, &study::PreparedStimulus::reused);
+    total += std::ssize(*list);
+  }
   std::string text = fmt::format("built {}, reused {}", total - reused, reused);
   for (const study::SkippedWork& skipped : report.skipped) {
     text += fmt::format("\nskipped {}: {}", skipped.what, skipped.why);

@@ -163,7 +163,7 @@ std::unique_ptr<const analysis::Results> with_levels_if_any(
     const ReportArguments& arguments) {
   if (!arguments.folder.empty() || arguments.json) return with_levels(std::move(results), key);
   if (!is_there(key.pack_folder / "pack.json")) return results;
-  return planning::with_levels_elsewhere(std::move(results));
+  return planning::with_levels_note(std::move(results));
 }
 
 int report(const ReportArguments& given) {
@@ -173,7 +173,7 @@ int report(const ReportArguments& given) {
   arguments.heads = heads_for(store, arguments);
   if (!arguments.folder.empty()) {
     analysis::refuse_other_study(arguments.folder, store.commitment().study);
-    analysis::refuse_strangers(arguments.folder);
+    analysis::refuse_foreign_files(arguments.folder);
   }
   const record::StudyState state = store.state();
   if (!state.unblinded) refuse_while_blind(state, arguments);

@@ -62,7 +62,7 @@ void add_session_options(CLI::App& command, RunOptions& options) {
   command
       .add_option("--enrolment", options.enrolment,
                   "Enrolment number, one of this station's (default: its next)")
-      ->check(CLI::Range(1, study::kMostEnrolments));
+      ->check(CLI::Range(1, study::kMaxEnrolments));
   add_count_option(command, "--visit", options.visit,
                    "Which visit of the participant this is, in a study with several", 1, 100);
   command
@@ -97,7 +97,7 @@ void add_device_options(CLI::App& command, RunOptions& options) {
   command
       .add_option("--text-scale", options.text_scale,
                   "Size of this participant's letters, in place of the study's; recorded")
-      ->check(finite_range(1.0, study::kLargestTextScale));
+      ->check(finite_range(1.0, study::kMaxTextScale));
   command.add_flag("--high-contrast", options.high_contrast,
                    "Black on white for this participant; recorded");
 }

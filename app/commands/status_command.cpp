@@ -202,8 +202,8 @@ bool all_have_come(const analysis::StudyStatus& status) {
   return status.planned > 0 && static_cast<int>(came.size()) >= status.planned;
 }
 
-/// Who comes next: an open session's participant, one who is to come, one whose next visit is due,
-/// or a new id.
+/// The next participant: an open session's participant, one who is to come, one whose next visit is
+/// due, or a new id.
 std::optional<NextSession> next_session(const analysis::StudyStatus& status) {
   std::vector<std::string> known;
   for (const analysis::PersonStatus& one : status.people) {

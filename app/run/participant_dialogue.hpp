@@ -1,4 +1,4 @@
-/// \file Who comes: what the experimenter is asked before a session for which no option names the
+/// \file Choosing the participant: what the experimenter is asked before a session for which no option names the
 /// participant.
 #pragma once
 

@@ -30,7 +30,6 @@
 #include "protocols/simulation/subject_model.hpp"
 #include "protocols/simulation/trial_course.hpp"
 #include "study/languages.hpp"
-#include "study/practice.hpp"
 #include "study/protocol.hpp"
 
 #include <algorithm>
@@ -418,9 +417,9 @@ class SimulatedSession {
     const std::unique_ptr<session::SessionClock> clock = clock_for(*explorer, entered.clock);
     const std::unique_ptr<simulation::SimulatedParticipant> mind =
         population_->participant(entered.enrolment);
-    mind->come_to(options_.visit,
-                  simulation::course_of(study_.key.study,
-                                        study::make_schedule(study_.key.study, entered.draw)));
+    mind->start_visit(options_.visit,
+                      simulation::course_of(study_.key.study,
+                                            study::make_schedule(study_.key.study, entered.draw)));
     session::AlwaysReady devices;
     DatabaseWatch watch(options_.database);
     RunExperimenter experimenter(
@@ -453,15 +452,6 @@ class SimulatedSession {
   std::unique_ptr<const simulation::Population> population_;
 };
 
-/// Reads and extracts the textures that people practise with.
-/// \throws StudyError as study::PracticeSet
-void add_practice(RunStudy& study) {
-  const study::Study& plan = study.key.study;
-  if (plan.trials.practice == 0 || plan.practice.classes.empty()) return;
-  const engine::Gains weakest = study::weakest_gains(study.pack.manifest());
-  study.source.practise_with(study::PracticeSet(plan, weakest, study.source.plane()));
-}
-
 }  // namespace
 
 int run_study_session(const RunOptions& given) {
@@ -473,7 +463,6 @@ int run_study_session(const RunOptions& given) {
   confirm_enrolment(given, study.key);
   const RunOptions options = given.participant.empty() ? with_participant(given, study.key) : given;
   if (options.is_simulated()) return SimulatedSession(options, study).run();
-  add_practice(study);
   return PersonsSession(options, study).run();
 }
 

@@ -72,7 +72,7 @@ float density_of(GLFWwindow* window) {
 
 namespace {
 
-constexpr std::size_t kMostScreens = 1000;
+constexpr std::size_t kMaxScreens = 1000;
 // Filled when GLFW is started, on the main thread.
 std::map<std::string, double> measured_screens;  ///< ScreenScale::mm_per_unit, by its monitor
 std::map<std::string, std::string> edids;        ///< by the monitor's name
@@ -119,7 +119,7 @@ std::map<std::string, double> read_measured_screens(const std::filesystem::path&
   constexpr std::uintmax_t kLargest = 1U << 20U;
   const Bytes content = read_file(file, kLargest);
   const JsonObject root = parse_strict_json(text_of(content), file.string()).object({"screens"});
-  for (const JsonValue& item : root.at("screens").items(0, kMostScreens)) {
+  for (const JsonValue& item : root.at("screens").items(0, kMaxScreens)) {
     const JsonObject screen = item.object({"monitor", "mm_per_unit"});
     screens[screen.at("monitor").text()] =
         screen.at("mm_per_unit").number({kMmPerInch / 400.0, kMmPerInch / 40.0});

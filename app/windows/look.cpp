@@ -139,7 +139,7 @@ std::set<char32_t> letters_in(const std::vector<std::string>& texts) {
 
 void require_letters(const std::set<char32_t>& letters) {
   constexpr float kAnyHeight = 13.0F;
-  constexpr int kMostNamed = 8;
+  constexpr int kMaxNamed = 8;
   ImFontAtlas atlas;
   const WantedLetters wanted = wanted_of(letters);
   const ImFont* const font = add_font(atlas, {kAnyHeight, FontWeight::regular}, wanted);
@@ -150,10 +150,10 @@ void require_letters(const std::set<char32_t>& letters) {
     const bool shown = letter <= IM_UNICODE_CODEPOINT_MAX &&
                        font->FindGlyphNoFallback(static_cast<ImWchar>(letter)) != nullptr;
     if (shown) continue;
-    if (++count <= kMostNamed) missing += fmt::format(" U+{:04X}", static_cast<unsigned>(letter));
+    if (++count <= kMaxNamed) missing += fmt::format(" U+{:04X}", static_cast<unsigned>(letter));
   }
   if (count == 0) return;
-  if (count > kMostNamed) missing += fmt::format(" and {} more", count - kMostNamed);
+  if (count > kMaxNamed) missing += fmt::format(" and {} more", count - kMaxNamed);
   throw DeviceError(
       "window: no installed font has these letters of the participant's texts:" + missing +
       "; for Chinese and Japanese `sudo apt install fonts-droid-fallback`, for other "

@@ -20,10 +20,10 @@ constexpr double kShakeMoreN = 0.4;   ///< beyond friction
 constexpr double kSoftestWall = 0.1;  ///< N/mm
 constexpr double kWallFactor = 1.3;
 constexpr double kStiffestWall = 1.0;  ///< where the maker states no limit
-constexpr double kLeastSwingMm = 0.15;
+constexpr double kMinSwingMm = 0.15;
 constexpr double kStepsOfSwing = 3.0;
 constexpr double kNoisesOfSwing = 4.0;
-constexpr double kLeastContactS = 1.0;
+constexpr double kMinContactS = 1.0;
 constexpr int kWarmMinutes = 20;
 constexpr double kMinuteS = 60.0;
 
@@ -91,7 +91,7 @@ class Procedure {
       missed("everything that follows", "the device failed: " + certificate_.fault);
     }
     if (!options_.thermal) missed("force after twenty minutes", "not asked for (--thermal)");
-    put_newtons_right();
+    apply_force_scale();
     return {std::move(certificate_), std::move(curves_)};
   }
 
@@ -126,13 +126,13 @@ class Procedure {
   /// A swing smaller than this is none.
   [[nodiscard]] double least_swing_mm() const {
     const double noise_mm = certificate_.rest ? certificate_.rest->noise_mm : 0.0;
-    return std::max({kLeastSwingMm, kStepsOfSwing * step_mm(), kNoisesOfSwing * noise_mm});
+    return std::max({kMinSwingMm, kStepsOfSwing * step_mm(), kNoisesOfSwing * noise_mm});
   }
   static std::string on(DeviceAxis axis) { return " on axis " + std::string(name_of(axis)); }
 
   void listen() {
     if (consents({"rest",
-                  Stance::lying,
+                  Grip::lying,
                   {},
                   "Let the handle lie or hold it still; no force acts for 4 s."},
                  "noise at rest")) {
@@ -157,7 +157,7 @@ class Procedure {
 
   void push() {
     for (const DeviceAxis axis : kDeviceAxes) {
-      if (!consents({"push", Stance::holding, axis,
+      if (!consents({"push", Grip::holding, axis,
                      fmt::format("Hold the handle lightly in the middle, so that it can give way. "
                                  "It is pushed along axis {} by at most {:.1f} N, in steps of 0.1 "
                                  "N, until it has moved 2 mm; then the other way.",
@@ -234,7 +234,7 @@ class Procedure {
         continue;
       }
       const double push_n = std::min(result.friction_n->value + kShakeMoreN, forces_.push_n);
-      if (!consents({"shake", Stance::free, axis,
+      if (!consents({"shake", Grip::free, axis,
                      fmt::format("Hold the handle in the middle. Let go slowly within 2 s of the "
                                  "start: it is pushed to and fro along axis {} by {:.1f} N for 12 "
                                  "s. Keep clear of it.",
@@ -289,7 +289,7 @@ class Procedure {
     bool tried = false;
     while (true) {
       const Prompt prompt{
-          "wall", Stance::pressing, DeviceAxis::y,
+          "wall", Grip::pressing, DeviceAxis::y,
           fmt::format("Hold the handle lightly in the middle. 3 mm below it is a floor of {:.2f} "
                       "N/mm: press on it as in a stroke for 6 s, and do not lift the handle. It is "
                       "switched off if it begins to swing or throws the handle up again and again.",
@@ -306,7 +306,7 @@ class Procedure {
         tried = true;
         break;
       }
-      if (run.contact_s() < kLeastContactS) {
+      if (run.contact_s() < kMinContactS) {
         wall.ended = "nobody pressed on the floor";
         break;
       }
@@ -336,7 +336,7 @@ class Procedure {
       return;
     }
     WarmResult warm;
-    if (!consents({"thermal", Stance::loaded, DeviceAxis::y,
+    if (!consents({"thermal", Grip::loaded, DeviceAxis::y,
                    "Hang the weight of axis y on the handle again, and let go within 2 s of the "
                    "start of each run. It hangs for twenty minutes; stay with it."},
                   what)) {
@@ -363,7 +363,7 @@ class Procedure {
   }
 
   /// What was measured in commanded newtons becomes newtons at the handle.
-  void put_newtons_right() {
+  void apply_force_scale() {
     for (AxisResult& result : certificate_.axes) {
       const auto scale = result.scale();
       if (!scale) {
@@ -398,7 +398,7 @@ AcceptanceForces acceptance_forces(const DeviceInfo& device, const SafetyLimits&
       all.continuous_force_n > 0.0 ? all.continuous_force_n : all.max_force_n;
   AcceptanceForces forces;
   forces.hold_n = kPeakShare * all.max_force_n;
-  forces.push_n = std::min({AxisPush::kMostN, continuous_n, forces.hold_n});
+  forces.push_n = std::min({AxisPush::kMaxN, continuous_n, forces.hold_n});
   forces.weight_n = std::min(forces.hold_n, kWeightShare * continuous_n);
   if (device.max_stiffness_n_per_mm > 0.0) {
     forces.gains.spring_n_per_mm =

@@ -23,7 +23,7 @@ inline constexpr std::array<std::string_view, 7> kAcceptanceSteps = {
     "rest", "steps", "push", "strokes", "weights", "shake", "wall"};
 
 /// What a person does with the handle during a run.
-enum class Stance {
+enum class Grip {
   lying,     ///< nothing: it lies or is held still
   moving,    ///< moves it slowly along all axes
   carrying,  ///< carries it by some centimetres in the axis' direction, and holds it there
@@ -37,7 +37,7 @@ enum class Stance {
 /// What is to be done before a run.
 struct Prompt {
   std::string_view step;  ///< one of kAcceptanceSteps, or "thermal"
-  Stance stance = Stance::lying;
+  Grip stance = Grip::lying;
   DeviceAxis axis = DeviceAxis::y;  ///< of the run, where it has one
   std::string text;                 ///< for the person
 };

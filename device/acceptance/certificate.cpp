@@ -25,7 +25,7 @@ constexpr auto kAxisWords = std::to_array<Named<DeviceAxis>>(
     {{"x", DeviceAxis::x}, {"y", DeviceAxis::y}, {"z", DeviceAxis::z}});
 constexpr NumberRange kPositive{.low = 0.0, .high = 1e6};
 constexpr NumberRange kSigned{.low = -1e6, .high = 1e6};
-constexpr std::size_t kMostEntries = 1000;
+constexpr std::size_t kMaxEntries = 1000;
 /// A number that is written like its limit (three digits, whole percents) does not exceed it.
 constexpr double kAlikeShare = 0.004;
 constexpr double kAlikePercent = 0.5;
@@ -81,7 +81,7 @@ void judge_delay(const AxisResult& axis, const std::vector<NotMeasured>& not_mea
   const Measured& delay = *axis.delay_ms;
   const auto refuse = [&](const char* why) {
     failures.push_back(fmt::format("{}the delay is {:.3g} +- {:.2g} ms, {} {:g} ms", where,
-                                   delay.value, delay.error, why, kMostDelayMs));
+                                   delay.value, delay.error, why, kMaxDelayMs));
   };
   switch (verdict_on_delay(delay)) {
     case DelayVerdict::below:
@@ -119,7 +119,7 @@ void judge_axis_result(const AxisResult& axis, double force_scale,
     failures.push_back(where + "the size of its force was not measured");
   }
   if (axis.friction_n) {
-    judge_above(where, "friction", axis.friction_n->value, kMostFrictionN, "N", failures);
+    judge_above(where, "friction", axis.friction_n->value, kMaxFrictionN, "N", failures);
   }
   judge_delay(axis, not_measured, failures);
 }
@@ -226,7 +226,7 @@ Measured read_measured_above_zero(const JsonValue& place) {
 }
 
 Vec3 read_scale(const JsonValue& place) {
-  constexpr NumberRange kScale{.low = kLeastScale, .high = kGreatestScale};
+  constexpr NumberRange kScale{.low = kMinScale, .high = kMaxScale};
   const std::vector<JsonValue> axes = place.items(3, 3);
   return {axes[0].number(kScale), axes[1].number(kScale), axes[2].number(kScale)};
 }
@@ -340,11 +340,11 @@ Certificate read_acceptance(const JsonValue& place) {
   certificate.axes = read_axis_results(object.at("axes"));
   certificate.wall = read_if(object, "wall", read_wall);
   certificate.warm = read_if(object, "warm", read_warm);
-  for (const JsonValue& item : object.at("not_measured").items(0, kMostEntries)) {
+  for (const JsonValue& item : object.at("not_measured").items(0, kMaxEntries)) {
     const JsonObject one = item.object({"what", "why"});
     certificate.not_measured.push_back({one.at("what").text(), one.at("why").text()});
   }
-  for (const JsonValue& item : object.at("failures").items(0, kMostEntries)) {
+  for (const JsonValue& item : object.at("failures").items(0, kMaxEntries)) {
     static_cast<void>(item.text());
   }
   if (object.at("passed").truth() != certificate.passed()) {
@@ -371,23 +371,23 @@ std::optional<Measured> AxisResult::scale() const {
 }
 
 DelayVerdict verdict_on_delay(const Measured& delay_ms) noexcept {
-  if (delay_ms.value - delay_ms.error > kMostDelayMs) return DelayVerdict::above;
-  if (!(delay_ms.error <= kMostDelayErrorMs)) return DelayVerdict::unclear;
-  return delay_ms.value + delay_ms.error <= kMostDelayMs ? DelayVerdict::below
-                                                         : DelayVerdict::not_shown;
+  if (delay_ms.value - delay_ms.error > kMaxDelayMs) return DelayVerdict::above;
+  if (!(delay_ms.error <= kMaxDelayErrorMs)) return DelayVerdict::unclear;
+  return delay_ms.value + delay_ms.error <= kMaxDelayMs ? DelayVerdict::below
+                                                        : DelayVerdict::not_shown;
 }
 
 std::vector<std::string> Certificate::failures() const {
   std::vector<std::string> failures;
   if (!fault.empty()) failures.push_back("the device failed: " + fault);
   if (rest) {
-    judge_above("at rest: ", "noise", rest->noise_mm, kMostNoiseMm, "mm", failures);
-    judge_above("at rest: ", "drift", rest->drift_mm, kMostDriftMm, "mm", failures);
+    judge_above("at rest: ", "noise", rest->noise_mm, kMaxNoiseMm, "mm", failures);
+    judge_above("at rest: ", "drift", rest->drift_mm, kMaxDriftMm, "mm", failures);
   } else {
     failures.emplace_back("noise at rest was not measured");
   }
   if (step_mm) {
-    judge_above("", "the encoder step", step_mm->value, kMostStepMm, "mm", failures);
+    judge_above("", "the encoder step", step_mm->value, kMaxStepMm, "mm", failures);
   }
   for (const DeviceAxis axis : kDeviceAxes) {
     const auto found = std::ranges::find(axes, axis, &AxisResult::axis);
@@ -404,7 +404,7 @@ std::vector<std::string> Certificate::failures() const {
   }
   if (warm && std::abs(warm->before_n) > 0.0) {
     judge_above("", "the change of the load's force over twenty minutes",
-                std::abs(warm->after_n / warm->before_n - 1.0), kMostWarmDrift, "of it", failures);
+                std::abs(warm->after_n / warm->before_n - 1.0), kMaxWarmDrift, "of it", failures);
   }
   return failures;
 }

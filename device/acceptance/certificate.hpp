@@ -21,13 +21,13 @@ inline constexpr double kStandardGravityMS2 = 9.80665;
 /// \name What fails a device. Sources: docs/devices/acceptance.md.
 ///@{
 inline constexpr double kForceTolerance = 0.10;  ///< share of the force
-inline constexpr double kMostNoiseMm = 0.1;      ///< of a handle that lies still
-inline constexpr double kMostDriftMm = 0.5;
-inline constexpr double kMostStepMm = 0.1;
-inline constexpr double kMostFrictionN = 0.7;  ///< the push of a stroke
-inline constexpr double kMostDelayMs = 5.0;
-inline constexpr double kMostDelayErrorMs = 2.0;  ///< a stated error above it tells nothing
-inline constexpr double kMostWarmDrift = 0.10;    ///< share of the load, over twenty minutes
+inline constexpr double kMaxNoiseMm = 0.1;       ///< of a handle that lies still
+inline constexpr double kMaxDriftMm = 0.5;
+inline constexpr double kMaxStepMm = 0.1;
+inline constexpr double kMaxFrictionN = 0.7;  ///< the push of a stroke
+inline constexpr double kMaxDelayMs = 5.0;
+inline constexpr double kMaxDelayErrorMs = 2.0;  ///< a stated error above it tells nothing
+inline constexpr double kMaxWarmDrift = 0.10;    ///< share of the load, over twenty minutes
 ///@}
 
 /// What an interval says of a delay. A device must be shown to be below the limit.
@@ -35,7 +35,7 @@ enum class DelayVerdict {
   below,      ///< all of the interval is within the limit
   above,      ///< all of it is beyond
   not_shown,  ///< the limit is within it
-  unclear,    ///< it is wider than kMostDelayErrorMs to either side, and not all beyond
+  unclear,    ///< it is wider than kMaxDelayErrorMs to either side, and not all beyond
 };
 [[nodiscard]] DelayVerdict verdict_on_delay(const Measured& delay_ms) noexcept;
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kMoveRunS = 12.0;
 constexpr double kSilentRunS = 8.0;
-constexpr double kLeastWeightN = 0.1;
+constexpr double kMinWeightN = 0.1;
 constexpr double kStrokeShareN = 0.2;  ///< that strokes need beside load and friction
 
 }  // namespace
@@ -31,7 +31,7 @@ void HandleRuns::require_no_fault(const ServoReport& report, const std::string& 
 
 OrWhy<Measured> HandleRuns::encoder_step() {
   if (!consents({"steps",
-                 Stance::moving,
+                 Grip::moving,
                  {},
                  "Move the handle slowly (1 cm in a second) to and fro along all three axes; no "
                  "force acts for 12 s."})) {
@@ -44,7 +44,7 @@ OrWhy<Measured> HandleRuns::encoder_step() {
 
 OrWhy<StrokeFigures> HandleRuns::empty_strokes(std::string_view step, DeviceAxis axis,
                                                Vec3 support_n, double step_mm) {
-  if (!consents({step, Stance::free, axis,
+  if (!consents({step, Grip::free, axis,
                  fmt::format("Hold the handle in the middle, without a weight. Let go slowly "
                              "within 2 s of the start: it is held and moved by 5 mm along axis "
                              "{} for 12 s.",
@@ -62,13 +62,13 @@ OrWhy<WeighResult> HandleRuns::weigh(std::string_view step, DeviceAxis axis,
   const AcceptanceForces forces = acceptance_forces(bench_.info(), bench_.limits());
   const double most_n = std::min(forces.weight_n, forces.hold_n) - std::abs(empty.load_n) -
                         empty.friction_n - kStrokeShareN;
-  if (most_n < kLeastWeightN) {
+  if (most_n < kMinWeightN) {
     return {{}, "the handle's own load and friction leave no room for a weight"};
   }
   if (skip_.contains(step)) return {{}, std::string(kLeftOut)};
-  const std::optional<double> weight_n = person_.weight_n(axis, kLeastWeightN, most_n);
+  const std::optional<double> weight_n = person_.weight_n(axis, kMinWeightN, most_n);
   if (!weight_n) return {{}, "no weight"};
-  if (!consents({step, Stance::loaded, axis,
+  if (!consents({step, Grip::loaded, axis,
                  "Hold the handle in the middle with the weight on it. Let go slowly within 2 s of "
                  "the start: it is held and moved by 5 mm for 12 s."})) {
     return {{}, std::string(kLeftOut)};
@@ -90,7 +90,7 @@ OrWhy<WeighResult> HandleRuns::weigh(std::string_view step, DeviceAxis axis,
 }
 
 OrWhy<ServoReport> HandleRuns::suspend_program(std::string_view step) {
-  if (!consents({step, Stance::guarding, DeviceAxis::y,
+  if (!consents({step, Grip::guarding, DeviceAxis::y,
                  "Hold the handle firmly: it is pushed down by 0.3 N for 8 s. After about 3 s the "
                  "system suspends this program for 2 s."})) {
     return {{}, std::string(kLeftOut)};
@@ -101,7 +101,7 @@ OrWhy<ServoReport> HandleRuns::suspend_program(std::string_view step) {
 }
 
 OrWhy<ServoReport> HandleRuns::pull_cable(std::string_view step) {
-  if (!consents({step, Stance::guarding, DeviceAxis::y,
+  if (!consents({step, Grip::guarding, DeviceAxis::y,
                  "Hold the handle firmly: it is pushed down by 0.3 N for 8 s. Pull the device's "
                  "data cable out within that time. Leave this out if the cable must stay."})) {
     return {{}, std::string(kLeftOut)};

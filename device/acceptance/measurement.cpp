@@ -106,7 +106,7 @@ bool ReboundDetector::throws(double height_mm) noexcept {
   const double rebound_mm = has_landed_ ? highest_mm_ : 0.0;
   has_landed_ = true;
   highest_mm_ = 0.0;
-  if (rebound_mm < kLeastMm) return false;
+  if (rebound_mm < kMinMm) return false;
   rebounds_mm_[rebounds_++ % rebounds_mm_.size()] = rebound_mm;
   return rebounds_ >= rebounds_mm_.size() &&
          rebound_mm > kFaded * rebounds_mm_[rebounds_ % rebounds_mm_.size()];
@@ -126,10 +126,10 @@ Vec3 Listening::next_n(const DeviceSample& sample, double time_s) noexcept {
 }
 
 AxisPush::AxisPush(DeviceAxis axis, double most_n)
-    : Measurement(2.0 * (kLongestWaitS + kStepS * kMostN / kStepN + 1.0), std::min(most_n, kMostN),
+    : Measurement(2.0 * (kLongestWaitS + kStepS * kMaxN / kStepN + 1.0), std::min(most_n, kMaxN),
                   kPushReachMm),
       direction_(direction_of(axis)),
-      most_step_n_(std::min(most_n, kMostN)) {}
+      most_step_n_(std::min(most_n, kMaxN)) {}
 
 Vec3 AxisPush::next_n(const DeviceSample& sample, double time_s) noexcept {
   if (!has_place_) {

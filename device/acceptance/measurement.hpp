@@ -91,8 +91,8 @@ class SwingDetector {
 /// this folder.
 class ReboundDetector {
  public:
-  static constexpr double kLeastMm = 1.0;  ///< a lower one is none
-  static constexpr double kFaded = 0.7;    ///< of the first of four rebounds, at the last
+  static constexpr double kMinMm = 1.0;  ///< a lower one is none
+  static constexpr double kFaded = 0.7;  ///< of the first of four rebounds, at the last
   /// Called at every tick.
   [[nodiscard]] bool throws(double height_mm) noexcept;
 
@@ -130,7 +130,7 @@ class AxisPush final : public Measurement {
   static constexpr double kStepN = 0.1;
   static constexpr double kStepS = 0.2;    ///< time of a step
   static constexpr double kMovedMm = 2.0;  ///< which ends a push
-  static constexpr double kMostN = 1.5;    ///< whatever the device can do
+  static constexpr double kMaxN = 1.5;     ///< whatever the device can do
 
   struct Push {
     double force_n = 0.0;  ///< of the last step
@@ -143,7 +143,7 @@ class AxisPush final : public Measurement {
     std::optional<Push> minus;
   };
 
-  /// \param most_n  > 0; more than kMostN counts as that
+  /// \param most_n  > 0; more than kMaxN counts as that
   AxisPush(DeviceAxis axis, double most_n);
   /// After the run.
   [[nodiscard]] const Figures& figures() const noexcept { return figures_; }

@@ -13,7 +13,7 @@ namespace {
 
 /// Motion counts where it exceeds so many encoder steps.
 constexpr double kStepsOfMotion = 5.0;
-constexpr double kMostLeftOut = 0.02;  ///< share of ticks that a servo may have missed
+constexpr double kMaxLeftOut = 0.02;  ///< share of ticks that a servo may have missed
 constexpr double kUnknownStepMm = 0.01;
 
 /// \name Floors of stated errors: what the scatter of one run does not show
@@ -406,11 +406,11 @@ WindowFits fits_of(const std::vector<std::vector<Window>>& by_length, double fri
 std::optional<WindowFit> slow_fit(const EvenSeries& series, TickRange ticks, double friction_n,
                                   double step_mm) {
   constexpr std::size_t kLongHalf = 48;  // ticks
-  constexpr double kMostUnexplainedSlowly = 0.05;
+  constexpr double kMaxUnexplainedSlowly = 0.05;
   const std::vector<Window> windows = windows_in(series, ticks, kLongHalf, step_mm, Turning::kept);
   if (windows.size() <= 2 * kUnknowns) return std::nullopt;
   const std::optional<WindowFit> fit = best_fit(windows, friction_n, 3);
-  return fit && fit->unexplained < kMostUnexplainedSlowly ? fit : std::nullopt;
+  return fit && fit->unexplained < kMaxUnexplainedSlowly ? fit : std::nullopt;
 }
 
 /// A turn of the push.
@@ -594,10 +594,10 @@ OrWhy<Measured> delay_by_turns(const EvenSeries& series, TickRange ticks, double
   constexpr double kSlowEarlyTicks = 0.5;  // as in the shipped models
   constexpr double kSlowTicksUnexplained = 10.0;
   constexpr double kUnseenTicks = 0.5;  // for a slow motor that no long window shows
-  constexpr std::size_t kFewestTurns = 8;
+  constexpr std::size_t kMinTurns = 8;
   const std::vector<Turn> turns = turns_within(
       turns_in(series, ticks, push_n, static_cast<std::size_t>(kLongHalf) + 2), ticks, kLongHalf);
-  if (turns.size() < kFewestTurns) {
+  if (turns.size() < kMinTurns) {
     return {std::nullopt, "too few turns of the push were clear"};
   }
   const auto near = bending_delay(series, turns, kShortHalf);
@@ -683,7 +683,7 @@ OrWhy<StrokeFigures> stroke_figures(const SlowStrokes& strokes, double step_mm) 
   const std::size_t period = ticks_of(SlowStrokes::kPeriodS);
   const std::size_t end = from + SlowStrokes::kPeriods * period;
   if (x.size() < end) return {std::nullopt, "the run ended early"};
-  if (series.left_out > kMostLeftOut) return {std::nullopt, "the servo left out too many ticks"};
+  if (series.left_out > kMaxLeftOut) return {std::nullopt, "the servo left out too many ticks"};
   std::vector<double> sums;
   std::vector<double> differences;
   StrokeFigures figures;
@@ -730,10 +730,10 @@ OrWhy<StrokeFigures> stroke_figures(const SlowStrokes& strokes, double step_mm) 
 
 OrWhy<ShakeFigures> shake_figures(const ShakenStrokes& strokes, double friction_n, double step_mm) {
   constexpr std::array<std::size_t, 4> kHalves = {8, 12, 20, 32};
-  constexpr std::size_t kFewestWindows = 60;
+  constexpr std::size_t kMinWindows = 60;
   if (strokes.ran_away()) return no_shake("the handle left its place");
   const EvenSeries series = even_series(strokes.samples(), direction_of(strokes.axis()));
-  if (series.left_out > kMostLeftOut) return no_shake("the servo left out too many ticks");
+  if (series.left_out > kMaxLeftOut) return no_shake("the servo left out too many ticks");
   const std::size_t from = ticks_of(ShakenStrokes::begins_s());
   const std::size_t end = from + ticks_of(ShakenStrokes::kShakeS) - 1;
   if (series.position_mm.size() < end) return no_shake("the run ended early");
@@ -742,7 +742,7 @@ OrWhy<ShakeFigures> shake_figures(const ShakenStrokes& strokes, double friction_
   for (const std::size_t half : kHalves) {
     std::vector<Window> windows =
         windows_in(series, {from, end}, half, least_mm, Turning::left_out);
-    if (windows.size() >= kFewestWindows) by_length.push_back(std::move(windows));
+    if (windows.size() >= kMinWindows) by_length.push_back(std::move(windows));
   }
   if (by_length.empty()) {
     return no_shake("the handle moved too little: less than five encoder steps at a time");
@@ -757,7 +757,7 @@ OrWhy<ShakeFigures> shake_figures(const ShakenStrokes& strokes, double friction_
   const std::optional<WindowFit> slow = slow_fit(series, {from, end}, friction_n, least_mm);
   const std::optional<WindowFit>& best = fits.best;
   if (!best) return no_shake("the handle's motion does not tell its mass");
-  if (best->unexplained > kMostUnexplained) {
+  if (best->unexplained > kMaxUnexplained) {
     return no_shake(
         "the motion does not follow the force: a hand held the handle, it struck "
         "something, or its arms are soft");

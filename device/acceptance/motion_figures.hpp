@@ -67,7 +67,7 @@ struct ShakeFigures {
   std::vector<std::pair<double, double>> by_delay{};
 };
 /// More than this share unexplained: something else moved the handle.
-inline constexpr double kMostUnexplained = 0.3;
+inline constexpr double kMaxUnexplained = 0.3;
 /// \param friction_n  of slow strokes, in commanded newtons
 [[nodiscard]] OrWhy<ShakeFigures> shake_figures(const ShakenStrokes& strokes, double friction_n,
                                                 double step_mm);

@@ -69,32 +69,32 @@ DeviceDynamics::Outside Rehearsal::hand(double time_s, Vec3 position_mm) const {
   const Vec3 weight_carried = {0.0, device_.model().planted.gravity_n, 0.0};
   const Vec3 off_mm = middle_mm_ - position_mm;
   switch (stance_) {
-    case Stance::lying:
-    case Stance::guarding:
+    case Grip::lying:
+    case Grip::guarding:
       return {1.0 * off_mm + weight_carried, 0.2, same_on_all(0.03)};
-    case Stance::moving: {
+    case Grip::moving: {
       const double phase = 2.0 * std::acos(-1.0) * (time_s - began_s_) / kLongestWayS;
       const Vec3 way_mm = {kWayMm * std::sin(phase), kWayMm * std::sin(1.2 * phase),
                            kWayMm * std::sin(1.5 * phase)};
       return {0.5 * (off_mm + way_mm) + weight_carried, 0.1, same_on_all(0.01)};
     }
-    case Stance::carrying: {
+    case Grip::carrying: {
       const double share = std::clamp(time_s - began_s_ - kCarriedAfterS, 0.0, 1.0);
       return {0.5 * (off_mm + (share * kCarriedMm) * direction_of(axis_)) + weight_carried, 0.1,
               same_on_all(0.01)};
     }
-    case Stance::holding:
+    case Grip::holding:
       return {0.05 * off_mm + weight_carried, 0.05, same_on_all(0.003)};
-    case Stance::free:
+    case Grip::free:
       return letting_go(time_s, off_mm);
-    case Stance::loaded: {
+    case Grip::loaded: {
       // Down along y, over a pulley to the right or towards the person along the others.
       const double sign = axis_ == DeviceAxis::y ? -1.0 : 1.0;
       const DeviceDynamics::Outside hand = letting_go(time_s, off_mm);
       return {hand.force_n + sign * weight_n_ * direction_of(axis_),
               weight_n_ / kStandardGravityMS2, hand.damping_n_s_per_mm};
     }
-    case Stance::pressing:
+    case Grip::pressing:
       break;
   }
   return {

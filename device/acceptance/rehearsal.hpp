@@ -1,5 +1,5 @@
 /// \file A rehearsal of an acceptance: a device model in virtual time, and a person who does what
-/// the prompts say. It proves the program, and no device.
+/// the prompts say. It tests the program, not a device.
 #pragma once
 
 #include "device/acceptance/acceptance.hpp"
@@ -43,7 +43,7 @@ class Rehearsal final : public AcceptanceBench, public AcceptancePerson {
   ModelledDevice device_;
   SafetyLimits limits_;
   Vec3 middle_mm_;
-  Stance stance_ = Stance::lying;
+  Grip stance_ = Grip::lying;
   DeviceAxis axis_ = DeviceAxis::y;
   double weight_n_ = 0.0;
   double began_s_ = 0.0;

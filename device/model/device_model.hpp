@@ -128,7 +128,7 @@ void check_device_model(const DeviceModel& model);
 class DeviceDynamics {
  public:
   /// The tip's mass where neither the model nor the hand has any, kg.
-  static constexpr double kLeastMassKg = 0.03;
+  static constexpr double kMinMassKg = 0.03;
 
   /// At rest in the origin.
   /// \param tick_s  time of a tick, in (0, 0.01]
@@ -226,7 +226,7 @@ inline void DeviceDynamics::tick(Vec3 commanded_n, const Outside& outside) noexc
 
 inline void DeviceDynamics::move_rigid(const Vec3& force_n, const Outside& outside) noexcept {
   const double mass_kg = model_.mass_kg + outside.mass_kg;
-  const double tick_per_mass = tick_s_ * kMmPerM / (mass_kg > 0.0 ? mass_kg : kLeastMassKg);
+  const double tick_per_mass = tick_s_ * kMmPerM / (mass_kg > 0.0 ? mass_kg : kMinMassKg);
   const double viscous = kMPerMm * model_.viscous_n_s_per_m;
   const Vec3 all_n = force_n + outside.force_n;
   const auto free_velocity = [=](double before_mm_s, double n, double damping) {

@@ -17,9 +17,9 @@ namespace {
 constexpr NumberRange kScale{.low = -10.0, .high = 10.0};
 constexpr NumberRange kTimeS{.low = 0.0, .high = 1e6};
 constexpr NumberRange kPlaceMm{.low = -1000.0, .high = 1000.0};
-constexpr std::int64_t kMostDelayTicks = 100;
-constexpr std::int64_t kMostVelocityReadings = 32;
-constexpr std::int64_t kLargestSeed = 9'007'199'254'740'991;  // the largest that JSON has exactly
+constexpr std::int64_t kMaxDelayTicks = 100;
+constexpr std::int64_t kMaxVelocityReadings = 32;
+constexpr std::int64_t kMaxSeed = 9'007'199'254'740'991;  // the largest that JSON has exactly
 
 /// A number of a file's object, and its place in the struct.
 template <typename Struct>
@@ -102,13 +102,13 @@ std::optional<Problem> problem_of_ranges(const DeviceModel& model) {
   if (!is_within(model.planted.force_sign_scale, kScale)) {
     return Problem{"/planted/force_sign_scale", "must be in [-10, 10] on each axis"};
   }
-  if (model.planted.seed > static_cast<std::uint64_t>(kLargestSeed)) {
+  if (model.planted.seed > static_cast<std::uint64_t>(kMaxSeed)) {
     return Problem{"/planted/seed", "must be in [0, 9007199254740991]"};
   }
-  if (model.delay_ticks < 0 || model.delay_ticks > kMostDelayTicks) {
+  if (model.delay_ticks < 0 || model.delay_ticks > kMaxDelayTicks) {
     return Problem{"/delay_ticks", "must be in [0, 100]"};
   }
-  if (model.velocity_readings < 0 || model.velocity_readings > kMostVelocityReadings) {
+  if (model.velocity_readings < 0 || model.velocity_readings > kMaxVelocityReadings) {
     return Problem{"/velocity_readings", "must be in [0, 32]"};
   }
   return std::nullopt;
@@ -211,7 +211,7 @@ DeviceModel::Planted read_planted(const JsonValue& place) {
     planted.force_sign_scale = read_axes_of(*scale, kScale);
   }
   if (const auto seed = object.find("seed")) {
-    planted.seed = static_cast<std::uint64_t>(seed->integer(0, kLargestSeed));
+    planted.seed = static_cast<std::uint64_t>(seed->integer(0, kMaxSeed));
   }
   return planted;
 }
@@ -233,10 +233,10 @@ std::map<std::string, Provenance> read_provenance(const JsonValue& place) {
 void read_other_parameters(const JsonObject& object, DeviceModel& model) {
   if (const auto shape = object.find("friction")) model.friction = shape->choice(kFrictionShapes);
   if (const auto count = object.find("velocity_readings")) {
-    model.velocity_readings = static_cast<int>(count->integer(0, kMostVelocityReadings));
+    model.velocity_readings = static_cast<int>(count->integer(0, kMaxVelocityReadings));
   }
   if (const auto ticks = object.find("delay_ticks")) {
-    model.delay_ticks = static_cast<int>(ticks->integer(0, kMostDelayTicks));
+    model.delay_ticks = static_cast<int>(ticks->integer(0, kMaxDelayTicks));
   }
   if (const auto hold = object.find("zero_order_hold")) model.zero_order_hold = hold->truth();
   if (const auto structure = object.find("structure")) model.structure = read_structure(*structure);

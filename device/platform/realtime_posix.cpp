@@ -32,8 +32,8 @@ void add_reason(SchedulingObtained& obtained, const std::string& reason) {
 /// Writes to every page of the stack below this call, which the loop will use later.
 [[gnu::noinline]] void touch_stack() noexcept {
   std::array<volatile std::byte, kStackTouched> room;
-  constexpr std::size_t kLeastPage = 4096;
-  for (std::size_t i = 0; i < room.size(); i += kLeastPage) room[i] = std::byte{};
+  constexpr std::size_t kMinPage = 4096;
+  for (std::size_t i = 0; i < room.size(); i += kMinPage) room[i] = std::byte{};
 }
 
 void ask_for_fifo(int priority, SchedulingObtained& obtained) {

@@ -13,7 +13,7 @@
 namespace touchtrial::device {
 namespace {
 
-constexpr double kMostTicks = 1e7;
+constexpr double kMaxTicks = 1e7;
 
 constexpr std::string_view kHeader =
     "tick,time_s,x_mm,y_mm,z_mm,vx_mm_s,vy_mm_s,vz_mm_s,requested_x_n,requested_y_n,requested_z_n,"
@@ -22,7 +22,7 @@ constexpr std::string_view kHeader =
 
 std::size_t room_for(double seconds, double rate_hz) {
   const double ticks = std::ceil(seconds * rate_hz);
-  if (!(seconds > 0.0 && rate_hz > 0.0 && ticks <= kMostTicks)) {
+  if (!(seconds > 0.0 && rate_hz > 0.0 && ticks <= kMaxTicks)) {
     throw std::invalid_argument("FlightRecorder: duration or rate is out of range");
   }
   return static_cast<std::size_t>(ticks);

@@ -12,8 +12,8 @@ namespace touchtrial::device {
 
 /// \name What a scale may be
 ///@{
-inline constexpr double kLeastScale = 0.2;
-inline constexpr double kGreatestScale = 5.0;
+inline constexpr double kMinScale = 0.2;
+inline constexpr double kMaxScale = 5.0;
 ///@}
 
 /// The workspace in true millimetres.
@@ -32,7 +32,7 @@ inline constexpr double kGreatestScale = 5.0;
 /// among it, means newtons as they are felt and millimetres as they are. Threads as HapticDevice.
 class ScaledDevice final : public HapticDevice {
  public:
-  /// \param scale  every number within kLeastScale and kGreatestScale
+  /// \param scale  every number within kMinScale and kMaxScale
   ScaledDevice(std::unique_ptr<HapticDevice> device, const DeviceScale& scale) noexcept
       : device_(std::move(device)), scale_(scale) {}
 

@@ -16,8 +16,8 @@
 namespace touchtrial::device {
 namespace {
 
-constexpr double kLeastRateHz = 1'000.0;
-constexpr double kGreatestRateHz = 10'000.0;
+constexpr double kMinRateHz = 1'000.0;
+constexpr double kMaxRateHz = 10'000.0;
 constexpr double kComfortStopS = 0.1;  ///< from the first tick that sees the request
 constexpr double kShareS = 0.1;        ///< in which the share goes from 0 to 1
 /// Forces below this are not compared with what the device says it exerted.
@@ -28,7 +28,7 @@ double share_of(const ServoParameters& parameters) noexcept {
 }
 
 void check(const ServoOptions& options) {
-  const bool rate_holds = options.rate_hz >= kLeastRateHz && options.rate_hz <= kGreatestRateHz;
+  const bool rate_holds = options.rate_hz >= kMinRateHz && options.rate_hz <= kMaxRateHz;
   if (!rate_holds || options.limit_ticks < 0 || options.fade_ticks < 0) {
     throw std::invalid_argument("run_servo: the rate or a number of ticks is out of range");
   }

@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t kFileHeaderSize = 14;
 constexpr std::size_t kMasksAt = 54;
 constexpr std::uint32_t kInfoHeaderSize = 40;
-constexpr std::uint32_t kMostColours = 256;
+constexpr std::uint32_t kMaxColours = 256;
 constexpr std::uint32_t kHeaderSizeWithAlphaMask = 56;
 
 enum Compression : std::uint32_t { kNone = 0, kRle8 = 1, kRle4 = 2, kBitFields = 3 };
@@ -89,13 +89,13 @@ ByteView data_of(ByteView file, const BmpHeader& header) {
 }
 
 /// The grey levels of the palette; missing entries are black.
-using Palette = std::array<std::uint8_t, kMostColours>;
+using Palette = std::array<std::uint8_t, kMaxColours>;
 
 Palette read_palette(ByteView file, const BmpHeader& header) {
   Palette palette{};
   if (header.bits > 8) return palette;
   const std::size_t count = header.colours == 0 ? std::size_t{1} << header.bits : header.colours;
-  if (count > kMostColours) throw_truncated_image();
+  if (count > kMaxColours) throw_truncated_image();
   const ByteView entries = bytes_at(file, kFileHeaderSize + header.size, 4 * count);
   for (std::size_t i = 0; i < count; ++i) {
     palette[i] = luma(entries[4 * i + 2], entries[4 * i + 1], entries[4 * i]);

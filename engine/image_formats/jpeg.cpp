@@ -34,9 +34,9 @@ enum Marker : std::uint32_t {
 };
 
 /// Far more than any encoder writes. Each scan of a progressive file covers the whole picture.
-constexpr int kMostScans = 100;
+constexpr int kMaxScans = 100;
 /// Enough for the coefficients of the largest progressive picture and for libjpeg's tables.
-constexpr long kMostMemory = 6L * kMaxImagePixels + (1L << 28U);
+constexpr long kMaxMemory = 6L * kMaxImagePixels + (1L << 28U);
 
 struct Frame {
   std::uint32_t width = 0;  ///< 0: not seen yet
@@ -158,8 +158,8 @@ class Walk {
   }
 
   void scan_data() {
-    if (++scans_ > kMostScans) {
-      throw ImageFault{"is a JPEG of more than " + std::to_string(kMostScans) + " scans",
+    if (++scans_ > kMaxScans) {
+      throw ImageFault{"is a JPEG of more than " + std::to_string(kMaxScans) + " scans",
                        "export it again"};
     }
     const std::size_t end = end_of_scan_data(file_, at_);
@@ -196,9 +196,9 @@ class Walk {
 /// Some cameras pad their files with a few bytes before the end marker. The other harmless messages
 /// concern the file's description of itself.
 bool is_harmless(const jpeg_error_mgr& said) {
-  constexpr int kMostPadding = 16;
+  constexpr int kMaxPadding = 16;
   if (said.msg_code == JWRN_ADOBE_XFORM || said.msg_code == JWRN_JFIF_MAJOR) return true;
-  return said.msg_code == JWRN_EXTRANEOUS_DATA && said.msg_parm.i[0] <= kMostPadding &&
+  return said.msg_code == JWRN_EXTRANEOUS_DATA && said.msg_parm.i[0] <= kMaxPadding &&
          said.msg_parm.i[1] == static_cast<int>(kEnd);
 }
 
@@ -245,7 +245,7 @@ class JpegDecoder {
 
   void read_start(ByteView file) {
     jpeg_create_decompress(&jpeg_);
-    jpeg_.mem->max_memory_to_use = kMostMemory;
+    jpeg_.mem->max_memory_to_use = kMaxMemory;
     jpeg_mem_src(&jpeg_, file.data(), file.size());
     jpeg_read_header(&jpeg_, TRUE);
     jpeg_.out_color_space = jpeg_.num_components == 1 ? JCS_GRAYSCALE : JCS_RGB;

@@ -16,8 +16,8 @@ constexpr std::size_t kSignatureSize = 8;
 constexpr std::size_t kChunkOverhead = 12;  // length, type, checksum
 constexpr std::size_t kHeaderSize = 13;
 /// The largest chunk without samples; a palette has only 768 bytes.
-constexpr std::size_t kLargestChunk = std::size_t{1} << 23U;
-constexpr int kMostChunks = 64;
+constexpr std::size_t kMaxChunk = std::size_t{1} << 23U;
+constexpr int kMaxChunks = 64;
 
 struct Chunk {
   std::string_view type;
@@ -142,8 +142,8 @@ class PngDecoder {
     info_ = png_ == nullptr ? nullptr : png_create_info_struct(png_);
     if (info_ == nullptr) escape_.leave("libpng has no memory or another version");
     png_set_user_limits(png_, kMaxSidePx, kMaxSidePx);
-    png_set_chunk_malloc_max(png_, kLargestChunk);
-    png_set_chunk_cache_max(png_, kMostChunks);
+    png_set_chunk_malloc_max(png_, kMaxChunk);
+    png_set_chunk_cache_max(png_, kMaxChunks);
     // The only ancillary chunk left, tRNS, affects pixels as well.
     png_set_crc_action(png_, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
     png_set_read_fn(png_, &left_, take_bytes);

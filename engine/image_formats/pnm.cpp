@@ -5,7 +5,7 @@
 namespace touchtrial::engine {
 namespace {
 
-constexpr std::uint32_t kLargestMaximum = 65535;
+constexpr std::uint32_t kMaxSample = 65535;
 
 bool is_space(std::uint8_t c) {
   return c == ' ' || (c >= '\t' && c <= '\r');
@@ -85,7 +85,7 @@ std::uint32_t next_sample(Scanner& scanner, const Samples& samples, GreyScale& s
                      "export it again"};
   }
   // A file of 12 bits may say so by its maximum, or leave it at 16 bits.
-  if (samples.maximum == kLargestMaximum) {
+  if (samples.maximum == kMaxSample) {
     return scale.level_of(static_cast<std::uint16_t>(sample));
   }
   return to_8_bit(sample, samples.maximum);
@@ -108,7 +108,7 @@ GreyImage read_pnm(ByteView file, GreyScale& scale) {
   check_image_size(width, height);
   const Samples samples{kind == '2' || kind == '3', kind == '3' || kind == '6' ? 3U : 1U,
                         scanner.decimal()};
-  if (samples.maximum == 0 || samples.maximum > kLargestMaximum) {
+  if (samples.maximum == 0 || samples.maximum > kMaxSample) {
     throw ImageFault{
         "states a largest sample of " + std::to_string(samples.maximum) + ", outside 1 .. 65535",
         "export it again"};

@@ -299,11 +299,11 @@ using TiffFile = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
 /// \param directory  where it starts in the file
 TiffFile opened(Source& source, std::size_t directory) {
   // A picture takes at most eight bytes per pixel.
-  constexpr tmsize_t kLargestBlock = 8 * kMaxImagePixels + (1 << 20U);
+  constexpr tmsize_t kMaxBlock = 8 * kMaxImagePixels + (1 << 20U);
   const std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)> options(
       TIFFOpenOptionsAlloc(), TIFFOpenOptionsFree);
   if (!options) throw std::bad_alloc();
-  TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), kLargestBlock);
+  TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), kMaxBlock);
   TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_error, &source);
   TIFFOpenOptionsSetWarningHandlerExtR(options.get(), weigh_warning, &source);
   TiffFile tiff(TIFFClientOpenExt("picture", "rch", &source, take_bytes, give_nothing, move_to,

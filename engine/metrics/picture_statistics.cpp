@@ -15,8 +15,8 @@
 namespace touchtrial::engine {
 namespace {
 
-constexpr double kLeastCycles = 4.0;  // per shorter side
-constexpr double kHighest = 0.4;      // cycles per pixel
+constexpr double kMinCycles = 4.0;  // per shorter side
+constexpr double kHighest = 0.4;    // cycles per pixel
 constexpr double kRingsPerOctave = 4.0;
 /// A smaller share of the strongest ring's power is rounding.
 constexpr double kRounding = 1e-20;
@@ -34,7 +34,7 @@ std::vector<Ring> rings_of(const GreyImage& image) {
   RealFft<double> fft(height, width);
   load_faded(image, fft);
   fft.forward();
-  const double lowest = kLeastCycles / std::min(height, width);
+  const double lowest = kMinCycles / std::min(height, width);
   std::vector<Ring> rings(static_cast<std::size_t>(kRingsPerOctave * std::log2(kHighest / lowest)) +
                           1);
   const int columns = width / 2 + 1;

@@ -13,7 +13,7 @@ namespace touchtrial::engine {
 namespace {
 
 constexpr std::size_t kCodeLength = 16;
-constexpr std::uintmax_t kLargestManifestBytes = std::uintmax_t{1} << 26;
+constexpr std::uintmax_t kMaxManifestBytes = std::uintmax_t{1} << 26;
 constexpr const char* kManifestName = "pack.json";
 
 std::filesystem::path field_path(const std::filesystem::path& folder, const std::string& code) {
@@ -27,7 +27,7 @@ PackManifest read_manifest(const std::filesystem::path& folder) {
     throw FileError(one_line(path.string()) +
                     ": does not exist; make the pack with `touchtrial prepare STUDY`");
   }
-  return manifest_from_json(text_of(ByteView(read_file(path, kLargestManifestBytes))), path);
+  return manifest_from_json(text_of(ByteView(read_file(path, kMaxManifestBytes))), path);
 }
 
 }  // namespace

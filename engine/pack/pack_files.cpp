@@ -36,7 +36,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "fields are written and mapped in the layout that they have in memory");
 constexpr std::uint32_t kFieldVersion = 3;
-constexpr std::int64_t kListVersion = 4;
+constexpr std::int64_t kListVersion = 5;
 
 /// What the heights of a file are, by the model that renders them.
 enum class Layout : std::uint32_t { coefficients = 2, heights = 3 };
@@ -80,9 +80,9 @@ Header checked_header(ByteView file, const std::filesystem::path& path) {
     refuse(path, "has a highest point that is not a finite number");
   const bool is_odd = header.neighbourhood % 2 == 1;
   if (header.layout == Layout::heights &&
-      (!is_odd || header.neighbourhood < 3 || header.neighbourhood > kLargestNeighbourhood)) {
+      (!is_odd || header.neighbourhood < 3 || header.neighbourhood > kMaxNeighbourhood)) {
     refuse(path, "has the neighbourhood " + std::to_string(header.neighbourhood) +
-                     ", which is not odd and 3 to " + std::to_string(kLargestNeighbourhood));
+                     ", which is not odd and 3 to " + std::to_string(kMaxNeighbourhood));
   }
   if (header.reserved != Header{}.reserved) refuse(path, "has reserved bytes that are not zero");
   return header;

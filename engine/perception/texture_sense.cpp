@@ -18,7 +18,7 @@ constexpr int kHop = kWindow / 2;
 constexpr int kBins = kSenseBins;  // above the mean; the last is half the sample rate
 constexpr double kSettleS = 0.5;
 constexpr double kSlowestMmS = 20.0;
-constexpr int kFewestContacts = kWindow * 3 / 4;
+constexpr int kMinContacts = kWindow * 3 / 4;
 
 using Samples = std::array<float, kWindow>;
 using Spectrum = std::array<std::complex<float>, kBins + 1>;
@@ -151,7 +151,7 @@ void TextureSense::State::end_half() noexcept {
   if (filled == kWindow) {
     const double speed_mm_s = (earlier.path_mm + current.path_mm) * options.rate_hz / kWindow;
     const int contacts = earlier.contacts + current.contacts;
-    if (contacts >= kFewestContacts && speed_mm_s >= kSlowestMmS) {
+    if (contacts >= kMinContacts && speed_mm_s >= kSlowestMmS) {
       add_window(speed_mm_s, earlier.end_mm);
     }
     for (Samples* samples : {&x, &y, &z}) {

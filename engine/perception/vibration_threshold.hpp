@@ -15,7 +15,7 @@ enum class ThresholdCurve {
 inline constexpr std::array kThresholdCurves{ThresholdCurve::israr_2006, ThresholdCurve::tan_1994};
 [[nodiscard]] std::string_view name_of(ThresholdCurve curve) noexcept;
 
-/// The smallest vibration that is told from none, by a three-interval one-up three-down track.
+/// The detection threshold of a vibration, by a three-interval one-up three-down track.
 /// Straight lines on logarithmic axes between the published frequencies; below the lowest one (10
 /// and 30 Hz) and above the highest one (500 and 300 Hz) the displacement stays.
 /// \param frequency_hz  > 0

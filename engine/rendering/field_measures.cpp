@@ -14,7 +14,7 @@ namespace touchtrial::engine {
 namespace {
 
 /// A 99th percentile below this share of the maximum comes from where a filter or spline fades out.
-constexpr double kLeastShareOfMaximum = 1e-3;
+constexpr double kMinShareOfMaximum = 1e-3;
 constexpr double kRoundingOfRadii = 1e-9;  // relative
 
 constexpr double square(double value) noexcept {
@@ -171,7 +171,7 @@ double typical_stiffness(std::span<const std::vector<float>> pools) {
   for (const std::vector<float>& pool : pools) {
     for (const float stiffness : pool) largest = std::max(largest, stiffness);
   }
-  return typical > kLeastShareOfMaximum * largest ? typical : largest;
+  return typical > kMinShareOfMaximum * largest ? typical : largest;
 }
 
 double percentile(std::span<const std::vector<float>> pools, double share) {

@@ -17,13 +17,13 @@
 namespace touchtrial::engine {
 namespace {
 
-constexpr int kLargestReach = kLargestNeighbourhood / 2;
+constexpr int kMaxReach = kMaxNeighbourhood / 2;
 
 /// dx / (dx^2 + dy^2) at [dy][dx].
 constexpr auto kPull = [] {
-  std::array<std::array<double, kLargestReach + 1>, kLargestReach + 1> pull{};
-  for (int dy = 0; dy <= kLargestReach; ++dy) {
-    for (int dx = 1; dx <= kLargestReach; ++dx) {
+  std::array<std::array<double, kMaxReach + 1>, kMaxReach + 1> pull{};
+  for (int dy = 0; dy <= kMaxReach; ++dy) {
+    for (int dx = 1; dx <= kMaxReach; ++dx) {
       pull[dy][dx] = double{1} * dx / (dx * dx + dy * dy);
     }
   }
@@ -34,7 +34,7 @@ constexpr auto kPull = [] {
 Vec2 force_at_pixel(const FieldView& field, int y, int x) noexcept {
   const float* const heights = field.slopes().data();
   const int width = field.geometry.width_px;
-  const int reach = std::min(field.neighbourhood / 2, kLargestReach);
+  const int reach = std::min(field.neighbourhood / 2, kMaxReach);
   const auto row = [&](int at) { return heights + static_cast<std::size_t>(at) * width; };
   const double centre = row(y)[x];
   Vec2 force;
@@ -138,7 +138,7 @@ constexpr double kSlackOfGains = 1e-9;  // relative; less above the budget is ro
 
 TextureField field_of_paper(Plane<double> smooth, const RenderingOptions& options) {
   if (options.neighbourhood < 3 || options.neighbourhood % 2 == 0 ||
-      options.neighbourhood > kLargestNeighbourhood) {
+      options.neighbourhood > kMaxNeighbourhood) {
     throw std::invalid_argument("make_texture_field: the neighbourhood must be odd, 3 to 31");
   }
   return TextureField({.geometry = {options.pitch_mm, smooth.height(), smooth.width()},

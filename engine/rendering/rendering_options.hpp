@@ -64,7 +64,7 @@ inline constexpr double kStatedLoadN = 0.7;
 inline constexpr double kMidGrey = 128.0;
 
 /// The largest neighbourhood of a tangential force that a model evaluates at the stylus.
-inline constexpr int kLargestNeighbourhood = 31;
+inline constexpr int kMaxNeighbourhood = 31;
 
 /// The "rendering" object of the study file.
 struct RenderingOptions {
@@ -78,7 +78,7 @@ struct RenderingOptions {
   Equalise equalise = Equalise::none;
   double reference_grey = 128.0;  ///< paper: G_ref, grey levels, 0 .. 255
   double friction = 0.0;          ///< surface: friction coefficient mu, >= 0; 0: no friction
-  int neighbourhood = 3;          ///< paper: n, odd, 3 .. kLargestNeighbourhood
+  int neighbourhood = 3;          ///< paper: n, odd, 3 .. kMaxNeighbourhood
   double touchdown_ramp_n = 0.0;  ///< paper: load with the whole lateral force, >= 0; 0: no ramp
   double max_force_n = 3.3;       ///< limit of the total force's norm, > 0
 

@@ -35,7 +35,7 @@ Fade fade_at(double place_mm, double side_mm) noexcept {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNearEnough = 2e-7;       // relative; pools have single precision
 constexpr double kSlackOfSurfaces = 1e-6;  // relative; less above the budget is rounding
-constexpr int kMostTries = 60;
+constexpr int kMaxTries = 60;
 
 /// A column of three coefficients, weighted for the value and for the slope at its middle.
 struct Column {
@@ -187,7 +187,7 @@ double lateral_limit(const Surfaces& surfaces, double budget, double most) {
   double alpha = budget / linear;
   double earlier = 0.0;
   double earlier_short_of = 0.0;
-  for (int i = 0; i < kMostTries; ++i) {
+  for (int i = 0; i < kMaxTries; ++i) {
     if (!(alpha > low && alpha < high)) alpha = 0.5 * (low + high);
     const double short_of = std::log(budget / surfaces.lateral_stiffness(alpha));
     if (std::abs(short_of) <= kNearEnough) return alpha;

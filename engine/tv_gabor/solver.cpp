@@ -58,7 +58,7 @@ constexpr double kPrimalEmphasis = 6.0;
 /// Ratios of residuals up to this count as balanced.
 constexpr double kDeadBand = 1.2;
 /// One correction changes the penalty at most by this factor.
-constexpr double kMostChange = 4.0;
+constexpr double kMaxChange = 4.0;
 /// The penalty stays within this factor of the first, either way.
 constexpr double kRange = 1e4;
 
@@ -93,7 +93,7 @@ void PenaltySchedule::next(double gap, const AdmmResiduals& residuals) {
 void PenaltySchedule::balance(const AdmmResiduals& residuals) {
   const double ratio = kPrimalEmphasis * residuals.primal / residuals.dual;
   if (!(ratio > kDeadBand || ratio < 1.0 / kDeadBand)) return;  // balanced, or not a number
-  const double factor = std::clamp(std::sqrt(ratio), 1.0 / kMostChange, kMostChange);
+  const double factor = std::clamp(std::sqrt(ratio), 1.0 / kMaxChange, kMaxChange);
   penalty_ = std::clamp(penalty_ * factor, first_penalty_ / kRange, first_penalty_ * kRange);
 }
 

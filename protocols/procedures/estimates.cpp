@@ -52,29 +52,4 @@ Threshold reversal_threshold(std::span<const double> levels, std::span<const Tra
   return found;
 }
 
-Threshold posterior_threshold(const Posterior& posterior, std::span<const double> levels,
-                              double level) {
-  constexpr double kAtTheEnd = 0.05;
-  const Marginal marginal = posterior.threshold();
-  const double mean = mean_of(marginal);
-  const bool has_ends = marginal.values.size() >= 3;
-  Threshold found;
-  if (mean < levels.front() || (has_ends && marginal.weights.front() > kAtTheEnd)) {
-    found.censored = Censored::below;
-  } else if (mean > levels.back() || (has_ends && marginal.weights.back() > kAtTheEnd)) {
-    found.censored = Censored::above;
-  } else {
-    const CredibleInterval interval = credible_interval(marginal, level);
-    found = {mean, interval.low, interval.high, Censored::no};
-  }
-  return found;
-}
-
-Posterior posterior_of(std::span<const double> levels, const ParameterGrid& grid,
-                       std::span<const TrackTrial> trials) {
-  Posterior posterior(levels, grid);
-  for (const TrackTrial& trial : trials) posterior.observe(trial.level, trial.correct);
-  return posterior;
-}
-
 }  // namespace touchtrial::procedures

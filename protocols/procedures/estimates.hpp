@@ -1,10 +1,10 @@
-/// \file Thresholds of finished tracks, with intervals, and how well a function fits. A track that
-/// reached a bound of its levels is censored: it says on which side the threshold lies, and gives
-/// none. Formulas and sources: docs/thresholds.md, "Estimates".
+/// \file Thresholds of finished tracks, with intervals, and how well a function fits. A threshold that
+/// answers do not place inside the levels is censored: it has a side or bounds, and no number.
+/// Formulas and sources: docs/thresholds.md, "Estimates".
 #pragma once
 
 #include "core/random.hpp"
-#include "protocols/procedures/posterior.hpp"
+#include "protocols/procedures/psychometric_function.hpp"
 #include "protocols/procedures/tracks.hpp"
 
 #include <optional>
@@ -13,13 +13,18 @@
 
 namespace touchtrial::procedures {
 
-/// Where a threshold lies that the levels do not hold.
-enum class Censored { no, below, above };
+/// What is known of a threshold that has no number.
+enum class Censored {
+  no,            ///< it has one
+  below,         ///< it lies below the levels
+  above,         ///< it lies above the levels
+  undetermined,  ///< the answers tell neither a number nor a side
+};
 
-/// A level, with limits of its interval. Without `censored == no` all are empty.
+/// A threshold and its interval, in units of the level.
 struct Threshold {
-  std::optional<double> level;
-  std::optional<double> low;  ///< nothing: the interval is open on this side, or there is none
+  std::optional<double> level;  ///< only if `censored` is no
+  std::optional<double> low;    ///< nothing: the interval is open on this side, or there is none
   std::optional<double> high;
   Censored censored = Censored::no;
 };
@@ -39,17 +44,31 @@ struct Threshold {
                                            std::span<const TrackTrial> trials,
                                            std::size_t skipped = 2);
 
-/// The posterior mean of the grid's threshold, with an equal-tailed credible interval.
-/// \return censored if the mean lies outside the levels, or a twentieth of the probability on the
-///   first or last value of a grid of at least three
-/// \throws std::invalid_argument as Posterior and credible_interval do
-[[nodiscard]] Threshold posterior_threshold(const Posterior& posterior,
-                                            std::span<const double> levels, double level = 0.95);
+/// What a track's answers tell of its threshold, and the observer who fits them.
+struct ThresholdEstimate {
+  Threshold threshold;
+  /// Over the interval, also if it is open: the likeliest threshold of usual observers, and the
+  /// means of their lapse rates and of the logarithm of their slopes.
+  Observer observer;
+  /// The ends if the lapse rate is a usual one, Beta(1, 10); of a threshold without a number.
+  Threshold attentive{};
+};
 
-/// The posterior of a track's answers.
-/// \throws std::invalid_argument as Posterior does
-[[nodiscard]] Posterior posterior_of(std::span<const double> levels, const ParameterGrid& grid,
-                                     std::span<const TrackTrial> trials);
+/// The threshold of answers at any levels, chosen by any procedure, with nothing assumed of the
+/// observer but the shape. The interval holds the thresholds whose likelihood, averaged over widths
+/// and lapse rates, is not rejected by its ratio to the largest (chi-square, one degree); an end
+/// outside the levels is open. The threshold has a number if both ends lie inside. If not, it is
+/// above (below) the levels if the whole interval with usual lapse rates is, and the highest
+/// (lowest) level is then its one end: somebody who always guesses might as well lapse in half of
+/// the trials.
+/// \param counts    ascending; may be empty
+/// \param levels    those of the track in dB, ascending, at least one
+/// \param guess     in (0, 1)
+/// \param interval  the interval's probability, in (0, 1)
+/// \throws std::invalid_argument if an argument is outside its range
+[[nodiscard]] ThresholdEstimate estimate_threshold(std::span<const LevelCounts> counts,
+                                                   std::span<const double> levels, Shape shape,
+                                                   double guess, double interval = 0.95);
 
 /// What a fit by maximum likelihood may change.
 struct FitOptions {
@@ -70,14 +89,6 @@ struct Fit {
 /// the width of the function between a quarter of the least distance of levels and five ranges.
 /// \throws std::invalid_argument with fewer than two levels, impossible counts or options
 [[nodiscard]] Fit fit_observer(std::span<const LevelCounts> counts, const FitOptions& options);
-
-/// The fitted threshold and its profile-likelihood interval: all thresholds whose best observer is
-/// not rejected by the likelihood ratio (chi-square, one degree).
-/// \return censored if the threshold lies outside the levels; an end that is not found within the
-///   searched range is open
-/// \throws std::invalid_argument as fit_observer does, or if the level is not in (0, 1)
-[[nodiscard]] Threshold likelihood_threshold(std::span<const LevelCounts> counts,
-                                             const FitOptions& options, double level = 0.95);
 
 /// Goodness of fit against data of the fitted observer itself, each fitted again.
 struct GoodnessOfFit {

@@ -10,8 +10,6 @@
 #include <numeric>
 #include <stdexcept>
 
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/tools/toms748_solve.hpp>
 #include <nlopt.h>
 
 namespace touchtrial::procedures {
@@ -55,11 +53,6 @@ class FitSearch {
 
   /// \param start  nothing: the best of a coarse grid
   [[nodiscard]] Fit best(std::optional<Observer> start) const;
-  /// With the threshold held, from two starts.
-  [[nodiscard]] Fit best_at(double threshold, const Observer& start) const;
-
-  [[nodiscard]] double lowest() const noexcept { return lower_[0]; }
-  [[nodiscard]] double highest() const noexcept { return upper_[0]; }
 
  private:
   [[nodiscard]] Observer observer_of(const Numbers& at) const;
@@ -201,54 +194,14 @@ Fit FitSearch::search_all(const Numbers& lower, const Numbers& upper) const {
 Fit FitSearch::best(std::optional<Observer> start) const {
   Fit fit = start ? search(numbers_of(*start), lower_, upper_) : search_all(lower_, upper_);
   // Subplex may stop on a ridge, and then goes on from there.
-  constexpr int kMostAgain = 4;
+  constexpr int kMaxRepeats = 4;
   constexpr double kGain = 1e-9;
-  for (int again = 0; again < kMostAgain; ++again) {
+  for (int again = 0; again < kMaxRepeats; ++again) {
     const double before = fit.log_likelihood;
     fit = search(numbers_of(fit.observer), lower_, upper_);
     if (!(fit.log_likelihood > before + kGain)) break;
   }
   return fit;
-}
-
-Fit FitSearch::best_at(double threshold, const Observer& start) const {
-  Numbers lower = lower_;
-  Numbers upper = upper_;
-  lower[0] = upper[0] = threshold;
-  const Fit near = search(numbers_of(start), lower, upper);
-  const Fit coarse = search_all(lower, upper);
-  return near.log_likelihood >= coarse.log_likelihood ? near : coarse;
-}
-
-/// Where twice the loss of log-likelihood first exceeds `most_loss` on the way from the fit to
-/// `end`.
-std::optional<double> profile_end(const FitSearch& search, const Fit& fit, double end,
-                                  double most_loss) {
-  Observer near = fit.observer;
-  const auto excess = [&](double threshold) {
-    const Fit held = search.best_at(threshold, near);
-    near = held.observer;
-    return 2.0 * (fit.log_likelihood - held.log_likelihood) - most_loss;
-  };
-  constexpr int kSteps = 12;
-  double inside = fit.observer.threshold;
-  double below = -most_loss;
-  for (int i = 1; i <= kSteps; ++i) {
-    const double share = static_cast<double>(i) / kSteps;
-    const double at = std::lerp(fit.observer.threshold, end, share * share);
-    const double here = excess(at);
-    if (here > 0.0) {
-      std::uintmax_t steps = 60;
-      const bool up = at > inside;
-      const std::pair<double, double> found = boost::math::tools::toms748_solve(
-          excess, up ? inside : at, up ? at : inside, up ? below : here, up ? here : below,
-          boost::math::tools::eps_tolerance<double>(24), steps);
-      return std::midpoint(found.first, found.second);
-    }
-    inside = at;
-    below = here;
-  }
-  return std::nullopt;
 }
 
 std::vector<LevelCounts> simulated_counts(const Observer& observer,
@@ -266,24 +219,6 @@ std::vector<LevelCounts> simulated_counts(const Observer& observer,
 
 Fit fit_observer(std::span<const LevelCounts> counts, const FitOptions& options) {
   return FitSearch(counts, options).best(std::nullopt);
-}
-
-Threshold likelihood_threshold(std::span<const LevelCounts> counts, const FitOptions& options,
-                               double level) {
-  if (!(level > 0.0 && level < 1.0)) {
-    throw std::invalid_argument("a confidence level lies between 0 and 1");
-  }
-  const FitSearch search(counts, options);
-  const Fit fit = search.best(std::nullopt);
-  Threshold found;
-  if (fit.observer.threshold < counts.front().level) found.censored = Censored::below;
-  if (fit.observer.threshold > counts.back().level) found.censored = Censored::above;
-  if (found.censored != Censored::no) return found;
-  const double most_loss = boost::math::quantile(boost::math::chi_squared(1.0), level);
-  found.level = fit.observer.threshold;
-  found.low = profile_end(search, fit, search.lowest(), most_loss);
-  found.high = profile_end(search, fit, search.highest(), most_loss);
-  return found;
 }
 
 GoodnessOfFit goodness_of_fit(std::span<const LevelCounts> counts, const FitOptions& options,

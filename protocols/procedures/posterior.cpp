@@ -10,7 +10,7 @@
 namespace touchtrial::procedures {
 namespace {
 
-constexpr std::size_t kMostNumbers = 20'000'000;
+constexpr std::size_t kMaxNumbers = 20'000'000;
 constexpr double kTie = 1e-9;
 
 /// p log p, 0 at 0.
@@ -99,32 +99,6 @@ double sd_of(const Marginal& marginal) noexcept {
   return std::sqrt(sum);
 }
 
-CredibleInterval credible_interval(const Marginal& marginal, double level) {
-  if (!(level > 0.0 && level < 1.0) || marginal.values.empty()) {
-    throw std::invalid_argument("a credible interval needs values and a level between 0 and 1");
-  }
-  const std::vector<double>& values = marginal.values;
-  const std::size_t last = values.size() - 1;
-  const auto edge = [&](std::size_t i) {  // the lower end of cell i
-    if (last == 0) return values[0];
-    if (i == 0) return values[0] - 0.5 * (values[1] - values[0]);
-    if (i > last) return values[last] + 0.5 * (values[last] - values[last - 1]);
-    return std::midpoint(values[i - 1], values[i]);
-  };
-  const auto quantile = [&](double share) {
-    double below = 0.0;
-    for (std::size_t i = 0; i <= last; ++i) {
-      const double weight = marginal.weights[i];
-      if (weight > 0.0 && below + weight >= share) {
-        return std::lerp(edge(i), edge(i + 1), (share - below) / weight);
-      }
-      below += weight;
-    }
-    return edge(last + 1);
-  };
-  return {quantile(0.5 - 0.5 * level), quantile(0.5 + 0.5 * level)};
-}
-
 std::size_t first_least(std::span<const double> entropies) noexcept {
   const double least = *std::min_element(entropies.begin(), entropies.end());
   const auto found = std::find_if(entropies.begin(), entropies.end(),
@@ -141,7 +115,7 @@ Posterior::Posterior(std::span<const double> levels, ParameterGrid grid)
   const double numbers =
       2.0 * static_cast<double>(levels.size()) * static_cast<double>(grid_.thresholds.size()) *
       static_cast<double>(grid_.slopes.size()) * static_cast<double>(grid_.lapses.size());
-  if (numbers > static_cast<double>(kMostNumbers)) {
+  if (numbers > static_cast<double>(kMaxNumbers)) {
     throw std::invalid_argument("the grid has too many points: use fewer levels or values");
   }
   const std::vector<Observer> observers = observers_of(grid_);

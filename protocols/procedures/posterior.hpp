@@ -36,17 +36,6 @@ struct Marginal {
 [[nodiscard]] double mean_of(const Marginal& marginal) noexcept;
 [[nodiscard]] double sd_of(const Marginal& marginal) noexcept;
 
-struct CredibleInterval {
-  double low = 0.0;
-  double high = 0.0;
-};
-
-/// Equal tails. The probability of each value is spread evenly over its cell, which reaches
-/// half-way to its neighbours.
-/// \param level  in (0, 1)
-/// \throws std::invalid_argument if the level is not, or the marginal is empty
-[[nodiscard]] CredibleInterval credible_interval(const Marginal& marginal, double level = 0.95);
-
 /// Not thread-safe. All sums run in a fixed order: the same grid and answers give the same bits on
 /// one machine.
 class Posterior {

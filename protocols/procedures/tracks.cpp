@@ -7,14 +7,14 @@
 namespace touchtrial::procedures {
 namespace {
 
-using Order = std::vector<std::optional<std::size_t>>;
-
-Order order_of_tracks(const std::vector<TrackSettings>& tracks, RandomStream& random) {
-  Order order;
+/// Tracks in rounds, of which each has every track with turns left once, in random order.
+/// \param turns  of each track
+std::vector<std::size_t> in_rounds(std::span<const int> turns, RandomStream& random) {
+  std::vector<std::size_t> order;
   for (int done = 0;; ++done) {
     std::vector<std::size_t> round;
-    for (std::size_t track = 0; track < tracks.size(); ++track) {
-      if (tracks[track].trials > done) round.push_back(track);
+    for (std::size_t track = 0; track < turns.size(); ++track) {
+      if (turns[track] > done) round.push_back(track);
     }
     if (round.empty()) return order;
     shuffle(std::span(round), random);
@@ -22,8 +22,16 @@ Order order_of_tracks(const std::vector<TrackSettings>& tracks, RandomStream& ra
   }
 }
 
-/// Before which trials of tracks a catch trial comes.
-Order with_catch_trials(const Order& order, int catch_trials, RandomStream& random) {
+std::vector<std::size_t> order_of_tracks(const std::vector<TrackSettings>& tracks,
+                                         RandomStream& random) {
+  std::vector<int> turns;
+  for (const TrackSettings& track : tracks) turns.push_back(track.trials);
+  return in_rounds(turns, random);
+}
+
+/// Puts each catch trial before a trial.
+std::vector<Presentation> with_catch_trials(const std::vector<std::size_t>& order, int catch_trials,
+                                            std::size_t tracks, RandomStream& random) {
   const auto wanted = static_cast<std::size_t>(catch_trials);
   if (catch_trials < 0 || 2 * wanted > order.size()) {
     throw std::invalid_argument("catch trials are at most one for two trials of tracks");
@@ -34,10 +42,13 @@ Order with_catch_trials(const Order& order, int catch_trials, RandomStream& rand
     const std::size_t end = (i + 1) * order.size() / wanted;
     before[begin + static_cast<std::size_t>(random.below(end - begin))] = true;
   }
-  Order all;
+  // Whole rounds, of which the last ones are left over.
+  const std::vector<std::size_t> whose = in_rounds(std::vector<int>(tracks, catch_trials), random);
+  std::vector<Presentation> all;
+  std::size_t caught = 0;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    if (before[i]) all.emplace_back(std::nullopt);
-    all.push_back(order[i]);
+    if (before[i]) all.push_back({.track = whose[caught++], .is_catch = true});
+    all.push_back({.track = order[i]});
   }
   return all;
 }
@@ -45,7 +56,7 @@ Order with_catch_trials(const Order& order, int catch_trials, RandomStream& rand
 }  // namespace
 
 Block::Block(BlockSettings settings, const Digest& secret) : settings_(std::move(settings)) {
-  if (settings_.tracks.empty() || settings_.tracks.size() > kMostTracks) {
+  if (settings_.tracks.empty() || settings_.tracks.size() > kMaxTracks) {
     throw std::invalid_argument("a block has 1 to 8 tracks");
   }
   for (const TrackSettings& track : settings_.tracks) {
@@ -54,23 +65,24 @@ Block::Block(BlockSettings settings, const Digest& secret) : settings_(std::move
   }
   RandomStream orders(secret, "procedures/order");
   RandomStream catches(secret, "procedures/catch");
-  order_ =
-      with_catch_trials(order_of_tracks(settings_.tracks, orders), settings_.catch_trials, catches);
+  order_ = with_catch_trials(order_of_tracks(settings_.tracks, orders), settings_.catch_trials,
+                             tracks_.size(), catches);
 }
 
 std::optional<Presentation> Block::next() const {
   if (done_ == order_.size()) return std::nullopt;
-  const std::optional<std::size_t> track = order_[done_];
-  if (!track) return Presentation{};
-  return Presentation{track, tracks_[*track].procedure->next()};
+  Presentation next = order_[done_];
+  next.level = next.is_catch ? settings_.tracks[next.track].levels.size() - 1
+                             : tracks_[next.track].procedure->next();
+  return next;
 }
 
 void Block::answer(bool correct) {
   const std::optional<Presentation> now = next();
   if (!now) return;
   ++done_;
-  if (!now->track) return;
-  Track& track = tracks_[*now->track];
+  if (now->is_catch) return;
+  Track& track = tracks_[now->track];
   track.trials.push_back({now->level, correct});
   track.procedure->answer(correct);
 }
@@ -94,10 +106,7 @@ std::optional<std::size_t> first_not_chosen(const BlockSettings& settings, const
   Block block(settings, secret);
   for (std::size_t i = 0; i < record.size(); ++i) {
     const std::optional<Presentation> now = block.next();
-    if (!now || now->track != record[i].presentation.track ||
-        now->level != record[i].presentation.level) {
-      return i;
-    }
+    if (now != record[i].presentation) return i;
     block.answer(record[i].correct);
   }
   return std::nullopt;

@@ -1,5 +1,6 @@
 /// \file Interleaved tracks with catch trials: what comes next in one block of trials, as a function
-/// of settings, a secret and the answers. Source: docs/thresholds.md, "Tracks".
+/// of settings, a secret and the answers. Catch trials are at the highest level of a track, near
+/// its asymptote, where only lapses make answers wrong. Source: docs/thresholds.md, "Tracks".
 #pragma once
 
 #include "core/hash.hpp"
@@ -13,11 +14,11 @@
 
 namespace touchtrial::procedures {
 
-constexpr std::size_t kMostTracks = 8;
+constexpr std::size_t kMaxTracks = 8;
 
 struct BlockSettings {
   std::vector<TrackSettings> tracks;  ///< 1 to 8
-  int catch_trials = 0;               ///< >= 0, at most one for each two trials of tracks
+  int catch_trials = 0;               ///< of all tracks, >= 0, at most one for each two trials
 };
 
 /// One trial of a track: its level and what was answered.
@@ -26,16 +27,20 @@ struct TrackTrial {
   bool correct = false;
 };
 
-/// Which track a trial belongs to; nothing: a catch trial, which no track hears of.
+/// A trial of a track. The procedure does not hear of a catch trial; the track's estimate does.
 struct Presentation {
-  std::optional<std::size_t> track;
-  std::size_t level = 0;  ///< index into the track's levels; 0 for a catch trial
+  std::size_t track = 0;  ///< index
+  std::size_t level = 0;  ///< index into the track's levels
+  bool is_catch = false;
+
+  friend bool operator==(const Presentation&, const Presentation&) = default;
 };
 
 /// The order of tracks is dealt before the first trial, so it tells nothing of answers: in each
 /// round every track that still has trials comes once, in random order. The trials are cut into as
 /// many equal stretches as there are catch trials; each has one at a random place, never the first
-/// of all. Not thread-safe.
+/// of all. Catch trials are dealt to tracks in rounds too, so that tracks differ by one at most.
+/// Not thread-safe.
 class Block {
  public:
   /// \param secret  decides orders; each track has a stream of its own
@@ -48,7 +53,7 @@ class Block {
   /// The answer to the trial at next(); without effect when there is none.
   void answer(bool correct);
 
-  /// The trials of a track so far.
+  /// The trials of a track so far that its procedure chose.
   /// \param track  index
   /// \throws std::out_of_range if there is no such track
   [[nodiscard]] std::span<const TrackTrial> trials(std::size_t track) const;
@@ -62,7 +67,7 @@ class Block {
 
   BlockSettings settings_;
   std::vector<Track> tracks_;
-  std::vector<std::optional<std::size_t>> order_;
+  std::vector<Presentation> order_;  ///< without levels
   std::size_t done_ = 0;
 };
 
@@ -78,7 +83,7 @@ struct RecordedTrial {
 };
 
 /// The check of a record.
-/// \return index of the first trial whose track or level the block would not have chosen after the
+/// \return index of the first trial whose presentation the block would not have chosen after the
 ///   answers before it, or that comes after its end; nothing if there is none
 /// \throws what Block throws
 [[nodiscard]] std::optional<std::size_t> first_not_chosen(const BlockSettings& settings,

@@ -77,7 +77,7 @@ std::string clocked(const study::Study& study, const study::Ask& ask,
                   number_text(range.slowest_mm_s) + " to " + number_text(range.fastest_mm_s) +
                   " mm/s and " + number_text(range.lightest_n) + " to " +
                   number_text(range.strongest_n) + " N, within " +
-                  number_text(study.trials.explore_limit_s) + " s; else the trial comes again") +
+                  number_text(study.trials.explore_limit_s) + " s; else the trial is repeated") +
          line("practice", practice.trials.empty()
                               ? std::string("none")
                               : counted(static_cast<int>(practice.trials.size()), "trial") +

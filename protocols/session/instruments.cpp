@@ -44,7 +44,7 @@ std::optional<Mark> mark_of(SessionInput input) {
 SessionMarks::SessionMarks(Instruments* instruments, Session& session, double rate_hz)
     : instruments_(instruments), session_(session), rate_hz_(rate_hz) {
   if (instruments_ == nullptr) return;
-  session_.tell([this](SessionInput what, int trial) { input(what, trial); });
+  session_.set_observer([this](SessionInput what, int trial) { input(what, trial); });
 }
 
 void SessionMarks::input(SessionInput input, int trial) {
@@ -77,20 +77,20 @@ void SessionMarks::feel(const device::ServoSample& sample) noexcept {
 void SessionMarks::mark(Mark mark, int trial, TimePoint at) noexcept {
   if (instruments_ == nullptr) return;
   instruments_->mark(mark, trial, at);
-  told_.push_back({mark, trial, at});
+  notices_.push_back({mark, trial, at});
 }
 
 std::optional<record::MarksBody> SessionMarks::take(SessionClock& clock) {
-  if (instruments_ == nullptr || told_.empty()) return std::nullopt;
+  if (instruments_ == nullptr || notices_.empty()) return std::nullopt;
   const TimePoint now = Clock::now();
   const TimePoint zero = now - clock.of(now);
   const Instruments::Report report = instruments_->take();
-  if (report.latencies.size() != told_.size()) {
+  if (report.latencies.size() != notices_.size()) {
     throw std::logic_error("instruments: another number of marks was taken than was made");
   }
   record::MarksBody body;
-  for (std::size_t i = 0; i < told_.size(); ++i) {
-    const Told& one = told_[i];
+  for (std::size_t i = 0; i < notices_.size(); ++i) {
+    const Notice& one = notices_[i];
     body.codes.push_back(static_cast<int>(one.mark));
     body.trials.push_back(one.trial);
     // A session that is taken up again begins before its clock is known to instruments.
@@ -103,7 +103,7 @@ std::optional<record::MarksBody> SessionMarks::take(SessionClock& clock) {
         *report.clock_zero_s + std::chrono::duration<double>(zero.time_since_epoch()).count();
     body.lsl_uncertainty_s = report.clock_uncertainty_s;
   }
-  told_.clear();
+  notices_.clear();
   return body;
 }
 

@@ -48,7 +48,7 @@ class SessionMarks {
   /// \param session  told by this object from now on; must outlive it
   /// \param rate_hz  of the servo
   SessionMarks(Instruments* instruments, Session& session, double rate_hz);
-  ~SessionMarks() { session_.tell({}); }
+  ~SessionMarks() { session_.set_observer({}); }
   SessionMarks(const SessionMarks&) = delete;
   SessionMarks& operator=(const SessionMarks&) = delete;
 
@@ -67,7 +67,7 @@ class SessionMarks {
   void input(SessionInput input, int trial);
   void mark(Mark mark, int trial, TimePoint at) noexcept;
 
-  struct Told {
+  struct Notice {
     Mark mark{};
     int trial = 0;
     TimePoint at;
@@ -79,7 +79,7 @@ class SessionMarks {
   int trial_ = 0;  ///< set between explorations
   TimePoint began_;
   bool has_landed_ = false;
-  std::vector<Told> told_;  ///< of the threads one after the other, never at once
+  std::vector<Notice> notices_;  ///< of the threads one after the other, never at once
 };
 
 }  // namespace touchtrial::session

@@ -36,7 +36,7 @@ void require_same_study(const study::StudyKey& key, const study::StationKey& sta
       "was made before or after a change of the study; run `touchtrial prepare`, and give "
       "the station its new file");
   const auto code = [](const study::KeyedStimulus& keyed) { return keyed.code; };
-  require_holds(std::ranges::equal(station.stimuli, key.stimuli, {}, code, code) &&
+  require_holds(std::ranges::equal(station.fields(), key.fields(), {}, code, code) &&
                     station.catch_code == key.catch_code,
                 "has other codes than the key; give the station the file that was made with it");
 }

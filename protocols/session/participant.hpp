@@ -81,7 +81,7 @@ struct NoticeStep {
     practice_over,  ///< the trials begin
     time_is_up,     ///< a presentation has ended without an answer
     stopped,        ///< a comfort stop: the force is off
-    not_explored,   ///< an interval was not explored as asked for; its trial comes again
+    not_explored,   ///< an interval was not explored as asked for; its trial is repeated
     hand_off,       ///< from here on the device is only heard
   };
   What what{};

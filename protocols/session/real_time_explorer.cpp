@@ -28,7 +28,7 @@ constexpr std::chrono::milliseconds kBetweenLooks{5};
 
 /// Capacity of the largest ring, samples: 6.5 s at 10 kHz. A writer that falls further behind loses
 /// some.
-constexpr std::size_t kLargestRing = std::size_t{1} << 16U;
+constexpr std::size_t kMaxRing = std::size_t{1} << 16U;
 
 // The servo must not spend time on waking the writer, so the writer looks by itself: often enough
 // for a ring that holds seconds.
@@ -113,7 +113,7 @@ struct RealTimeExplorer::Machinery {
 
   /// Allocates what the servo will use, before it runs.
   void make_room(const device::ServoOptions& servo) {
-    const std::size_t wanted = std::clamp(most_samples(servo), std::size_t{1}, kLargestRing);
+    const std::size_t wanted = std::clamp(most_samples(servo), std::size_t{1}, kMaxRing);
     if (!ring || ring->capacity() < wanted) ring.emplace(wanted);
     if (!recorder || recorder_rate_hz != servo.rate_hz) {
       recorder.emplace(options.flight_s, servo.rate_hz);

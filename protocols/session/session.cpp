@@ -121,7 +121,7 @@ void Session::require(SessionInput input, Time at) const {
                            std::string(name_of(input)));
   }
   if (at < last_) throw std::logic_error("a session's time went back");
-  if (told_) told_(input, current() == nullptr ? 0 : current()->place.trial);
+  if (observer_) observer_(input, current() == nullptr ? 0 : current()->place.trial);
 }
 
 void Session::move_to(SessionPhase phase, Time at) noexcept {
@@ -248,6 +248,7 @@ void Session::confirm(Time at, std::optional<int> confidence) {
   record::AnswerBody body{
       .trial = current()->place.trial, .answer = answer_, .confidence = confidence};
   if (const auto& level = current()->level) {
+    body.kind = name_of(current()->role);
     body.track = level->track;
     body.level = level->level;
     body.target = current()->right;

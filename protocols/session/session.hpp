@@ -103,8 +103,8 @@ class Session {
 
   /// Called for every input that is accepted, before it is recorded, with the current trial's
   /// number (0: none is left).
-  using Told = std::function<void(SessionInput, int trial)>;
-  void tell(Told told) { told_ = std::move(told); }
+  using Observer = std::function<void(SessionInput, int trial)>;
+  void set_observer(Observer observer) { observer_ = std::move(observer); }
 
   [[nodiscard]] const study::TrialOptions& options() const noexcept { return options_; }
   [[nodiscard]] SessionPhase phase() const noexcept { return phase_; }
@@ -223,7 +223,7 @@ class Session {
   study::TrialOptions options_;
   record::SessionRecorder recorder_;
   SealBlock seal_block_;
-  Told told_;
+  Observer observer_;
   SessionPhase phase_ = SessionPhase::fresh;
   SessionPhase before_pause_ = SessionPhase::ready;
   Time last_{};

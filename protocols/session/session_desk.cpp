@@ -117,7 +117,7 @@ void SessionDesk::show_now_and_then() {
   if (std::chrono::steady_clock::now() - shown_ >= kBetweenShows) show();
 }
 
-void SessionDesk::breathe() const {
+void SessionDesk::sleep_briefly() const {
   if (parts_.explorer.in_real_time()) std::this_thread::sleep_for(kBreath);
 }
 
@@ -127,7 +127,7 @@ bool SessionDesk::goes_on() const noexcept {
 }
 
 std::optional<StepReply> SessionDesk::attend(const Step& step) {
-  while (obey()) {
+  while (handle()) {
     if (std::optional<StepReply> reply = parts_.participant.attend(step)) {
       parts_.clock.pass(reply->took);
       return reply;
@@ -162,7 +162,7 @@ void SessionDesk::look(device::ServoControl& servo) {
   while (!end_is_postponed()) {
     std::optional<Request> request = parts_.experimenter.request();
     if (!request) return;
-    heed(std::move(*request), servo);
+    handle_while_exploring(std::move(*request), servo);
   }
 }
 
@@ -171,7 +171,7 @@ bool SessionDesk::end_is_postponed() const noexcept {
                                  postponed_.back().kind == Request::Kind::leave);
 }
 
-void SessionDesk::heed(Request request, device::ServoControl& servo) {
+void SessionDesk::handle_while_exploring(Request request, device::ServoControl& servo) {
   switch (request.kind) {
     case Request::Kind::comfort_stop:
       reason_ = kComfortStop;
@@ -217,16 +217,16 @@ std::optional<ExperimenterRequest> SessionDesk::next_request() {
   return request;
 }
 
-bool SessionDesk::obey() {
+bool SessionDesk::handle() {
   if (!goes_on()) return false;
   if (device::StopOnSignals::asked()) return leave(device::StopOnSignals::message());
   while (const std::optional<Request> request = next_request()) {
-    if (!obey(*request)) return false;
+    if (!handle(*request)) return false;
   }
   return true;
 }
 
-bool SessionDesk::obey(const Request& request) {
+bool SessionDesk::handle(const Request& request) {
   switch (request.kind) {
     case Request::Kind::note:
       session_.note(now(), request.text);
@@ -235,22 +235,22 @@ bool SessionDesk::obey(const Request& request) {
       session_.deviate(now(), {request.code, request.text});
       return true;
     case Request::Kind::delay:
-      return obey_delay(request);
+      return handle_delay(request);
     case Request::Kind::pause:
-      return obey_pause(request);
+      return handle_pause(request);
     case Request::Kind::resume:
       return true;  // nothing is paused
     case Request::Kind::comfort_stop:
-      return obey_comfort_stop(request);
+      return handle_comfort_stop(request);
     case Request::Kind::abort:
-      return obey_abort(request);
+      return handle_abort(request);
     case Request::Kind::leave:
       return leave(request.text);
   }
   return true;
 }
 
-bool SessionDesk::obey_pause(const Request& request) {
+bool SessionDesk::handle_pause(const Request& request) {
   // Between two planes of a presentation no force is on, but the presentation is under way.
   const bool interrupts = session_.phase() == SessionPhase::exploring;
   if (interrupts) session_.interrupt(now(), record::kPauseReason);
@@ -268,17 +268,17 @@ bool SessionDesk::obey_pause(const Request& request) {
         show();
         return !interrupts;
       }
-      if (!obey(*next)) return false;
+      if (!handle(*next)) return false;
       if (session_.phase() != SessionPhase::paused) return true;
     }
     static_cast<void>(parts_.participant.attend(PauseStep{}));
     show_now_and_then();
-    breathe();
+    sleep_briefly();
   }
 }
 
 /// The time of an answer would contain the wait: it is recorded as a pause that is over.
-bool SessionDesk::obey_delay(const Request& request) {
+bool SessionDesk::handle_delay(const Request& request) {
   session_.deviate(now(), {request.code, request.text});
   if (!session_.in_presentation()) return true;
   if (session_.phase() == SessionPhase::exploring) {
@@ -293,7 +293,7 @@ bool SessionDesk::obey_delay(const Request& request) {
 
 /// No force is on. Interrupts the current presentation, and has the device ask for consent before
 /// there is force again.
-bool SessionDesk::obey_comfort_stop(const Request& request) {
+bool SessionDesk::handle_comfort_stop(const Request& request) {
   if (session_.phase() == SessionPhase::paused) session_.resume(now());
   const bool interrupts = session_.accepts(SessionInput::interrupt);
   if (interrupts) {
@@ -310,7 +310,7 @@ bool SessionDesk::obey_comfort_stop(const Request& request) {
   return session_.phase() != SessionPhase::ready;
 }
 
-bool SessionDesk::obey_abort(const Request& request) {
+bool SessionDesk::handle_abort(const Request& request) {
   // A session whose trials are done stays complete.
   const bool is_done = session_.presentations_left() == 0;
   if (is_done && session_.phase() == SessionPhase::paused) session_.resume(now());
@@ -331,7 +331,7 @@ bool SessionDesk::leave(const std::string& why) {
 
 bool SessionDesk::await_device() {
   const SupplyState device = parts_.devices.make_ready();
-  if (device == SupplyState::ready) return settle_stop();
+  if (device == SupplyState::ready) return wait_for_consent();
   const bool pauses =
       session_.accepts(SessionInput::pause) && session_.phase() != SessionPhase::opened;
   if (pauses) session_.pause(now(), "waiting for the device");
@@ -345,7 +345,7 @@ bool SessionDesk::await_device() {
   return true;
 }
 
-bool SessionDesk::settle_stop() {
+bool SessionDesk::wait_for_consent() {
   if (!is_stopped_) return true;
   enter(kStopped);
   if (!attend(NoticeStep{NoticeStep::What::stopped, session_.presentations_begun()})) return false;
@@ -360,16 +360,16 @@ Step SessionDesk::waiting_page() const {
 
 bool SessionDesk::wait_for_device(SupplyState device) {
   while (device == SupplyState::not_yet) {
-    if (!obey()) return false;
+    if (!handle()) return false;
     static_cast<void>(parts_.participant.attend(waiting_page()));
     show_now_and_then();
-    breathe();
+    sleep_briefly();
     device = parts_.devices.make_ready();
   }
   if (device == SupplyState::ready) return true;
   if (device::StopOnSignals::asked()) return leave(device::StopOnSignals::message());
   // The experimenter may have given a reason.
-  if (!obey()) return false;
+  if (!handle()) return false;
   session_.stop(now(), "", "stopped while waiting for the device");
   return false;
 }

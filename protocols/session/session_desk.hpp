@@ -53,7 +53,7 @@ class SessionDesk {
   [[nodiscard]] device::ServoOptions servo_options() const;
   /// Obeys the experimenter's requests.
   /// \return whether the current step goes on
-  [[nodiscard]] bool obey();
+  [[nodiscard]] bool handle();
   /// Waits until forces may be sent, and after a comfort stop until the participant goes on or the
   /// experimenter consents. Pauses the session meanwhile if the device is not ready.
   /// \return whether forces may be sent
@@ -63,10 +63,10 @@ class SessionDesk {
   [[nodiscard]] bool goes_on() const noexcept;
   /// Why the session is to be left open; empty if it is not.
   [[nodiscard]] const std::optional<std::string>& left() const noexcept { return left_; }
-  /// Tells the other instruments that the session begins, or ends.
-  void tell_of_begin() { marks_.begin(); }
-  void tell_of_end() { marks_.end(); }
-  /// Records what they were told of since the last call.
+  /// Marks the session's start and end in the other instruments' records.
+  void mark_session_start() { marks_.begin(); }
+  void mark_session_end() { marks_.end(); }
+  /// Records the marks sent since the last call.
   void record_marks();
   /// Counts an interrupted exploration; the device needs consent before the next one.
   /// \return the reason, in clear
@@ -81,24 +81,24 @@ class SessionDesk {
   void look(device::ServoControl& servo);
   [[nodiscard]] bool end_is_postponed() const noexcept;
   /// Ends the exploration if a request asks for it. Postpones what has to be recorded.
-  void heed(Request request, device::ServoControl& servo);
+  void handle_while_exploring(Request request, device::ServoControl& servo);
   [[nodiscard]] std::optional<Request> next_request();
-  [[nodiscard]] bool obey(const Request& request);
-  [[nodiscard]] bool obey_pause(const Request& request);
-  [[nodiscard]] bool obey_delay(const Request& request);
-  [[nodiscard]] bool obey_comfort_stop(const Request& request);
-  [[nodiscard]] bool obey_abort(const Request& request);
+  [[nodiscard]] bool handle(const Request& request);
+  [[nodiscard]] bool handle_pause(const Request& request);
+  [[nodiscard]] bool handle_delay(const Request& request);
+  [[nodiscard]] bool handle_comfort_stop(const Request& request);
+  [[nodiscard]] bool handle_abort(const Request& request);
   [[nodiscard]] bool leave(const std::string& why);
   [[nodiscard]] bool wait_for_device(SupplyState device);
   /// What the participant sees while the device is not ready.
   [[nodiscard]] Step waiting_page() const;
   /// Shows the participant a page about a comfort stop until they go on.
   /// \return whether they do; at once if there was none
-  [[nodiscard]] bool settle_stop();
+  [[nodiscard]] bool wait_for_consent();
   [[nodiscard]] std::string count_interruption(const std::string& words);
   void show();
   void show_now_and_then();
-  void breathe() const;
+  void sleep_briefly() const;
 
   Session& session_;
   const SessionParts& parts_;

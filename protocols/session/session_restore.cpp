@@ -79,7 +79,7 @@ bool Session::follow_trial(const record::Event& event) {
       const auto* const chosen = std::get_if<Chosen>(&*answer);
       if (chosen != nullptr &&
           (chosen->position < 0 || chosen->position >= static_cast<int>(layout().size()))) {
-        refuse(event, "answers at a position that there is not");
+        refuse(event, "answers at a position that does not exist");
       }
       count(*answer);
       finish_presentation(event.at, answer);

@@ -105,9 +105,9 @@ bool TrialRun::came_late() {
   return true;
 }
 
-/// Ticks count from the servo's start, a moment after plane-on was recorded. Events that follow the
-/// exploration have the time of its end and not the present one: how long it takes to pack a trace
-/// or to write a flight record tells rough textures from smooth ones.
+/// Ticks count from the servo's start, a moment after plane-on was recorded. Later events
+/// are stamped with the end of the exploration, not with the current time: how long it takes to
+/// pack a trace or to write a flight record differs between rough and smooth textures.
 TrialRun::Span TrialRun::note_exploration(const Exploration& done, Time plane_on) {
   const Time began =
       done.began ? std::clamp(parts_.clock.of(*done.began), plane_on, desk_.now()) : plane_on;
@@ -252,7 +252,7 @@ void run_trials(SessionDesk& desk, SessionTally& tally) {
     if (!desk.goes_on() || session.phase() != SessionPhase::ready) continue;
     trials.run();
     desk.record_marks();
-    static_cast<void>(desk.obey());
+    static_cast<void>(desk.handle());
     if (desk.interruptions() > most_interruptions && session.accepts(SessionInput::stop)) {
       session.stop(desk.now(), "", "too many faults");
     }
@@ -289,10 +289,10 @@ const SessionTexts& no_texts() {
 SessionTally run_session(Session& session, const SessionParts& parts) {
   SessionDesk desk(session, parts);
   SessionTally tally;
-  desk.tell_of_begin();
+  desk.mark_session_start();
   if (run_opening_stages(desk)) run_trials(desk, tally);
   if (session.phase() == SessionPhase::finished) ask_closing_questions(desk);
-  if (!desk.left()) desk.tell_of_end();
+  if (!desk.left()) desk.mark_session_end();
   desk.record_marks();
   if (!desk.left()) {
     const study::Study& study = parts.key.study;

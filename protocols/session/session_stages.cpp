@@ -52,7 +52,7 @@ bool go_through_day_sheet(SessionDesk& desk) {
   const std::vector<DaySheetItem> items = open_items(desk, desk.session().remarks());
   if (items.empty()) return true;
   desk.enter("day sheet");
-  while (desk.obey()) {
+  while (desk.handle()) {
     if (const auto ticks = desk.parts().experimenter.day_sheet(items)) {
       record_ticks(desk, items, *ticks);
       return true;

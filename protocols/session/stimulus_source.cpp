@@ -13,13 +13,13 @@
 namespace touchtrial::session {
 namespace {
 
-constexpr std::size_t kLeastPage = 4096;
+constexpr std::size_t kMinPage = 4096;
 
 void touch(std::span<const std::byte> bytes) noexcept {
   const auto read = [](const std::byte& byte) {
     static_cast<void>(*static_cast<const volatile std::byte*>(&byte));
   };
-  for (std::size_t i = 0; i < bytes.size(); i += kLeastPage) read(bytes[i]);
+  for (std::size_t i = 0; i < bytes.size(); i += kMinPage) read(bytes[i]);
   if (!bytes.empty()) read(bytes.back());
 }
 
@@ -75,9 +75,13 @@ StimulusSource::Mix StimulusSource::mix_of(const study::Plane& plane) noexcept {
 
 StimulusSource::StimulusSource(const engine::Pack& pack, const study::StudyCodes& codes)
     : StimulusSource(pack, codes.study.rendering) {
+  for (const study::KeyedStimulus& keyed : codes.fields()) static_cast<void>(stimulus(keyed.code));
+  // Of the same field whatever is practised.
+  const auto first = std::ranges::min_element(codes.stimuli, {}, &study::KeyedStimulus::code);
+  flat_.emplace(stimulus(first->code).field, rendering_, engine::Gains{});
   const study::Fields fields = codes.study.task->fields(codes.study);
   if (!fields.levelled) return;
-  for (const auto& [code, index] : codes.stimuli) {
+  for (const auto& [code, index] : codes.fields()) {
     const Mix alone{index, index, 0.0};
     mixes_.emplace(alone, applied(alone, codes));
   }
@@ -119,8 +123,6 @@ engine::RenderingModel StimulusSource::levelled(const study::Plane& plane) const
 
 engine::RenderingModel StimulusSource::plane_of(const study::Plane& plane,
                                                 const study::StudyCodes& codes) const {
-  const int practised = plane.field.class_index - static_cast<int>(codes.study.classes.size());
-  if (practised >= 0 && practice_) return practice_->model(practised);
   if (!mixes_.empty()) return levelled(plane);
   if (plane.mix || plane.pitch != 1.0) {
     throw std::logic_error("StimulusSource: planes that are mixed or stretched must be levelled");

@@ -3,14 +3,12 @@
 
 #include "engine/pack/pack.hpp"
 #include "engine/rendering/rendering_model.hpp"
-#include "study/practice.hpp"
 #include "study/schedule.hpp"
 #include "study/study_key.hpp"
 
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace touchtrial::session {
@@ -25,6 +23,7 @@ class StimulusSource {
   ///   or the pack is empty
   StimulusSource(const engine::Pack& pack, const engine::RenderingOptions& rendering);
   /// The same for sessions, whose planes may be levelled and mixed.
+  /// \throws FileError also if the pack lacks one of the codes' fields
   StimulusSource(const engine::Pack& pack, const study::StudyCodes& codes);
 
   /// The model of a field.
@@ -47,9 +46,6 @@ class StimulusSource {
   /// \throws FileError if the pack has no such field
   [[nodiscard]] engine::RenderingModel plane_of(const study::Plane& plane,
                                                 const study::StudyCodes& codes) const;
-
-  /// Adds the textures that participants practise with.
-  void practise_with(study::PracticeSet practice) { practice_.emplace(std::move(practice)); }
 
   /// A plane without texture, for catch trials.
   [[nodiscard]] const engine::RenderingModel& flat() const noexcept { return *flat_; }
@@ -94,7 +90,6 @@ class StimulusSource {
   PlaneGeometry plane_;
   engine::RenderingOptions rendering_;
   std::map<Mix, Applied> mixes_;  ///< of studies that level their fields
-  std::optional<study::PracticeSet> practice_;
 };
 
 }  // namespace touchtrial::session

@@ -80,7 +80,7 @@ class SimulatedParticipant : public PromptParticipant {
   /// Comes to a visit, where paths and noise are others than at those before.
   /// \param visit  from 1
   /// \param course  of the visit; may be empty
-  void come_to(int visit, TrialCourse course = {}) {
+  void start_visit(int visit, TrialCourse course = {}) {
     visit_ = visit;
     trials_begun_ = trials_before(visit);
     begin_visit(visit, std::move(course));

@@ -98,7 +98,7 @@ FinishedSession run_session(const Setting& setting, const Place& place) {
   session.open({}, opening_of(setting, place), study::schedule_to_json(schedule, setting.key));
   const std::unique_ptr<SimulatedParticipant> participant =
       setting.population.participant(place.number);
-  participant->come_to(place.visit, course_of(study, schedule));
+  participant->start_visit(place.visit, course_of(study, schedule));
   participant->follow(study::make_order(study, draw));
   finished.tally =
       session::run_session_in_virtual_time(session, setting.key, setting.source, *participant);

@@ -48,10 +48,12 @@ struct Fatigue {
 /// Answers by a psychometric function of the level, of the shape of the study's grid, which no
 /// person could: for checks of procedures and analyses. What is felt does not matter.
 struct GivenFunction {
-  double threshold = 0.0;  ///< median over participants, in units of the level
-  double spread = 0.0;     ///< standard deviation of the threshold between participants, >= 0
-  double slope = 1.0;      ///< > 0
-  double lapse = 0.0;      ///< in [0, 0.5)
+  double threshold = 0.0;        ///< median over participants, in units of the level
+  double spread = 0.0;           ///< standard deviation of the threshold between participants, >= 0
+  double slope = 1.0;            ///< > 0
+  double lapse = 0.0;            ///< in [0, 0.5)
+  double standard_step = 0.0;    ///< what the threshold of each standard adds to that of the last
+  double standard_spread = 0.0;  ///< standard deviation of a participant's own at each standard
 
   friend bool operator==(const GivenFunction&, const GivenFunction&) = default;
 };

@@ -79,11 +79,14 @@ ThoughtTime thought_from(const JsonValue& value) {
 }
 
 GivenFunction given_function_from(const JsonValue& value) {
-  const JsonObject object = value.object({"threshold", "spread", "slope", "lapse"});
+  const JsonObject object =
+      value.object({"threshold", "spread", "standard_step", "standard_spread", "slope", "lapse"});
   GivenFunction given;
   given.threshold = object.at("threshold").number({-200.0, 200.0});
   given.slope = object.at("slope").number({0.0, 1000.0, true});
   read_number(object, "spread", {0.0, 100.0}, given.spread);
+  read_number(object, "standard_step", {-100.0, 100.0}, given.standard_step);
+  read_number(object, "standard_spread", {0.0, 100.0}, given.standard_spread);
   read_number(object, "lapse", {0.0, 0.5, false, true}, given.lapse);
   return given;
 }
@@ -117,6 +120,8 @@ nlohmann::ordered_json json_of(const ThoughtTime& thought) {
 nlohmann::ordered_json json_of(const GivenFunction& given) {
   return {{"threshold", given.threshold},
           {"spread", given.spread},
+          {"standard_step", given.standard_step},
+          {"standard_spread", given.standard_spread},
           {"slope", given.slope},
           {"lapse", given.lapse}};
 }

@@ -27,9 +27,9 @@ constexpr NumberRange kSpeedMmS{1.0, 1000.0};
 constexpr std::array kHands{Named<device::HandKind>{"point_mass", device::HandKind::point_mass},
                             Named<device::HandKind>{"stylus_grip", device::HandKind::stylus_grip}};
 constexpr NumberRange kHandSpread{0.0, 1.0};
-constexpr int kMostPasses = 1000;
+constexpr int kMaxPasses = 1000;
 constexpr NumberRange kThresholdSpreadDb{0.0, 40.0};
-constexpr std::size_t kMostLabels = 64;
+constexpr std::size_t kMaxLabels = 64;
 
 using Sense = std::optional<engine::ThresholdCurve>;
 constexpr std::array kSenses{Named<Sense>{"flat", {}},
@@ -43,7 +43,7 @@ void read_bias(const JsonValue& value, SubjectModel& model) {
   read_number(bias, "class_spread", kLogOddsSpread, model.class_bias_spread);
   const auto classes = bias.find("classes");
   if (!classes) return;
-  for (const JsonValue& item : classes->items(0, kMostLabels)) {
+  for (const JsonValue& item : classes->items(0, kMaxLabels)) {
     const JsonObject preferred = item.object({"label", "log_odds"});
     model.class_bias.push_back(
         {preferred.at("label").text(), preferred.at("log_odds").number(kLogOdds)});
@@ -52,7 +52,7 @@ void read_bias(const JsonValue& value, SubjectModel& model) {
 
 void read_label_swap(const JsonValue& value, SubjectModel& model) {
   std::set<std::string> used;
-  for (const JsonValue& item : value.items(0, kMostLabels)) {
+  for (const JsonValue& item : value.items(0, kMaxLabels)) {
     const std::vector<JsonValue> pair = item.items(2, 2);
     for (const JsonValue& label : pair) {
       if (!used.insert(label.text()).second) {
@@ -127,7 +127,7 @@ SubjectModel read_model(const JsonValue& document, const std::string& source) {
   read_speeds(object, model);
   if (const auto hand = object.find("hand")) read_hand(*hand, model);
   if (const auto passes = object.find("training_passes")) {
-    model.training_passes = static_cast<int>(passes->integer(1, kMostPasses));
+    model.training_passes = static_cast<int>(passes->integer(1, kMaxPasses));
   }
   read_training(object, model);
   read_number(object, "period_noise_spread", kSpread, model.period_noise_spread);

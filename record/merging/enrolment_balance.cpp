@@ -20,7 +20,7 @@ void add_gaps(EnrolmentBalance& balance, const std::set<int>& taken) {
   // The highest number may be absurd, so the loop below ends with the list.
   const auto below = std::distance(taken.begin(), taken.lower_bound(balance.highest));
   balance.gap_count = std::max(balance.highest - 1, 0) - static_cast<int>(below);
-  for (int number = 1; number < balance.highest && balance.gaps.size() < kMostGaps; ++number) {
+  for (int number = 1; number < balance.highest && balance.gaps.size() < kMaxGaps; ++number) {
     if (!taken.contains(number)) balance.gaps.push_back(number);
   }
 }

@@ -22,13 +22,13 @@ struct EnrolmentBalance {
   /// Number of sessions that are complete and count, by station; a station may have 0.
   std::map<int, int> stations;
   /// Enrolment numbers below the highest without a complete session that counts, ascending; at most
-  /// kMostGaps.
+  /// kMaxGaps.
   std::vector<int> gaps;
   int gap_count = 0;
   int highest = 0;  ///< enrolment number, of all sessions
 };
 
-inline constexpr std::size_t kMostGaps = 20;
+inline constexpr std::size_t kMaxGaps = 20;
 
 /// \throws std::invalid_argument if an enrolment number < 1
 [[nodiscard]] EnrolmentBalance enrolment_balance(std::span<const EnrolledSession> sessions);

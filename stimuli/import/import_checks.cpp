@@ -19,14 +19,14 @@ namespace fs = std::filesystem;
 using engine::rounded;
 
 // The limits of study files.
-constexpr std::size_t kMostClasses = 64;
-constexpr int kMostStimuli = 10'000;
+constexpr std::size_t kMaxClasses = 64;
+constexpr int kMaxStimuli = 10'000;
 constexpr NumberRange kPitchMm{0.001, 10.0};
 
 /// Devices do not render shorter waves well.
 constexpr double kFinestFeatureMm = 1.0;
 /// Fewer waves than this across a picture feel like slopes, not like a texture.
-constexpr double kFewestFeatures = 8.0;
+constexpr double kMinFeatures = 8.0;
 
 [[noreturn]] void refuse(const std::string& what) {
   throw UsageError("stimuli import: " + what);
@@ -151,7 +151,7 @@ void add_class_warnings(const std::vector<ImportedClass>& classes, const ImportO
     if (one.overlapping) overlapping.add(one);
     if (one.feature_mm < kFinestFeatureMm) {
       fine.add(one);
-    } else if (one.feature_mm > side_mm / kFewestFeatures) {
+    } else if (one.feature_mm > side_mm / kMinFeatures) {
       coarse.add(one);
     }
   }
@@ -240,16 +240,16 @@ void check_classes(const PhotoFolder& folder, const ImportOptions& options) {
     throw FileError(name + ": holds 1 class, \"" + folder.classes.front().label +
                     "\"; a study needs 2 or more: add a folder or a photograph of another");
   }
-  if (classes > kMostClasses) {
+  if (classes > kMaxClasses) {
     throw FileError(name + ": holds " + std::to_string(classes) + " classes, more than " +
-                    std::to_string(kMostClasses) +
+                    std::to_string(kMaxClasses) +
                     "; to make several photographs one class, put them into a folder of its name, "
                     "or give `touchtrial stimuli import` --names");
   }
-  if (static_cast<int>(classes) * options.crops * options.methods > kMostStimuli) {
+  if (static_cast<int>(classes) * options.crops * options.methods > kMaxStimuli) {
     throw FileError(name + ": " + std::to_string(classes) + " classes of " +
                     std::to_string(options.crops) + " crops make more than " +
-                    std::to_string(kMostStimuli) + " stimuli; give fewer --crops");
+                    std::to_string(kMaxStimuli) + " stimuli; give fewer --crops");
   }
 }
 

@@ -202,8 +202,8 @@ void add_files(const Listing& listing, const std::string& names, PhotoFolder& re
   }
 }
 
-constexpr double kMostEnlarged = 4.0;
-constexpr double kMostShrunk = 1.0 / 64;
+constexpr double kMaxEnlarged = 4.0;
+constexpr double kMaxShrunk = 1.0 / 64;
 
 double scale_for(const Photograph& photo, const ImportOptions& options) {
   const std::string name = one_line(photo.path.string());
@@ -219,7 +219,7 @@ double scale_for(const Photograph& photo, const ImportOptions& options) {
                     "; give --pixels-per-mm a number");
   }
   const double scale = 1.0 / (*pixels_per_mm * options.pitch_mm);
-  if (scale > kMostEnlarged || scale < kMostShrunk) {
+  if (scale > kMaxEnlarged || scale < kMaxShrunk) {
     throw FileError(name + ": " + number_text(*pixels_per_mm) +
                     " pixels a millimetre at a pitch of " + number_text(options.pitch_mm) +
                     " mm means scaling by " + number_text(scale) +

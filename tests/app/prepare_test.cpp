@@ -201,6 +201,41 @@ TEST_CASE("prepare refuses a practice picture that is smaller than the plane") {
   CHECK_FALSE(fs::exists(study.path() / "cloths.key"));
 }
 
+TEST_CASE("fields of practice are made, checked and listed apart from the study's") {
+  const StudyFolder study;
+  study.write_study(json::parse(R"({"trials": {"practice": 1}, "practice": {"criterion": 1,
+    "classes": [{"label": "felt", "images": ["felt.png"]},
+                {"label": "silk", "images": ["silk.png"]}]}})"));
+  write_png(study.path() / "felt.png", texture_number(6));
+  write_png(study.path() / "silk.png", texture_number(7));
+  CHECK_THAT(study.done("prepare @cloths.json").output,
+             holds_text("practice:\nfelt") && holds_text("built 5, reused 0"));
+  const json again = study.printed("prepare @cloths.json --json");
+  CHECK(again["stimuli"].size() == 3);
+  REQUIRE(again["practice"].size() == 2);
+  CHECK(again["practice"][1]["class"] == "silk");
+  CHECK(again["practice"][1]["state"] == "reused");
+  CHECK_FALSE(again["practice"][1].contains("levels"));
+
+  study.done("key check @cloths.json");
+  study.done("stimuli sheet @cloths.json -o @sheet.html");
+  const std::string sheet = content(study.path() / "sheet.html");
+  const json station = json::parse(content(study.path() / "cloths.station"));
+  CHECK(station["stimuli"].size() == 3);
+  REQUIRE(station["practice"].size() == 2);
+  for (const json& field : station["practice"]) {
+    const auto code = field["code"].get<std::string>();
+    CHECK(fs::exists(study.path() / "cloths.pack" / (code + ".field")));
+    CHECK_THAT(sheet, holds_text(code));
+  }
+
+  succeeded(study.simulate("s.db"));
+  CHECK_THAT(study.done("verify @s.db").output, holds_text("5 fields intact, every code"));
+
+  write_png(study.path() / "silk.png", texture_number(8));
+  CHECK_THAT(study.done("prepare @cloths.json").output, holds_text("built 1, reused 4"));
+}
+
 TEST_CASE("prepare says how large the plane is, and whether it is a hand's") {
   const StudyFolder study;
   const auto prepared = [&](double pitch_mm, bool as_json) {

@@ -245,8 +245,8 @@ simulation::SubjectModel people() {
 void attack(const std::string& protocol, const TinyStudyOptions& options,
             const std::set<std::string>& telling_if_clear) {
   constexpr int kPeopleOfCTest = 60;
-  constexpr int kMostPeople = 200;
-  const int sessions = std::min(kMostPeople, places(kPeopleOfCTest));
+  constexpr int kMaxPeople = 200;
+  const int sessions = std::min(kMaxPeople, places(kPeopleOfCTest));
   TinyStudy tiny(options);
   const fs::path path = tiny.next_database();
   record::StudyStore store = record::StudyStore::create(

@@ -36,8 +36,8 @@ TEST_CASE("passphrase, salt and cost all decide the key") {
 }
 
 TEST_CASE("a cost out of range is refused") {
-  const PassphraseCost& least = kLeastPassphraseCost;
-  const PassphraseCost& most = kMostPassphraseCost;
+  const PassphraseCost& least = kMinPassphraseCost;
+  const PassphraseCost& most = kMaxPassphraseCost;
   for (const PassphraseCost& cost :
        {PassphraseCost{0, kSmall.memory_bytes},
         PassphraseCost{most.passes + 1, kSmall.memory_bytes},

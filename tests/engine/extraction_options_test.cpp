@@ -43,7 +43,7 @@ TEST_CASE("a parameter belongs to the methods that use it, in the order of the e
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kLargestInt = std::numeric_limits<int>::max();
+constexpr double kMaxInt = std::numeric_limits<int>::max();
 
 std::string refusal_of_options(const ExtractionOptions& options) {
   return refusal_of([&] { check_options(options); });
@@ -66,7 +66,7 @@ struct Refused {
 std::vector<Refused> refused_options() {
   using Options = ExtractionOptions;
   const auto radius = [](Options& o, double value) { o.radius = static_cast<int>(value); };
-  const std::vector<double> radii = {-1.0, 0.0, 64.0, kLargestInt};
+  const std::vector<double> radii = {-1.0, 0.0, 64.0, kMaxInt};
   return {
       {"order",
        Method::fixed,
@@ -78,7 +78,7 @@ std::vector<Refused> refused_options() {
       {"levels",
        Method::adaptive,
        [](Options& o, double value) { o.levels = static_cast<int>(value); },
-       {0.0, -1.0, 9.0, kLargestInt},
+       {0.0, -1.0, 9.0, kMaxInt},
        true},
       {"sigma",
        Method::gaussian,

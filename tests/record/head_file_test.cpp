@@ -205,7 +205,7 @@ TEST_CASE("a head file keeps the newest open sessions, whatever their numbers an
   const TempFolder folder;
   const HeadFile file(folder.path() / "study.db.head");
   constexpr int kLast = std::numeric_limits<int>::max();
-  constexpr auto kMost = static_cast<int>(kMostHeadSessions);
+  constexpr auto kMost = static_cast<int>(kMaxHeadSessions);
   file.update(station_signer(), [](HeadRecord& record) {
     record = some_record();
     for (int i = 0; i < kMost; ++i) {
@@ -214,7 +214,7 @@ TEST_CASE("a head file keeps the newest open sessions, whatever their numbers an
     }
   });
   const HeadRecord record = file.read(known_signers()).value();
-  REQUIRE(record.sessions.size() == kMostHeadSessions);
+  REQUIRE(record.sessions.size() == kMaxHeadSessions);
   REQUIRE(record.sessions.begin()->first == kLast - kMost + 1);
   REQUIRE(record.sessions.at(kLast).hash == digest_of("0"));
 }

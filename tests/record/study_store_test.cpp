@@ -99,6 +99,7 @@ TEST_CASE("sessions and trials are derived from the events") {
                         .answered_at = {},
                         .answer = {},
                         .confidence = {},
+                        .kind = {},
                         .track = {},
                         .level = {},
                         .target = {},

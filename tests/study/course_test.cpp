@@ -114,15 +114,15 @@ TEST_CASE("an interrupted block is restarted under new numbers before all else")
   study::Course once = restarted();
   CHECK(rest_of(once) == std::vector<int>{5, 6, 3, 4});
   study::Course course = restarted();
-  CHECK(course.was_given_up(2));
-  CHECK_FALSE(course.was_given_up(3));
-  CHECK_FALSE(course.was_given_up(5));
+  CHECK(course.is_void(2));
+  CHECK_FALSE(course.is_void(3));
+  CHECK_FALSE(course.is_void(5));
   CHECK(course.has(6));
   CHECK_FALSE(course.has(7));
   course.spoil();
   course.restart(course.drawn_again(0));
   CHECK(rest_of(course) == std::vector<int>{7, 8, 9, 3, 4});
-  CHECK(course.was_given_up(6));
+  CHECK(course.is_void(6));
   CHECK(course.schedule().trials.size() == 9);
 }
 

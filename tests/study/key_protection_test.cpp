@@ -16,7 +16,7 @@
 namespace touchtrial {
 namespace {
 
-constexpr PassphraseCost kQuick = kLeastPassphraseCost;
+constexpr PassphraseCost kQuick = kMinPassphraseCost;
 const std::string kPassphrase = "a long passphrase";
 
 /// Answers with the given passphrases in turn, counts the questions, and forgets everything at the

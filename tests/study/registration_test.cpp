@@ -76,7 +76,8 @@ TEST_CASE("a margin is one-sided, decided by a t test, and in place of a smalles
   study["trials"] = {{"blocks", "mixed"}};
   CHECK(parsed(study).registration.analysis->test == study::RegisteredTest::t);
   CHECK(study::fields_of(parsed(study).registration)[3].second ==
-        "as good if worse by less than 7 points; decided by the 90 % t interval");
+        "as good if worse by less than 7 points; decided by the 90 % t interval, and only if both "
+        "methods are above chance");
   CHECK_THAT(with({{"smallest_effect", 0.1}}), holds_text("register one question"));
   CHECK_THAT(with({{"sides", "two"}}), holds_text("/registration/sides: must be \"one\""));
   CHECK_THAT(with({{"test", "sign-flip"}}), holds_text("flips signs about 0"));
@@ -138,6 +139,19 @@ TEST_CASE("a rule about deviations names codes that can occur") {
   for (const char* code : {"no-day-sheet-", "no-day-sheet-0", "no-day-sheet-02"}) {
     CHECK_THAT(with({{"deviations", {code}}}, two), holds_text("is no code"));
   }
+}
+
+TEST_CASE("a question, or a rule, that the protocol cannot keep is refused") {
+  CHECK_THAT(refusal({{"estimand", "mean-threshold"}}),
+             holds_text("/registration/estimand: \"mean-threshold\" is no question that the "
+                        "protocol classification answers; register one that it does: "
+                        "mean-accuracy, difference"));
+  CHECK_THAT(refusal({{"estimand", "mean-accuracy"}, {"margin_db", 3}}),
+             holds_text("/registration/margin_db: is about thresholds"));
+  CHECK_THAT(
+      refusal({{"estimand", "mean-accuracy"}, {"exclusion_rules", {{"missed_catch", 1}}}}),
+      holds_text("/registration/exclusion_rules/missed_catch: is about catch trials with a right "
+                 "answer, of which the study has none"));
 }
 
 TEST_CASE("codes of the program and of the study are read as they were written") {

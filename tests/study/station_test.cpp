@@ -114,7 +114,7 @@ TEST_CASE("names of stations are simple, and each is one station's") {
   refused({"lab/2"});
   refused({std::string(33, 'a')});
   refused({"a", "a"});
-  refused(std::vector<std::string>(kMostStations + 1, "a"));
+  refused(std::vector<std::string>(kMaxStations + 1, "a"));
 }
 
 TEST_CASE("each station has every order of methods equally often, in blocks that nobody can tell") {

@@ -1,4 +1,4 @@
-// Who comes: the questions before a session whose participant no option names.
+// Choosing the participant: the questions before a session whose participant no option names.
 #include "app/run/participant_dialogue.hpp"
 
 #include "study/languages.hpp"

@@ -260,7 +260,7 @@ TEST_CASE("everything on the screen of ratings can be read, in all languages and
                              Vec2{1280.0, 1024.0}, Vec2{3440.0, 1440.0});
   const std::string language = GENERATE("en", "de", "es", "fr", "ja", "zh");
   const double side_mm = GENERATE(25.0, 51.2, 100.0);
-  const double text_scale = GENERATE(1.0, study::kLargestTextScale);
+  const double text_scale = GENERATE(1.0, study::kMaxTextScale);
   const bool time_is_up = GENERATE(false, true);
   CAPTURE(size.x, language, side_mm, text_scale, time_is_up);
   const Paper paper(size, text_scale, app::letters_in(all_texts(language)));
@@ -293,7 +293,7 @@ study::Study study_of_ratings(const std::string& language) {
 
 TEST_CASE("instructions and notices of ratings can be read, in all languages") {
   const std::string language = GENERATE("en", "de", "es", "fr", "ja", "zh");
-  const double text_scale = GENERATE(1.0, study::kLargestTextScale);
+  const double text_scale = GENERATE(1.0, study::kMaxTextScale);
   CAPTURE(language, text_scale);
   const study::Study study = study_of_ratings(language);
   const session::SessionTexts texts = app::session_texts(study);

@@ -126,7 +126,7 @@ TEST_CASE("everything on every screen can be read, in all languages and at all s
   const double side_mm = GENERATE(25.0, 51.2, 100.0);
   const bool knows = side_mm < 100.0;
   // The largest letters are tried with the pictures that leave them least room.
-  const double text_scale = knows ? 1.0 : study::kLargestTextScale;
+  const double text_scale = knows ? 1.0 : study::kMaxTextScale;
   CAPTURE(size.x, language, side_mm, text_scale);
   const Paper paper(size, text_scale, app::letters_in(all_texts(language)));
   const session::SessionTexts texts = app::session_texts(full_study(language));
@@ -178,7 +178,7 @@ TEST_CASE("all screens of trials with several planes can be read, in all languag
   const Vec2 size = GENERATE(Vec2{1280.0, 720.0}, Vec2{1920.0, 1080.0}, Vec2{1280.0, 1024.0},
                              Vec2{3440.0, 1440.0});
   const std::string language = GENERATE("en", "de", "es", "fr", "ja", "zh");
-  const double text_scale = GENERATE(1.0, study::kLargestTextScale);
+  const double text_scale = GENERATE(1.0, study::kMaxTextScale);
   const bool feedback = GENERATE(false, true);
   const bool mouse = GENERATE(false, true);
   CAPTURE(size.x, language, text_scale, feedback, mouse);

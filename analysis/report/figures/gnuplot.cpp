@@ -98,7 +98,7 @@ int wait_for(pid_t child) {
   return status;
 }
 
-constexpr std::array<int, 2> kLeastVersion = {5, 2};
+constexpr std::array<int, 2> kMinVersion = {5, 2};
 
 /// "5.0" of "gnuplot 5.0 patchlevel 5" if that is too old; empty otherwise.
 std::string version_if_old(const std::string& said) {
@@ -109,7 +109,7 @@ std::string version_if_old(const std::string& said) {
   const auto major = number_in<int>(version.substr(0, dot));
   const auto minor = number_in<int>(version.substr(dot + 1));
   if (!major || !minor) return "";
-  return std::array<int, 2>{*major, *minor} < kLeastVersion ? version : "";
+  return std::array<int, 2>{*major, *minor} < kMinVersion ? version : "";
 }
 
 /// The last line of gnuplot's complaint; the others echo the script.

@@ -22,7 +22,7 @@ constexpr double kSideLeft_cm = 7.0;
 constexpr double kSideWidth_cm = 8.5;
 constexpr double kWidth_cm = 16.0;
 constexpr std::size_t kSideColumns = 46;
-constexpr std::size_t kMostReasons = 8;
+constexpr std::size_t kMaxReasons = 8;
 
 void add_line(std::vector<std::string>& lines, int count, const std::string& what) {
   if (count > 0) lines.push_back(fmt::format("{} {}", count, what));
@@ -34,8 +34,8 @@ void add_reasons(std::vector<std::string>& lines, const ParticipantFlow& flow) {
   for (const std::string& reason : flow.exclusion_reasons) ++counts[reason];
   std::size_t shown = 0;
   for (const auto& [reason, count] : counts) {
-    if (++shown > kMostReasons) {
-      lines.push_back(fmt::format("    and {} further reasons", counts.size() - kMostReasons));
+    if (++shown > kMaxReasons) {
+      lines.push_back(fmt::format("    and {} further reasons", counts.size() - kMaxReasons));
       return;
     }
     lines.push_back(
@@ -101,7 +101,7 @@ std::string side_box(const Sheet& sheet, double top_cm, const std::vector<std::s
   return script;
 }
 
-constexpr std::size_t kMostPoints = 300;
+constexpr std::size_t kMaxPoints = 300;
 /// A logarithmic axis has no zero.
 constexpr double kLeast_us = 0.1;
 
@@ -135,7 +135,7 @@ std::vector<double> row_of(std::span<const ServoTrial> trials, double middle) {
 }
 
 std::size_t trials_together(std::size_t trials) {
-  return (trials + kMostPoints - 1) / kMostPoints;
+  return (trials + kMaxPoints - 1) / kMaxPoints;
 }
 
 std::vector<std::vector<double>> rows_of(std::span<const ServoTrial> trials) {

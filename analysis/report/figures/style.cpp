@@ -185,7 +185,7 @@ std::vector<double> evenly_chosen(const std::vector<double>& sorted, std::size_t
 
 void add_dots(Rows& rows, double x, double width, const std::vector<double>& sorted) {
   constexpr double kGoldenSection = 0.618033988749895;
-  const std::vector<double> chosen = evenly_chosen(sorted, kMostDots);
+  const std::vector<double> chosen = evenly_chosen(sorted, kMaxDots);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const double aside = std::fmod(kGoldenSection * static_cast<double>(i), 1.0) - 0.5;
     rows.push_back({x + width * aside, chosen[i]});

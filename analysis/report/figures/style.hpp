@@ -88,8 +88,8 @@ void add_bar(Rows& rows, double place, double mean, const std::optional<Interval
 [[nodiscard]] std::vector<double> evenly_chosen(const std::vector<double>& sorted,
                                                 std::size_t most);
 /// The most dots that `add_dots` adds.
-inline constexpr std::size_t kMostDots = 100;
-/// Adds a row (x, value) for each of at most kMostDots evenly chosen values. A sequence that fills
+inline constexpr std::size_t kMaxDots = 100;
+/// Adds a row (x, value) for each of at most kMaxDots evenly chosen values. A sequence that fills
 /// intervals evenly (multiples of the golden section) spreads them around x.
 void add_dots(Rows& rows, double x, double width, const std::vector<double>& sorted);
 

@@ -285,7 +285,7 @@ Cited bands_sentence(const Characteristic& of) {
   text[0] = static_cast<char>(text[0] - 'a' + 'A');
   if (of.bands.empty()) {
     return {fmt::format("{} not shown, because it would single out fewer than {} people.", text,
-                        kFewestOfBand)};
+                        kMinOfBand)};
   }
   const char* separator = " ";
   for (const Band& band : of.bands) {
@@ -294,7 +294,7 @@ Cited bands_sentence(const Characteristic& of) {
   }
   if (of.others > 0) {
     text += fmt::format(", others and not told ({}; bands of fewer than {} are not shown)",
-                        of.others, kFewestOfBand);
+                        of.others, kMinOfBand);
   }
   return {text + "."};
 }
@@ -347,8 +347,8 @@ std::string said_in(const QuestionSummary& of) {
     parts.push_back(fmt::format("{} ({})", option.name, option.people));
   }
   if (of.others > 0) {
-    parts.push_back(fmt::format("others ({}; options of fewer than {} are not shown)", of.others,
-                                kFewestOfBand));
+    parts.push_back(
+        fmt::format("others ({}; options of fewer than {} are not shown)", of.others, kMinOfBand));
   }
   return parts.empty() ? kNoFigure : listed(parts);
 }

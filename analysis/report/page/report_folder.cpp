@@ -90,7 +90,7 @@ ReportFiles report_files(const Document& document, const std::string& results) {
   return files;
 }
 
-void refuse_strangers(const fs::path& folder) {
+void refuse_foreign_files(const fs::path& folder) {
   const std::set<std::string> claimed = claimed_in(folder);
   for (const char* path : {"report.html", "results.json"}) require_place(folder, claimed, path);
   if (!claimed.contains("results.json")) require_output_place(folder / kList);

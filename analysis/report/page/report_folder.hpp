@@ -38,7 +38,7 @@ void refuse_other_study(const std::filesystem::path& folder, const std::string& 
 
 /// Checks the places of page, results and list before long work.
 /// \throws as require_output_place
-void refuse_strangers(const std::filesystem::path& folder);
+void refuse_foreign_files(const std::filesystem::path& folder);
 
 /// Writes each file as a whole, and removes the files of an earlier report that this report does
 /// not have ("report-files.txt" lists them). Leaves everything else in the folder alone.

@@ -17,9 +17,33 @@ bool is_difference(const PrimaryResult& primary) {
   return primary.estimand == study::Estimand::difference;
 }
 
-/// A value of the estimand: "77.0%", or "+3.2 points".
+bool is_of_thresholds(const PrimaryResult& primary) {
+  return study::is_of_thresholds(primary.estimand);
+}
+
+bool is_estimate(const PrimaryResult& primary) {
+  return primary.estimand == study::Estimand::mean_threshold;
+}
+
+/// In dB: a mean without a sign unless it is negative, a difference with its sign.
+std::string decibels(const PrimaryResult& primary, std::optional<double> value) {
+  return is_estimate(primary) ? plain_figure(value, 1) : signed_plain_figure(value, 1);
+}
+
+/// A value of the estimand without its unit: a share in per cent has it.
+std::string bare_figure(const PrimaryResult& primary, std::optional<double> value) {
+  if (is_of_thresholds(primary)) return decibels(primary, value);
+  return is_difference(primary) ? points_figure(value) : share_figure(value);
+}
+
+std::string range_figure(const PrimaryResult& primary, const std::optional<Interval>& interval) {
+  return is_of_thresholds(primary) ? plain_range(interval, 1) : share_range(interval);
+}
+
+/// A value of the estimand: "77.0%", "+3.2 points", or "−18.3 dB".
 std::string estimand_figure(const PrimaryResult& primary, std::optional<double> value) {
   if (!value) return kNoFigure;
+  if (is_of_thresholds(primary)) return decibels(primary, value) + " dB";
   return is_difference(primary) ? points_figure(value) + " points" : share_figure(value);
 }
 
@@ -47,6 +71,7 @@ std::string people_of(const PrimaryResult& primary, const StudyCourse& course) {
 /// The verdict, for a reader who stops there.
 std::string lead_of(Verdict verdict) {
   const bool is_decided = verdict == Verdict::supported || verdict == Verdict::not_supported;
+  if (verdict == Verdict::estimated) return "Estimated as registered.";
   return first_letter_raised(name_of(verdict)) + (is_decided ? " by the registered test." : ".");
 }
 
@@ -56,11 +81,17 @@ Cited verdict_sentence(const StudyHead& head) {
   const PrimaryChoice& choice = primary.registered();
   std::string text = fmt::format("{}: {}", first_letter_raised(primary.words),
                                  estimand_figure(primary, choice.estimate));
+  if (!choice.pair.empty()) text += " (" + choice.pair + ")";
   if (choice.interval) {
-    text += fmt::format(", {} t interval {}", level_words(primary.interval_level),
-                        share_range(choice.interval));
+    text += fmt::format(", {} {} {}", level_words(primary.interval_level),
+                        is_of_thresholds(primary) ? "interval" : "t interval",
+                        range_figure(primary, choice.interval));
   }
   text += " (" + people_of(primary, head.course) + ")";
+  if (is_estimate(primary)) {
+    return {
+        text + ". " + primary.because, {Source::student, Source::tobin}, lead_of(primary.verdict)};
+  }
   text += ". " + first_letter_raised(primary.test);
   if (primary.p) text += ": " + p_phrase(*primary.p);
   text += fmt::format(", alpha {:.3g}", primary.alpha);
@@ -73,6 +104,7 @@ Cited verdict_sentence(const StudyHead& head) {
   }
   std::vector<Source> sources{Source::student};
   if (primary.crossover) sources = {Source::hills_armitage, Source::senn};
+  if (is_of_thresholds(primary)) sources.push_back(Source::tobin);
   return {text + ". " + primary.because, std::move(sources), lead_of(primary.verdict)};
 }
 
@@ -147,7 +179,7 @@ Cited note_of(const StratifiedMean& stations) {
       "Fixed strata: for these stations, from the spread between participants of one station.";
   if (!stations.random) {
     return {text + fmt::format(" With fewer than {} stations nothing can be said of others.",
-                               kFewestRandomStrata),
+                               kMinRandomStrata),
             {Source::student}};
   }
   text += fmt::format(
@@ -157,45 +189,77 @@ Cited note_of(const StratifiedMean& stations) {
   return {text, {Source::student, Source::paule_mandel, Source::inthout}};
 }
 
+/// What the estimate is called, and the interval beside it.
+std::pair<std::string, std::string> estimate_titles(const PrimaryResult& primary) {
+  const std::string level = level_words(primary.interval_level);
+  if (is_of_thresholds(primary)) {
+    return {is_estimate(primary) ? "mean (dB)" : "difference (dB)", level + " (dB)"};
+  }
+  return is_difference(primary) ? std::pair("difference (points)", "t " + level + " (points)")
+                                : std::pair("mean", "t " + level + " (%)");
+}
+
+/// Every difference of an equality.
+Table pairs_table(const PrimaryResult& primary) {
+  const auto [estimate, interval] = estimate_titles(primary);
+  Table table{
+      "primary-pairs",
+      fmt::format("Every difference of the equality, of the registered choice: margin {} dB",
+                  plain_figure(primary.margin, 1)),
+      {{"difference", Align::left}, {"participants"}, {estimate}, {interval}, {"p"}}};
+  for (const PrimaryPair& pair : primary.pairs) {
+    table.rows.push_back({pair.words, std::to_string(pair.participants),
+                          bare_figure(primary, pair.estimate), range_figure(primary, pair.interval),
+                          p_figure(pair.p)});
+  }
+  table.notes = {
+      {"p: the larger one of two one-sided t tests, against a difference of the margin on either "
+       "side. The thresholds are shown to be the same only if every p is within its level, so no p "
+       "is adjusted.",
+       {Source::student, Source::tobin}}};
+  return table;
+}
+
 Table choices_table(const StudyHead& head) {
   const PrimaryResult& primary = *head.primary;
+  const auto [estimate_title, interval_title] = estimate_titles(primary);
   Table table{"primary",
               "The deciding question under every choice of sessions and trials",
               {{"choice", Align::left},
                {"participants"},
                {"trials"},
-               {is_difference(primary) ? "difference (points)" : "mean"},
-               {"t " + level_words(primary.interval_level) +
-                (is_difference(primary) ? " (points)" : " (%)")},
+               {estimate_title},
+               {interval_title},
                {"p"}}};
   std::vector<Cited> repeated;
   for (const auto& [choice, same] : different(primary.choices)) {
     const bool first = table.rows.empty();
     if (!same.empty()) {
-      repeated.push_back({same.size() + 1 == primary.choices.size()
-                              ? "Every other choice gives the same numbers: excluded sessions put "
-                                "back, valid trials alone, trials with a response alone."
-                              : fmt::format("The same numbers as \"{}\": {}.", choice.words,
-                                            fmt::join(same, "; "))});
+      repeated.push_back(
+          {same.size() + 1 == primary.choices.size()
+               ? std::string("Every other choice gives the same numbers: excluded "
+                             "sessions put back, valid trials alone") +
+                     (is_of_thresholds(primary) ? "." : ", trials with a response alone.")
+               : fmt::format("The same numbers as \"{}\": {}.", choice.words,
+                             fmt::join(same, "; "))});
     }
-    const std::string estimate =
-        is_difference(primary) ? points_figure(choice.estimate) : share_figure(choice.estimate);
-    table.rows.push_back({choice.words, std::to_string(choice.participants),
-                          std::to_string(choice.trials), Cell(estimate, first),
-                          share_range(choice.interval), first ? p_figure(primary.p) : kNoFigure});
+    table.rows.push_back(
+        {choice.words, std::to_string(choice.participants), std::to_string(choice.trials),
+         Cell(bare_figure(primary, choice.estimate), first), range_figure(primary, choice.interval),
+         first ? p_figure(primary.p) : kNoFigure});
   }
   add_stations(primary, table);
   table.notes = {
-      {"p belongs to the first row alone; the others show what a choice changes. Each "
-       "participant weighs the same, however many trials it has. Intervals are cut where possible "
-       "values end."}};
+      {std::string("p belongs to the first row alone; the others show what a choice changes. Each "
+                   "participant weighs the same, however many trials it has.") +
+       (is_of_thresholds(primary) ? "" : " Intervals are cut where possible values end.")}};
   table.notes.insert(table.notes.end(), repeated.begin(), repeated.end());
   if (head.course.excluded_afterwards > 0) {
     table.notes.push_back({counted(head.course.excluded_afterwards, "session") +
                            " excluded after outcomes were seen."});
   }
   if (primary.stations) table.notes.push_back(note_of(*primary.stations));
-  if (!is_difference(primary) && primary.p) {
+  if (primary.estimand == study::Estimand::mean_accuracy && primary.p) {
     table.notes.push_back(
         {*primary.p <= primary.level
              ? "A mean above chance says that some people can, not that everybody can."
@@ -235,6 +299,9 @@ std::vector<Block> verdict_blocks(const StudyHead& head) {
     blocks.emplace_back(Cited{"No departure from what was registered is recorded."});
   }
   if (head.primary) blocks.emplace_back(choices_table(head));
+  if (head.primary && head.primary->pairs.size() > 1) {
+    blocks.emplace_back(pairs_table(*head.primary));
+  }
   return blocks;
 }
 

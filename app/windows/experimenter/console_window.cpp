@@ -239,7 +239,7 @@ struct ConsoleWindow::State final : ExperimenterFace {
       events.push_back(event);
       frames_due = kSettling;
     }
-    options.stir();
+    options.wake();
   }
 
   void redraw() {
@@ -247,7 +247,7 @@ struct ConsoleWindow::State final : ExperimenterFace {
       const std::lock_guard lock(mutex);
       frames_due = kSettling;
     }
-    options.stir();
+    options.wake();
   }
 
   void tell_surface() {

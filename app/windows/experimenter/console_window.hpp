@@ -31,7 +31,7 @@ struct ConsoleWindowOptions {
   /// Called on the main thread.
   std::function<void(int key, int action, int modifiers)> key;
   /// Makes the drawing thread check whether this window needs a picture. Called on any thread.
-  std::function<void()> stir;
+  std::function<void()> wake;
 };
 
 /// Takes no focus when it opens, and the window manager cannot close it: only the participant's

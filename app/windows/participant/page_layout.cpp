@@ -14,7 +14,7 @@ constexpr double kFooter = 124.0;
 constexpr double kButtonWidth = 220.0;  ///< at least
 constexpr double kButtonHeight = 64.0;
 constexpr double kCardWidth = 900.0;
-constexpr double kSmallestLetters = 0.4;
+constexpr double kMinLetters = 0.4;
 
 constexpr double kBarMm = 10.0;
 /// The gap between pictures where there is little room, as a share of a picture's side.
@@ -109,7 +109,7 @@ void draw_card(Canvas& canvas, const std::string& title, const std::string& body
     return height;
   };
   double shrink = 1.0;
-  while (height_at(shrink) > area.height && shrink > kSmallestLetters) shrink *= 0.96;
+  while (height_at(shrink) > area.height && shrink > kMinLetters) shrink *= 0.96;
   const double least = illustrated ? std::min(area.height, column + 2.0 * padding) : 0.0;
   const double height = std::max(height_at(shrink), least);
   const Box card = {std::round(area.x + (area.width - width) / 2.0),

@@ -142,8 +142,8 @@ void choose_monitor(GLFWwindow* window, ConsoleWindowOptions& console) {
 /// The free part of the monitor to the right of the participant's window, which moves into the
 /// monitor's corner, or else below it.
 void choose_area(GLFWwindow* window, ConsoleWindowOptions& console) {
-  constexpr int kLeastWidth = 480;
-  constexpr int kLeastHeight = 320;
+  constexpr int kMinWidth = 480;
+  constexpr int kMinHeight = 320;
   GLFWmonitor* const shared = glfwGetPrimaryMonitor();
   if (shared == nullptr) return;
   ScreenArea all;
@@ -154,7 +154,7 @@ void choose_area(GLFWwindow* window, ConsoleWindowOptions& console) {
   const ScreenArea right = {all.x + width, all.y, all.width - width, all.height};
   const ScreenArea below = {all.x, all.y + height, all.width, all.height - height};
   for (const ScreenArea& area : {right, below}) {
-    if (area.width < kLeastWidth || area.height < kLeastHeight) continue;
+    if (area.width < kMinWidth || area.height < kMinHeight) continue;
     glfwSetWindowPos(window, all.x, all.y);
     console.area = area;
     return;
@@ -209,7 +209,7 @@ struct ParticipantWindow::State {
     wanted.key = [this](int key, int action, int modifiers) {
       take_key(event_of_key(key, action, modifiers));
     };
-    wanted.stir = [this] { exchange.stir(); };
+    wanted.wake = [this] { exchange.wake(); };
     console = std::make_unique<ConsoleWindow>(*options.console, wanted);
   }
 
@@ -398,7 +398,7 @@ struct ParticipantWindow::State {
   }
 
   /// The tone for the beginning of a plane.
-  void tell_of_begin() noexcept {
+  void mark_session_start() noexcept {
     constexpr Cue kBegins[] = {Cue::first_begins, Cue::second_begins, Cue::third_begins};
     if (interval) {
       cue(kBegins[std::clamp(interval->interval, 1, 3) - 1]);
@@ -408,7 +408,7 @@ struct ParticipantWindow::State {
   }
 
   /// The tone for its end, which a comfort stop has of its own.
-  void tell_of_end(const session::Step& next) noexcept {
+  void mark_session_end(const session::Step& next) noexcept {
     const auto* const notice = std::get_if<session::NoticeStep>(&next);
     const bool is_stopped = notice != nullptr && notice->what == session::NoticeStep::What::stopped;
     if (interval) {
@@ -556,7 +556,7 @@ std::optional<session::StepReply> ParticipantWindow::attend(const session::Step&
   State& s = *state_;
   s.exchange.check();
   s.between = std::holds_alternative<session::IntervalStep>(step);
-  if (s.exploring.exchange(false)) s.tell_of_end(step);
+  if (s.exploring.exchange(false)) s.mark_session_end(step);
   if (gone()) {
     std::this_thread::sleep_for(kAttention);
     return std::nullopt;
@@ -627,7 +627,7 @@ void ParticipantWindow::show_exploring(const PlaneGeometry& plane) {
   s.exploring = true;
   s.between = false;
   glfwPostEmptyEvent();
-  s.tell_of_begin();
+  s.mark_session_start();
 }
 
 void ParticipantWindow::exploring(device::ServoControl& servo) {

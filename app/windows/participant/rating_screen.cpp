@@ -18,9 +18,9 @@ constexpr int kTargetsOfScale = 100;
 // In units of the design.
 constexpr double kHintHeight = 30.0;
 constexpr double kBarHeight = 34.0;
-constexpr double kRowHeight = 92.0;       ///< of a scale, at most
-constexpr double kLeastRowHeight = 54.0;  ///< before the picture is made smaller
-constexpr double kRowsWidth = 1000.0;     ///< at most
+constexpr double kRowHeight = 92.0;     ///< of a scale, at most
+constexpr double kMinRowHeight = 54.0;  ///< before the picture is made smaller
+constexpr double kRowsWidth = 1000.0;   ///< at most
 constexpr double kGap = 14.0;
 constexpr double kTick = 12.0;
 constexpr double kNumberSide = 46.0;
@@ -124,7 +124,7 @@ RatingScreen::Arrangement RatingScreen::arranged(const Box& room, double unit) c
   const auto fit = [&](double width, double height) {
     return std::clamp(std::min(width / size.x, height / size.y), 0.01, 1.0);
   };
-  const double below = fit(room.width, room.height - bar - gap - count * kLeastRowHeight * unit);
+  const double below = fit(room.width, room.height - bar - gap - count * kMinRowHeight * unit);
   const double beside = fit(column, room.height - bar);
   at.shown = std::max(below, beside);
   const Vec2 drawn = at.shown * size;

@@ -77,7 +77,7 @@ WindowExchange::Work WindowExchange::wait_for_work(std::chrono::milliseconds lon
   return {screen_, surface_, std::exchange(events_, {}), picture_wanted_, ending_, came};
 }
 
-void WindowExchange::stir() {
+void WindowExchange::wake() {
   const std::lock_guard lock(mutex_);
   stirred_ = true;
   for_drawing_.notify_all();

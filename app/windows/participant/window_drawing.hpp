@@ -80,7 +80,7 @@ class WindowExchange {
   ///@}
 
   /// Wakes the drawing thread for something else that it draws.
-  void stir();
+  void wake();
   [[nodiscard]] WindowSurface surface() const;
   /// Waits until the newest screen is visible and has taken all events.
   /// \return false if that does not happen in time

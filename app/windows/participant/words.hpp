@@ -88,7 +88,7 @@ namespace touchtrial::app {
   TEXT(stopped_title)  /* after a comfort stop */ \
   TEXT(stopped_text)  /* while the experimenter decides */ \
   TEXT(stopped_text_alone)  /* where the participant decides, with a mouse */ \
-  TEXT(not_explored_title)  /* a trial comes again */ \
+  TEXT(not_explored_title)  /* a trial is repeated */ \
   TEXT(not_explored_text) \
   TEXT(hand_off_title)  /* from here on the device is only heard */ \
   TEXT(hand_off_text) \

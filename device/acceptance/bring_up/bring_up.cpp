@@ -19,14 +19,14 @@ constexpr double kRestRunS = 10.0;
 constexpr std::size_t kSettledTicks = 4000;  ///< of the rest: the hand has let go
 constexpr double kWayRunS = 7.0;
 constexpr std::size_t kEndTicks = 500;  ///< of a way, at its beginning and at its end
-constexpr double kLeastWayMm = 10.0;
+constexpr double kMinPathMm = 10.0;
 constexpr double kPushRunS = 2.5;
 constexpr double kPushReachMm = 30.0;
 constexpr double kRangeRunS = 20.0;
 constexpr double kSoftWall = 0.2;  ///< N/mm
 constexpr double kShareOfStiffest = 0.5;
-constexpr double kLeastSwingMm = 0.15;
-constexpr double kLeastContactS = 1.0;
+constexpr double kMinSwingMm = 0.15;
+constexpr double kMinContactS = 1.0;
 constexpr std::int64_t kWallMs = 2000;  ///< of its record
 
 /// Ends a bring-up that must not go on.
@@ -193,7 +193,7 @@ class Steps {
   StepOutcome rest() {
     if (!runs_.consents(
             {"rest",
-             Stance::lying,
+             Grip::lying,
              {},
              "Hold the handle in the middle, and let go of it slowly within 3 s of the start. "
              "Keep your hands close: it may sink or rise. The program sends no force for 10 s."})) {
@@ -229,7 +229,7 @@ class Steps {
     const std::string name(name_of(axis));
     while (true) {
       if (!runs_.consents(
-              {"ways", Stance::carrying, axis,
+              {"ways", Grip::carrying, axis,
                fmt::format("Hold the handle still in the middle. A second after the start carry "
                            "it straight {} by 3 to 5 cm, along a ruler if you have one, and "
                            "hold it there until 7 s are over. No force acts.",
@@ -245,7 +245,7 @@ class Steps {
           fmt::format("the readings moved by {:+.1f}, {:+.1f}, {:+.1f} mm (x right, y up, z "
                       "towards you)",
                       moved.x, moved.y, moved.z));
-      if (norm(moved) < kLeastWayMm) {
+      if (norm(moved) < kMinPathMm) {
         person_.tell("that is too little to tell; carry it further");
         continue;
       }
@@ -275,7 +275,7 @@ class Steps {
     const std::string name = signed_name(sign, axis);
     for (const double force_n : {kFirstPushN, kSecondPushN}) {
       if (!runs_.consents(
-              {"push", Stance::holding, axis,
+              {"push", Grip::holding, axis,
                fmt::format("Hold the handle lightly in the middle, so that it can give way. "
                            "Something pushes it with {:.1f} N for 2.5 s.",
                            force_n)})) {
@@ -316,7 +316,7 @@ class Steps {
   StepOutcome find_range() {
     if (!runs_.consents(
             {"range",
-             Stance::moving,
+             Grip::moving,
              {},
              "Move the handle slowly to its ends: left, right, down, up, away and towards you; "
              "no force acts for 20 s."})) {
@@ -327,7 +327,7 @@ class Steps {
     if (run.samples().empty()) return StepOutcome::failed;
     const Workspace reach = reach_of(run.samples());
     const Vec3 size = reach.greatest_mm - reach.least_mm;
-    if (std::min({size.x, size.y, size.z}) < kLeastWayMm) {
+    if (std::min({size.x, size.y, size.z}) < kMinPathMm) {
       return fail("the handle was moved by less than 1 cm along an axis");
     }
     note_extent(record_, "reach_mm ", reach);
@@ -358,17 +358,16 @@ class Steps {
             ? std::min(kSoftWall, kShareOfStiffest * info.max_stiffness_n_per_mm)
             : kSoftWall;
     if (!runs_.consents(
-            {"wall", Stance::pressing, DeviceAxis::y,
+            {"wall", Grip::pressing, DeviceAxis::y,
              fmt::format("Hold the handle lightly in the middle. 3 mm below it is a soft floor of "
                          "{:.2f} N/mm: press on it for 6 s, and do not lift the handle. It is "
                          "switched off if it begins to swing.",
                          stiffness_n_per_mm)})) {
       return StepOutcome::left_out;
     }
-    WallTrial run(stiffness_n_per_mm, kLeastSwingMm,
-                  acceptance_forces(info, bench_.limits()).hold_n);
+    WallTrial run(stiffness_n_per_mm, kMinSwingMm, acceptance_forces(info, bench_.limits()).hold_n);
     const ServoReport report = runs_.measure("wall", run);
-    if (!run.oscillated() && run.contact_s() < kLeastContactS) {
+    if (!run.oscillated() && run.contact_s() < kMinContactS) {
       return fail("nobody pressed on the floor");
     }
     record_.note("stiffness_n_per_mm", {stiffness_n_per_mm});

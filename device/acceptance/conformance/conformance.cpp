@@ -22,12 +22,12 @@ constexpr double kPatienceS = 5.0;
 constexpr double kPatienceOutsideTimeS = 300.0;
 /// Zeros must last.
 constexpr double kZeroLastsS = 0.050;
-constexpr double kGreatestSpeedMmS = 2000.0;
-constexpr double kGreatestPlaceMm = 10'000.0;
+constexpr double kMaxSpeedMmS = 2000.0;
+constexpr double kMaxPlaceMm = 10'000.0;
 constexpr double kWorkspaceMargin = 0.2;
 constexpr double kFastestRate = 10'000.0;
-constexpr double kGreatestStrength = 100.0;
-constexpr double kLeastRate = 500.0;
+constexpr double kMaxStrength = 100.0;
+constexpr double kMinRate = 500.0;
 
 std::string force_words(Vec3 force_n) {
   return fmt::format("({:.2f}, {:.2f}, {:.2f}) N", force_n.x, force_n.y, force_n.z);
@@ -39,16 +39,16 @@ std::string trouble_in(const DeviceInfo& info) {
     return value >= low && value <= high;
   };
   if (info.name.empty()) return "it has no name";
-  if (!(info.max_force_n > 0.0) || info.max_force_n > kGreatestStrength) {
+  if (!(info.max_force_n > 0.0) || info.max_force_n > kMaxStrength) {
     return fmt::format("its peak force is {:g} N", info.max_force_n);
   }
   if (!is_within(info.continuous_force_n, 0.0, info.max_force_n)) {
     return fmt::format("its continuous force is {:g} N", info.continuous_force_n);
   }
-  if (!is_within(info.max_rate_hz, kLeastRate, kFastestRate)) {
+  if (!is_within(info.max_rate_hz, kMinRate, kFastestRate)) {
     return fmt::format("its rate is {:g} Hz", info.max_rate_hz);
   }
-  if (!is_within(info.max_stiffness_n_per_mm, 0.0, kGreatestStrength)) {
+  if (!is_within(info.max_stiffness_n_per_mm, 0.0, kMaxStrength)) {
     return fmt::format("its largest stiffness is {:g} N/mm", info.max_stiffness_n_per_mm);
   }
   if (!info.workspace) return {};
@@ -369,8 +369,8 @@ class ConformanceRun {
   void look_at_values(const DeviceSample& sample, Watched& seen) const {
     const double place_mm = norm(sample.position_mm);
     const double speed_mm_s = norm(sample.velocity_mm_s);
-    if (!(place_mm <= kGreatestPlaceMm)) seen.bad_value = fmt::format("{:g} mm away", place_mm);
-    if (!(speed_mm_s <= kGreatestSpeedMmS)) seen.bad_value = fmt::format("{:g} mm/s", speed_mm_s);
+    if (!(place_mm <= kMaxPlaceMm)) seen.bad_value = fmt::format("{:g} mm away", place_mm);
+    if (!(speed_mm_s <= kMaxSpeedMmS)) seen.bad_value = fmt::format("{:g} mm/s", speed_mm_s);
     if (info_.workspace && !lies_in(*info_.workspace, sample.position_mm)) {
       seen.left_workspace = true;
       seen.outside_mm = sample.position_mm;
@@ -423,7 +423,7 @@ class ConformanceRun {
 
   void judge_times(const Watched& seen, double watched_s) {
     const double rate_hz = static_cast<double>(seen.last - seen.first) / watched_s;
-    const double needed_hz = std::max(kLeastRate, 0.5 * info_.max_rate_hz);
+    const double needed_hz = std::max(kMinRate, 0.5 * info_.max_rate_hz);
     const std::string rate = fmt::format("{:.0f} new readings a second", rate_hz);
     judge_time(Id::rate, rate_hz >= needed_hz, rate);
     judge_time(Id::gaps, seen.longest_gap_s <= ConformanceOptions::kLongestGapS + 1e-9,

@@ -18,15 +18,15 @@ constexpr double kLongestCallUs = 10'000.0;
 /// Of a period: the rest is for the device and for what the host does in between.
 constexpr double kShareOfCalls = 0.5;
 
-ConformanceId check_of(plugin::Trouble trouble) noexcept {
+ConformanceId check_of(plugin::PluginFault trouble) noexcept {
   switch (trouble) {
-    case plugin::Trouble::sequence_fell:
+    case plugin::PluginFault::sequence_fell:
       return ConformanceId::numbering;
-    case plugin::Trouble::wrote_past:
+    case plugin::PluginFault::wrote_past:
       return ConformanceId::memory;
-    case plugin::Trouble::not_finite:
-    case plugin::Trouble::absurd:
-    case plugin::Trouble::unknown_readiness:
+    case plugin::PluginFault::not_finite:
+    case plugin::PluginFault::absurd:
+    case plugin::PluginFault::unknown_readiness:
       return ConformanceId::values;
     default:
       return ConformanceId::staying;
@@ -36,8 +36,8 @@ ConformanceId check_of(plugin::Trouble trouble) noexcept {
 std::optional<ConformanceBlame> blame_of(const HapticDevice& device) {
   const auto* const plugin = dynamic_cast<const PluginDevice*>(&device);
   if (plugin == nullptr) return std::nullopt;
-  const plugin::Trouble trouble = plugin->trouble();
-  if (trouble == plugin::Trouble::none) return std::nullopt;
+  const plugin::PluginFault trouble = plugin->trouble();
+  if (trouble == plugin::PluginFault::none) return std::nullopt;
   return ConformanceBlame{check_of(trouble), plugin::words_for(trouble)};
 }
 
@@ -87,8 +87,9 @@ void measure_calls(const PluginSettings& settings, double rate_hz, ServoClock& c
     next += period;
     clock.wait_until(next);
     const ServoClock::Time begun = monotonic_now();
-    const plugin::Trouble trouble = device.sample().trouble;
-    if (trouble != plugin::Trouble::none || device.force({}) != plugin::Trouble::none) return;
+    const plugin::PluginFault trouble = device.sample().trouble;
+    if (trouble != plugin::PluginFault::none || device.force({}) != plugin::PluginFault::none)
+      return;
     durations.add(monotonic_now() - begun);
   }
 }

@@ -26,11 +26,11 @@ namespace dhd {
 namespace {
 
 /// A mass further from the device's own than this is a slip of the pen: 0.2 kg push 2 N.
-constexpr double kMostMassChangeKg = 0.2;
+constexpr double kMaxMassChangeKg = 0.2;
 /// While the vendor's library moves the arm by itself: 32 ms.
 constexpr unsigned char kSlowestWatchdog = 255;
 /// A weight of more than this share of the peak force is nonsense, where the model is not known.
-constexpr double kMostWeightShare = 0.5;
+constexpr double kMaxWeightShare = 0.5;
 
 /// The library sheds the weight within 250 ms of exchanges.
 constexpr int kPollsToShedWeight = 300;
@@ -103,7 +103,7 @@ class Session {
   /// \return the most that arms and end-effector can weigh, N; nothing if they are not carried
   [[nodiscard]] std::optional<double> most_weight_n(const DeviceInfo& info) const {
     if (!settings_.gravity_compensation || !has_switch()) return std::nullopt;
-    return model_ ? model_->max_weight_n : kMostWeightShare * info.max_force_n;
+    return model_ ? model_->max_weight_n : kMaxWeightShare * info.max_force_n;
   }
   /// \throws DeviceError if the settings' mass, or the device's own, cannot be true
   void check_mass(const DeviceInfo& info) const {
@@ -182,7 +182,7 @@ class Session {
     if (set_watchdog(value) >= 0) watchdog_ = before;
   }
 
-  /// \throws DeviceError if what the library says of a calibrated device is no weight
+  /// \throws DeviceError if the library reports an implausible weight of a calibrated device
   void check_weight(double most_n) const {
     if (!is_calibrated()) return;
     const std::optional<Vec3> weight_n = added_weight_n(api(), device_);
@@ -244,14 +244,14 @@ class Session {
   void check_change_of_mass() const {
     const double mass_kg = settings_.effector_mass_kg;
     const double change_kg = std::abs(mass_kg - own_mass_kg_.value_or(0.0));
-    if (mass_kg == 0.0 || change_kg <= kMostMassChangeKg) return;
+    if (mass_kg == 0.0 || change_kg <= kMaxMassChangeKg) return;
     const double push_n = std::round(10.0 * kStandardGravityMS2 * change_kg) / 10.0;
     throw DeviceError(
         "dhd: dhd.effector_mass_kg is " + number_text(mass_kg) + ", but the device " +
         (own_mass_kg_ ? "says " + number_text(*own_mass_kg_) : "does not say its own") +
         ", and the difference would push with " + number_text(push_n) +
-        " N; weigh the end-effector again: a change of more than " +
-        number_text(kMostMassChangeKg) + " kg is refused");
+        " N; weigh the end-effector again: a change of more than " + number_text(kMaxMassChangeKg) +
+        " kg is refused");
   }
 
   [[nodiscard]] std::optional<double> mass_of_device_kg() const {

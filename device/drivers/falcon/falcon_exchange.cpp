@@ -64,11 +64,11 @@ bool FalconExchange::jumps(Vec3 position_mm, Time now) noexcept {
   const double passed_s = std::chrono::duration<double>(now - pose_at_).count();
   const double way_mm = norm(position_mm - to_device_mm(pose_.native_m));
   // Replies less than 1 ms apart are judged as if they were 1 ms apart: they may come together.
-  if (way_mm <= kMostSpeedMmS * std::max(passed_s, 1e-3)) {
+  if (way_mm <= kMaxSpeedMmS * std::max(passed_s, 1e-3)) {
     jumps_ = 0;
     return false;
   }
-  if (++jumps_ <= kMostJumps) return true;
+  if (++jumps_ <= kMaxJumps) return true;
   jumps_ = 0;
   velocity_.forget();
   return false;

@@ -42,8 +42,8 @@ class FalconExchange final : public FtdiStreamSink {
   /// Exchanges in a row that ended with a reply still due, after which it will not come any more.
   static constexpr int kGivenUpAfter = 3;
   /// No hand moves faster: a reply that says so is damaged, unless the next ones agree with it.
-  static constexpr double kMostSpeedMmS = 5'000.0;
-  static constexpr int kMostJumps = 3;
+  static constexpr double kMaxSpeedMmS = 5'000.0;
+  static constexpr int kMaxJumps = 3;
 
   /// \param link  must outlive this
   FalconExchange(const FalconSettings& settings, DeviceLink& link) noexcept;

@@ -135,14 +135,14 @@ std::vector<std::uint8_t> read_falcon_firmware(const std::filesystem::path& file
         "device settings (docs/devices/falcon.md)");
   }
   std::ifstream stream(file, std::ios::binary);
-  Bytes image(kMostFirmwareBytes + 1);
+  Bytes image(kMaxFirmwareBytes + 1);
   stream.read(reinterpret_cast<char*>(image.data()), static_cast<std::streamsize>(image.size()));
   image.resize(static_cast<std::size_t>(stream.gcount()));
   if (stream.bad() || (image.empty() && !stream.is_open())) {
     throw FileError(one_line(file.string()) +
                     ": cannot be read; correct falcon.firmware in the device settings");
   }
-  if (image.size() < kLeastFirmwareBytes || image.size() > kMostFirmwareBytes) {
+  if (image.size() < kMinFirmwareBytes || image.size() > kMaxFirmwareBytes) {
     throw FileError(one_line(file.string()) +
                     ": is not a Falcon's firmware, which has 4096 to 16384 bytes; correct "
                     "falcon.firmware in the device settings");

@@ -12,8 +12,8 @@
 namespace touchtrial::device::falcon {
 
 /// Limits of an image's size: the known images have 7,914 and 8,492 bytes.
-constexpr std::size_t kLeastFirmwareBytes = 4'096;
-constexpr std::size_t kMostFirmwareBytes = 16'384;
+constexpr std::size_t kMinFirmwareBytes = 4'096;
+constexpr std::size_t kMaxFirmwareBytes = 16'384;
 
 /// \throws FileError with the remedy if no file is named, it cannot be read, or its size is not
 ///   that of an image

@@ -12,13 +12,13 @@ constexpr double kDegPerCount = 360.0 / 9728.0;
 constexpr double kDegAtCountZero = 32.9895;
 
 /// Beyond the angles of all positions in reach within 60 mm of the centre (-50.2 to 105.5 degrees).
-constexpr double kLeastTheta1Rad = -90.0 * kRadPerDeg;
-constexpr double kGreatestTheta1Rad = 120.0 * kRadPerDeg;
+constexpr double kMinTheta1Rad = -90.0 * kRadPerDeg;
+constexpr double kMaxTheta1Rad = 120.0 * kRadPerDeg;
 
 /// Limit for the determinant of the three pulls, which have length 1: -0.58 at the centre, nowhere
 /// nearer to zero than -0.11 within a cube of 80 mm. It is zero where the legs cannot hold the
 /// hand, and positive beyond, where the legs would have to pass through one another.
-constexpr double kLeastDeterminant = -0.02;
+constexpr double kMinDeterminant = -0.02;
 
 Vec3 cross(Vec3 a, Vec3 b) noexcept {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
@@ -77,7 +77,7 @@ bool is_falcon(const Stand& stand) noexcept {
 
 bool are_possible(const PerLeg& theta1_rad) noexcept {
   return std::all_of(theta1_rad.begin(), theta1_rad.end(), [](double theta1) {
-    return theta1 >= kLeastTheta1Rad && theta1 <= kGreatestTheta1Rad;
+    return theta1 >= kMinTheta1Rad && theta1 <= kMaxTheta1Rad;
   });
 }
 
@@ -94,7 +94,7 @@ PerLeg theta1_of_counts(const EncoderCounts& counts) noexcept {
 std::optional<PerLeg> torques_nm(const LegJacobian& jacobian, Vec3 force_n) noexcept {
   const auto& pull = jacobian.pull;
   const double det = determinant(pull);
-  if (!(det <= kLeastDeterminant)) return std::nullopt;
+  if (!(det <= kMinDeterminant)) return std::nullopt;
   // The legs' forces along their pulls add up to the force on the hand.
   const PerLeg torques = {jacobian.lever_m[0] * dot(force_n, cross(pull[1], pull[2])) / det,
                           jacobian.lever_m[1] * dot(force_n, cross(pull[2], pull[0])) / det,
@@ -111,7 +111,7 @@ Pose forward_kinematics(const PerLeg& theta1_rad) noexcept {
   if (!position_m) return {};
   const Stand stand = stand_at(*position_m, theta1_rad);
   if (!is_falcon(stand)) return {};
-  const bool holds = determinant(stand.jacobian.pull) <= kLeastDeterminant;
+  const bool holds = determinant(stand.jacobian.pull) <= kMinDeterminant;
   return {holds ? PoseStatus::ok : PoseStatus::singular, *position_m, stand.jacobian};
 }
 

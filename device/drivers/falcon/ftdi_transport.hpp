@@ -67,10 +67,10 @@ class FtdiTransport {
   virtual void stop_stream() noexcept = 0;
   /// Sends without waiting, at most kUsbPacketSize bytes. If the device has not taken the packet
   /// before it yet, that one is cancelled and these bytes go in its place, so that no old force
-  /// waits in front of a new one. After kMostStuck such packets in a row the link is lost.
+  /// waits in front of a new one. After kMaxStuck such packets in a row the link is lost.
   /// \return whether the bytes were taken
   [[nodiscard]] virtual bool post(std::span<const std::uint8_t> bytes) noexcept = 0;
-  static constexpr int kMostStuck = 5;
+  static constexpr int kMaxStuck = 5;
   /// Waits until bytes arrive, at most this long, and hands them to the sink.
   virtual void serve(std::chrono::microseconds at_most) noexcept = 0;
   /// \return whether the device is unplugged or unusable. It stays so: open the device anew.

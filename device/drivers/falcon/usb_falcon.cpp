@@ -17,7 +17,7 @@ constexpr std::uint8_t kVendorRequest = 0x40;
 constexpr unsigned kControlTimeoutMs = 1000;
 
 /// As many failed transfers in a row may come from a bad cable; after more the link is lost.
-constexpr int kMostFailures = 20;
+constexpr int kMaxFailures = 20;
 /// The time for cancelled transfers to come back.
 constexpr std::chrono::seconds kPatience{2};
 
@@ -145,7 +145,7 @@ void UsbFtdi::stop_stream() noexcept {
   if (sending_) libusb_cancel_transfer(send_.get());
   // A transfer belongs to libusb until its callback has run, even if the device is gone.
   const auto give_up = std::chrono::steady_clock::now() + kPatience;
-  while ((reading_ || sending_) && deaf_ <= kMostFailures &&
+  while ((reading_ || sending_) && deaf_ <= kMaxFailures &&
          std::chrono::steady_clock::now() < give_up) {
     serve(std::chrono::milliseconds(100));
   }
@@ -167,7 +167,7 @@ bool UsbFtdi::post(std::span<const std::uint8_t> bytes) noexcept {
   std::copy(bytes.begin(), bytes.end(), next_.begin());
   next_size_ = bytes.size();
   if (!sending_) return submit_next();
-  if (++stuck_ >= kMostStuck) lost_ = true;
+  if (++stuck_ >= kMaxStuck) lost_ = true;
   // It comes back cancelled, or sent after all; then the next one is submitted.
   libusb_cancel_transfer(send_.get());
   return !lost_;
@@ -192,12 +192,12 @@ void UsbFtdi::serve(std::chrono::microseconds at_most) noexcept {
   const int error = libusb_handle_events_timeout_completed(context_.get(), &limit, nullptr);
   if (error == LIBUSB_ERROR_INTERRUPTED) return;
   deaf_ = error == 0 ? 0 : deaf_ + 1;
-  if (deaf_ > kMostFailures) lost_ = true;
+  if (deaf_ > kMaxFailures) lost_ = true;
 }
 
 void UsbFtdi::note(libusb_transfer_status status) noexcept {
   failures_ = status == LIBUSB_TRANSFER_COMPLETED ? 0 : failures_ + 1;
-  if (status == LIBUSB_TRANSFER_NO_DEVICE || failures_ > kMostFailures) lost_ = true;
+  if (status == LIBUSB_TRANSFER_NO_DEVICE || failures_ > kMaxFailures) lost_ = true;
 }
 
 void LIBUSB_CALL UsbFtdi::on_read(libusb_transfer* transfer) {

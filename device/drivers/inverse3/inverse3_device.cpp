@@ -387,7 +387,7 @@ void Inverse3Device::exchange() {
     case LinkOutcome::closed:
       return link_.fail(DeviceFault::link_lost);
   }
-  for (const std::string& event : service_->take_events()) heed(event_in(event));
+  for (const std::string& event : service_->take_events()) handle_event(event_in(event));
   if (service_->events_ended()) return link_.fail(DeviceFault::link_lost);
   const ServiceReport report = report_in(service_->answer());
   const DeviceReport* const device = find_device(report, id_);
@@ -413,7 +413,7 @@ void Inverse3Device::note_status(const ArmStatus& status) noexcept {
   readiness_.store(readiness_of(status), std::memory_order_release);
 }
 
-void Inverse3Device::heed(const ServiceEvent& event) noexcept {
+void Inverse3Device::handle_event(const ServiceEvent& event) noexcept {
   const bool of_other_session = event.category == "session" && event.session_id && session_id_ &&
                                 *event.session_id != *session_id_;
   if (of_other_session) return link_.fail(DeviceFault::driver);

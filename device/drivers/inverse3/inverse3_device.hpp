@@ -70,7 +70,7 @@ class Inverse3Device final : public LinkedDevice {
   void exchange();
   void take(const DeviceReport& report, std::uint32_t buttons) noexcept;
   void note_status(const ArmStatus& status) noexcept;
-  void heed(const ServiceEvent& event) noexcept;
+  void handle_event(const ServiceEvent& event) noexcept;
   void say_farewell() noexcept;
   [[nodiscard]] Vec3 within_reach(Vec3 force_n) const noexcept;
 

@@ -23,7 +23,7 @@ using boost::system::error_code;
 using Tcp = asio::ip::tcp;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kMostEvents = 256;
+constexpr std::size_t kMaxEvents = 256;
 
 Clock::time_point deadline_in(std::chrono::nanoseconds patience) {
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(patience);
@@ -86,7 +86,7 @@ class Channel {
   Channel(asio::io_context& context, const ServiceAddress& where, Clock::time_point deadline)
       : context_(context), stream_(context) {
     connect(context, stream_.next_layer(), where, deadline);
-    stream_.read_message_max(kLargestMessage);
+    stream_.read_message_max(kMaxMessage);
     const error_code error = wait(deadline, [&](auto handler) {
       stream_.async_handshake(where.text(), "/", std::move(handler));
     });
@@ -131,7 +131,7 @@ class Channel {
       newest_ = beast::buffers_to_string(buffer_.data());
       buffer_.consume(buffer_.size());
       ++received_;
-      if (keeps_ && kept_.size() < kMostEvents) kept_.push_back(newest_);
+      if (keeps_ && kept_.size() < kMaxEvents) kept_.push_back(newest_);
       read();
     });
   }
@@ -174,7 +174,7 @@ HttpAnswer ask_service(const ServiceAddress& service, const std::string& path,
       [&](auto handler) { http::async_write(socket, request, std::move(handler)); }, give_up);
   beast::flat_buffer buffer;
   http::response_parser<http::string_body> parser;
-  parser.body_limit(kLargestMessage);
+  parser.body_limit(kMaxMessage);
   if (!error) {
     error = await(
         context, deadline,

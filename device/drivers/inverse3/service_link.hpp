@@ -12,7 +12,7 @@
 namespace touchtrial::device::inverse3 {
 
 /// The longest answer that is read, bytes; a service with many devices says some tens of thousands.
-inline constexpr std::size_t kLargestMessage = 1U << 20U;
+inline constexpr std::size_t kMaxMessage = 1U << 20U;
 
 /// Where a service listens.
 struct ServiceAddress {

@@ -11,7 +11,7 @@ namespace touchtrial::device::hd {
 namespace {
 
 /// More errors than any stack holds, so that a library that never runs out of them cannot hang us.
-constexpr int kMostErrors = 256;
+constexpr int kMaxErrors = 256;
 
 DeviceFault fault_of(std::uint32_t code) noexcept {
   switch (code) {
@@ -81,7 +81,7 @@ Api load_api(const DynamicLibrary& library) {
 
 Errors drain_errors(const Api& api) noexcept {
   Errors errors;
-  for (int i = 0; i < kMostErrors; ++i) {
+  for (int i = 0; i < kMaxErrors; ++i) {
     const std::uint32_t code = api.get_error().code;
     if (code == 0) break;
     errors.oldest = code;

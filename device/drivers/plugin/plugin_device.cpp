@@ -84,7 +84,7 @@ struct PluginDevice::Running {
   void take_sample() noexcept {
     const plugin::Reading reading = device.sample();
     note(reading.trouble);
-    if (reading.trouble != plugin::Trouble::none) return;
+    if (reading.trouble != plugin::PluginFault::none) return;
     readiness.store(reading.readiness, std::memory_order_release);
     if (reading.is_new) link.publish(reading.sample);
   }
@@ -95,9 +95,9 @@ struct PluginDevice::Running {
     note(device.enable(on));
   }
 
-  void note(plugin::Trouble found) noexcept {
-    if (found == plugin::Trouble::none) return;
-    auto none = plugin::Trouble::none;
+  void note(plugin::PluginFault found) noexcept {
+    if (found == plugin::PluginFault::none) return;
+    auto none = plugin::PluginFault::none;
     trouble.compare_exchange_strong(none, found, std::memory_order_acq_rel);
     link.fail(plugin::fault_of(found));
   }
@@ -111,7 +111,7 @@ struct PluginDevice::Running {
   DeviceLink link;
   bool enabled = false;  ///< device's thread alone
   std::atomic<DeviceReadiness> readiness{DeviceReadiness::needs_calibration};
-  std::atomic<plugin::Trouble> trouble{plugin::Trouble::none};
+  std::atomic<plugin::PluginFault> trouble{plugin::PluginFault::none};
   std::atomic<bool> closing{false};
 };
 
@@ -149,7 +149,7 @@ DeviceReadiness PluginDevice::readiness() const noexcept {
   return running_->readiness.load(std::memory_order_acquire);
 }
 
-plugin::Trouble PluginDevice::trouble() const noexcept {
+plugin::PluginFault PluginDevice::trouble() const noexcept {
   return running_->trouble.load(std::memory_order_acquire);
 }
 

@@ -13,7 +13,7 @@
 namespace touchtrial::device {
 
 namespace plugin {
-enum class Trouble : std::uint8_t;
+enum class PluginFault : std::uint8_t;
 }
 
 struct PluginOptions {
@@ -39,7 +39,7 @@ class PluginDevice final : public LinkedDevice {
   [[nodiscard]] DeviceInfo info() const override;
   [[nodiscard]] DeviceReadiness readiness() const noexcept override;
   /// What led to the first fault. Any thread.
-  [[nodiscard]] plugin::Trouble trouble() const noexcept;
+  [[nodiscard]] plugin::PluginFault trouble() const noexcept;
 
  private:
   [[nodiscard]] DeviceLink& link() const noexcept override;

@@ -15,12 +15,12 @@ namespace touchtrial::device::plugin {
 namespace {
 
 constexpr std::size_t kLongestName = 32;
-constexpr double kGreatestForceN = 100.0;
-constexpr double kGreatestStiffnessNPerMm = 100.0;
+constexpr double kMaxForceN = 100.0;
+constexpr double kMaxStiffnessNPerMm = 100.0;
 constexpr double kSlowestRateHz = 500.0;
 constexpr double kFastestRateHz = 10'000.0;
-constexpr double kLeastSideMm = 1.0;
-constexpr double kGreatestSideMm = 2000.0;
+constexpr double kMinSideMm = 1.0;
+constexpr double kMaxSideMm = 2000.0;
 /// No desk holds a device that reaches so far, and no hand is so fast.
 constexpr double kAbsurdMm = 10'000.0;
 constexpr double kAbsurdMmS = 1e6;
@@ -118,10 +118,9 @@ Workspace workspace_in(const touchtrial_device_description& told, const Descript
   const auto& least = told.workspace_least_mm;
   const auto& greatest = told.workspace_greatest_mm;
   for (int axis = 0; axis < 3; ++axis) {
-    (void)judge.in_range("workspace_least_mm", least[axis], -kGreatestSideMm, kGreatestSideMm,
-                         true);
-    (void)judge.in_range("a side of the workspace in mm", greatest[axis] - least[axis],
-                         kLeastSideMm, kGreatestSideMm, true);
+    (void)judge.in_range("workspace_least_mm", least[axis], -kMaxSideMm, kMaxSideMm, true);
+    (void)judge.in_range("a side of the workspace in mm", greatest[axis] - least[axis], kMinSideMm,
+                         kMaxSideMm, true);
   }
   if (told.shape > TOUCHTRIAL_DEVICE_ELLIPSOID) {
     judge.refuse("shape is " + std::to_string(told.shape) + ", must be 0 or 1");
@@ -131,20 +130,20 @@ Workspace workspace_in(const touchtrial_device_description& told, const Descript
           told.shape == TOUCHTRIAL_DEVICE_BOX ? WorkspaceShape::box : WorkspaceShape::ellipsoid};
 }
 
-Trouble trouble_of_code(std::int32_t code) noexcept {
+PluginFault trouble_of_code(std::int32_t code) noexcept {
   switch (code) {
     case TOUCHTRIAL_DEVICE_OK:
-      return Trouble::none;
+      return PluginFault::none;
     case TOUCHTRIAL_DEVICE_LOST:
-      return Trouble::lost;
+      return PluginFault::lost;
     case TOUCHTRIAL_DEVICE_BAD_DATA:
-      return Trouble::bad_data;
+      return PluginFault::bad_data;
     case TOUCHTRIAL_DEVICE_WARM_MOTORS:
-      return Trouble::warm_motors;
+      return PluginFault::warm_motors;
     case TOUCHTRIAL_DEVICE_LIMIT_PASSED:
-      return Trouble::limit_passed;
+      return PluginFault::limit_passed;
     default:
-      return Trouble::failed;
+      return PluginFault::failed;
   }
 }
 
@@ -167,14 +166,14 @@ bool is_absurd(Vec3 v, double limit) noexcept {
   return std::abs(v.x) > limit || std::abs(v.y) > limit || std::abs(v.z) > limit;
 }
 
-Trouble trouble_with_motion(const DeviceSample& sample) noexcept {
+PluginFault trouble_with_motion(const DeviceSample& sample) noexcept {
   if (!is_finite(sample.position_mm) || !is_finite(sample.velocity_mm_s)) {
-    return Trouble::not_finite;
+    return PluginFault::not_finite;
   }
   if (is_absurd(sample.position_mm, kAbsurdMm) || is_absurd(sample.velocity_mm_s, kAbsurdMmS)) {
-    return Trouble::absurd;
+    return PluginFault::absurd;
   }
-  return Trouble::none;
+  return PluginFault::none;
 }
 
 }  // namespace
@@ -196,26 +195,26 @@ std::optional<Vec3> Library::observed_force_n() const noexcept {
   return is_finite(force_n) ? std::optional(force_n) : std::nullopt;
 }
 
-DeviceFault fault_of(Trouble trouble) noexcept {
+DeviceFault fault_of(PluginFault trouble) noexcept {
   switch (trouble) {
-    case Trouble::none:
+    case PluginFault::none:
       return DeviceFault::none;
-    case Trouble::lost:
+    case PluginFault::lost:
       return DeviceFault::link_lost;
-    case Trouble::warm_motors:
+    case PluginFault::warm_motors:
       return DeviceFault::warm_motors;
-    case Trouble::limit_passed:
+    case PluginFault::limit_passed:
       return DeviceFault::limit_passed;
-    case Trouble::failed:
+    case PluginFault::failed:
       return DeviceFault::driver;
     default:
       return DeviceFault::bad_data;
   }
 }
 
-const char* words_for(Trouble trouble) noexcept {
-  using enum Trouble;
-  static constexpr auto kNames = std::to_array<Named<Trouble>>(
+const char* words_for(PluginFault trouble) noexcept {
+  using enum PluginFault;
+  static constexpr auto kNames = std::to_array<Named<PluginFault>>(
       {{"nothing is wrong", none},
        {"returned LOST", lost},
        {"returned BAD_DATA", bad_data},
@@ -250,7 +249,7 @@ DeviceInfo OpenDevice::info() const {
   const std::int32_t code = library_.api().describe(device_, &guarded.value);
   const touchtrial_device_description& told = guarded.value;
   if (code != TOUCHTRIAL_DEVICE_OK) judge.refuse("it returned " + std::to_string(code));
-  if (!guarded.is_whole()) judge.refuse(words_for(Trouble::wrote_past));
+  if (!guarded.is_whole()) judge.refuse(words_for(PluginFault::wrote_past));
   DeviceInfo info;
   info.name = "plugin";
   info.serial = text_in(told.serial);
@@ -258,13 +257,13 @@ DeviceInfo OpenDevice::info() const {
   const std::string model = text_in(told.model);
   info.model = library_.name() + (model.empty() ? "" : ": " + model);
   info.firmware = text_in(told.firmware);
-  info.max_force_n = judge.in_range("max_force_n", told.max_force_n, 0.0, kGreatestForceN, false);
+  info.max_force_n = judge.in_range("max_force_n", told.max_force_n, 0.0, kMaxForceN, false);
   info.continuous_force_n =
       judge.in_range("continuous_force_n", told.continuous_force_n, 0.0, told.max_force_n, true);
   info.max_rate_hz =
       judge.in_range("max_rate_hz", told.max_rate_hz, kSlowestRateHz, kFastestRateHz, true);
   info.max_stiffness_n_per_mm = judge.in_range(
-      "max_stiffness_n_per_mm", told.max_stiffness_n_per_mm, 0.0, kGreatestStiffnessNPerMm, true);
+      "max_stiffness_n_per_mm", told.max_stiffness_n_per_mm, 0.0, kMaxStiffnessNPerMm, true);
   info.workspace = workspace_in(told, judge);
   info.has_encoders = true;
   return info;
@@ -274,12 +273,12 @@ Reading OpenDevice::sample() noexcept {
   Guarded<touchtrial_device_sample> guarded;
   Reading reading;
   reading.trouble = trouble_of_code(library_.api().sample(device_, &guarded.value));
-  if (!guarded.is_whole()) reading.trouble = Trouble::wrote_past;
-  if (reading.trouble != Trouble::none) return reading;
+  if (!guarded.is_whole()) reading.trouble = PluginFault::wrote_past;
+  if (reading.trouble != PluginFault::none) return reading;
   const touchtrial_device_sample& told = guarded.value;
   const std::optional<DeviceReadiness> readiness = readiness_in(told.readiness);
   if (!readiness) {
-    reading.trouble = Trouble::unknown_readiness;
+    reading.trouble = PluginFault::unknown_readiness;
     return reading;
   }
   reading.readiness = *readiness;
@@ -289,20 +288,20 @@ Reading OpenDevice::sample() noexcept {
   sample.buttons = told.buttons;
   sample.ready = *readiness == DeviceReadiness::ready;
   reading.trouble =
-      told.sequence < last_sequence_ ? Trouble::sequence_fell : trouble_with_motion(sample);
+      told.sequence < last_sequence_ ? PluginFault::sequence_fell : trouble_with_motion(sample);
   reading.is_new = told.sequence > last_sequence_;
   last_sequence_ = told.sequence;
   return reading;
 }
 
-Trouble OpenDevice::force(Vec3 force_n) noexcept {
+PluginFault OpenDevice::force(Vec3 force_n) noexcept {
   const std::array<double, 3> force = {force_n.x, force_n.y, force_n.z};
   return trouble_of_code(library_.api().force(device_, force.data()));
 }
 
-Trouble OpenDevice::enable(bool on) noexcept {
+PluginFault OpenDevice::enable(bool on) noexcept {
   const auto enable = library_.api().enable;
-  return enable == nullptr ? Trouble::none : trouble_of_code(enable(device_, on ? 1 : 0));
+  return enable == nullptr ? PluginFault::none : trouble_of_code(enable(device_, on ? 1 : 0));
 }
 
 }  // namespace touchtrial::device::plugin

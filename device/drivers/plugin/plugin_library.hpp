@@ -38,7 +38,7 @@ class Library {
 };
 
 /// What the host found wrong in a call.
-enum class Trouble : std::uint8_t {
+enum class PluginFault : std::uint8_t {
   none,
   lost,
   bad_data,
@@ -51,12 +51,12 @@ enum class Trouble : std::uint8_t {
   unknown_readiness,  ///< a number that the interface does not have
   wrote_past,         ///< wrote beyond the size of a structure
 };
-[[nodiscard]] DeviceFault fault_of(Trouble trouble) noexcept;
+[[nodiscard]] DeviceFault fault_of(PluginFault trouble) noexcept;
 /// For a person: "gave a position or velocity that is not a number".
-[[nodiscard]] const char* words_for(Trouble trouble) noexcept;
+[[nodiscard]] const char* words_for(PluginFault trouble) noexcept;
 
 struct Reading {
-  Trouble trouble = Trouble::none;
+  PluginFault trouble = PluginFault::none;
   bool is_new = false;  ///< since the last one
   DeviceSample sample;  ///< without a sequence of ours
   DeviceReadiness readiness = DeviceReadiness::needs_calibration;
@@ -79,8 +79,8 @@ class OpenDevice {
   /// \name For the device's thread: no heap, lock or exception on our side
   ///@{
   [[nodiscard]] Reading sample() noexcept;
-  [[nodiscard]] Trouble force(Vec3 force_n) noexcept;
-  [[nodiscard]] Trouble enable(bool on) noexcept;
+  [[nodiscard]] PluginFault force(Vec3 force_n) noexcept;
+  [[nodiscard]] PluginFault enable(bool on) noexcept;
   ///@}
 
  private:

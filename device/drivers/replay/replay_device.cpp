@@ -16,7 +16,7 @@
 namespace touchtrial::device {
 namespace {
 
-constexpr std::uintmax_t kLargestFile = std::uintmax_t{512} << 20U;
+constexpr std::uintmax_t kMaxFile = std::uintmax_t{512} << 20U;
 constexpr double kFarthestMm = 10'000.0;
 constexpr double kSlowestHz = 10.0;
 constexpr double kFastestHz = 20'000.0;
@@ -150,8 +150,8 @@ std::vector<Vec3> fill_ticks(const std::vector<TimedPosition>& rows, double step
     const Vec3 way = rows[i].position_mm - from;
     const double steps = std::round((rows[i].time_s - rows[i - 1].time_s) / step_s);
     if (steps < 1.0) refuse(name, "some rows are much closer in time than the others");
-    if (steps + static_cast<double>(positions.size()) > RecordedMotion::kMostTicks) {
-      refuse(name, "is longer than " + std::to_string(RecordedMotion::kMostTicks) + " ticks");
+    if (steps + static_cast<double>(positions.size()) > RecordedMotion::kMaxTicks) {
+      refuse(name, "is longer than " + std::to_string(RecordedMotion::kMaxTicks) + " ticks");
     }
     for (double k = 1.0; k < steps; ++k) positions.push_back(from + (k / steps) * way);
     positions.push_back(rows[i].position_mm);
@@ -200,14 +200,13 @@ std::unique_ptr<HapticDevice> open_replay(const DeviceSettings& settings) {
 
 RecordedMotion::RecordedMotion(std::vector<Vec3> positions_mm, double rate_hz)
     : positions_mm_(std::move(positions_mm)), rate_hz_(rate_hz) {
-  if (positions_mm_.empty() || ticks() > kMostTicks || !(rate_hz > 0.0) ||
-      !std::isfinite(rate_hz)) {
+  if (positions_mm_.empty() || ticks() > kMaxTicks || !(rate_hz > 0.0) || !std::isfinite(rate_hz)) {
     throw std::invalid_argument("RecordedMotion: no positions, too many, or a rate not above 0");
   }
 }
 
 RecordedMotion read_motion_csv(const std::filesystem::path& file) {
-  const Bytes bytes = read_file(file, kLargestFile);
+  const Bytes bytes = read_file(file, kMaxFile);
   const std::string name = file.string();
   CsvRows rows({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   const std::vector<TimedPosition> positions = read_positions(rows, name);

@@ -16,7 +16,7 @@ namespace touchtrial::device {
 class RecordedMotion {
  public:
   /// More ticks than any trial has; a longer motion is not accepted.
-  static constexpr std::int64_t kMostTicks = 4'000'000;
+  static constexpr std::int64_t kMaxTicks = 4'000'000;
 
   /// \param rate_hz  > 0, finite
   /// \throws std::invalid_argument if it is not, or there are no positions or too many
@@ -42,7 +42,7 @@ class RecordedMotion {
 /// rate; where rows are missing, the hand moves straight on to the next one.
 /// \throws FileError with the line if the file, a column or a number is missing, a time does not
 ///   increase, a position is beyond 10 m, the rate is outside 10 to 20,000 Hz, or there are more
-///   than kMostTicks
+///   than kMaxTicks
 [[nodiscard]] RecordedMotion read_motion_csv(const std::filesystem::path& file);
 
 /// The driver "replay". Each `write` is one tick, so it works in virtual time as in real time; run

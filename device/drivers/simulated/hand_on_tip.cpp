@@ -51,7 +51,7 @@ HandOnTip::HandOnTip(const HandOptions& options, const DeviceModel& device, doub
       tick_s_(tick_s),
       is_grip_(options.model == HandKind::stylus_grip),
       is_held_(device.zero_order_hold || device.structure.stiffness_n_per_mm > 0.0),
-      tip_kg_(is_grip_ ? std::max(0.0, DeviceDynamics::kLeastMassKg - device.mass_kg)
+      tip_kg_(is_grip_ ? std::max(0.0, DeviceDynamics::kMinMassKg - device.mass_kg)
                        : options_.mass_kg) {
   if (!is_grip_) return;
   for (std::size_t i = 0; i < axes_.size(); ++i) axes_[i] = grip_axis(i);

@@ -55,7 +55,7 @@ class HandOnTip {
  public:
   /// At rest in the origin.
   /// \param device  that it holds. The grip has no mass at the tip, so a device of less than
-  ///   DeviceDynamics::kLeastMassKg is given the rest of that.
+  ///   DeviceDynamics::kMinMassKg is given the rest of that.
   /// \param tick_s  as of DeviceDynamics
   /// \throws std::invalid_argument if an option is out of range
   HandOnTip(const HandOptions& options, const DeviceModel& device, double tick_s);

@@ -70,7 +70,7 @@ std::vector<DataCell> row_of(const Outcomes& outcomes, const TrialOutcome& trial
 }
 
 /// From this many images on, the script takes them as a sample of others.
-constexpr std::size_t kFewestRandomImages = 10;
+constexpr std::size_t kMinRandomImages = 10;
 
 std::size_t images_of(const Outcomes& outcomes) {
   std::size_t images = 0;
@@ -80,14 +80,14 @@ std::size_t images_of(const Outcomes& outcomes) {
 
 std::string what_of_images(const Outcomes& outcomes) {
   const std::size_t images = images_of(outcomes);
-  if (images >= kFewestRandomImages) {
+  if (images >= kMinRandomImages) {
     return "Images are random effects of the model, which speaks of images of which these are a "
            "sample; the t does not.";
   }
   return fmt::format(
       "With fewer than {} images, images are fixed effects: the results hold for the {} of this "
       "study, and nothing can be said of others.",
-      kFewestRandomImages, images);
+      kMinRandomImages, images);
 }
 
 std::string notes(const Outcomes& outcomes) {
@@ -142,7 +142,7 @@ std::string mixed_model_formula(const Outcomes& outcomes) {
   const std::size_t images = images_of(outcomes);
   const std::string inner = several ? "1 + method" : "1";
   const std::string random = fmt::format("({} | participant)", inner);
-  if (images >= kFewestRandomImages) {
+  if (images >= kMinRandomImages) {
     return fmt::format("correct ~ {}{} + ({} | image)", several ? "method + period + " : "", random,
                        inner);
   }

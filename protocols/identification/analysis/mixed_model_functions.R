@@ -25,7 +25,9 @@ prepared <- function(trials, methods) {
   trials
 }
 
+# People who do not differ have no t and no interval.
 row_of <- function(statistic, first, second, estimate, error, df, null = 0) {
+  if (error < 1e-12) error <- NA
   t <- (estimate - null) / error
   reach <- qt(0.975, df) * error
   data.frame(statistic, first, second, estimate, low = estimate - reach, high = estimate + reach, t,
@@ -217,6 +219,10 @@ of_trials <- function(trials) {
 as_p <- function(p) if (p < 1e-4) "p < 0.0001" else sprintf("p = %.3g", p)
 
 in_words <- function(row) {
+  if (is.na(row$t)) {
+    return(sprintf("  %s against %s: people do not differ, so that there is no t\n", row$first,
+                   row$second))
+  }
   adjusted <- !is.null(row$p_holm) && row$p_holm != row$p
   holm <- if (adjusted) paste0(", ", as_p(row$p_holm), " after Holm") else ""
   test <- sprintf("t(%g) = %.2f, %s%s", row$df, row$t, as_p(row$p), holm)

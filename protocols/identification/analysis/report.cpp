@@ -24,8 +24,8 @@ using choices::Person;
 using CountedTrials = std::vector<std::vector<Person>>;
 
 constexpr int kNullDeals = 500;
-constexpr int kFewestNullDeals = 50;
-constexpr int kMostNullTrials = 1'000'000;
+constexpr int kMinNullDeals = 50;
+constexpr int kMaxNullTrials = 1'000'000;
 
 Choice choice_of(const TrialOutcome& trial) {
   return {trial.stimulus.class_index, trial.response};
@@ -49,7 +49,7 @@ OwnTrials of_class(const OwnTrials& trials, int class_index) {
 /// The number of deals for the null mean. With many trials the mean varies little from deal to deal
 /// and each deal takes longer, so fewer suffice.
 int null_deals(int trials) {
-  return std::clamp(kMostNullTrials / std::max(1, trials), kFewestNullDeals, kNullDeals);
+  return std::clamp(kMaxNullTrials / std::max(1, trials), kMinNullDeals, kNullDeals);
 }
 
 /// The participants' own accuracies with a class.
@@ -130,7 +130,7 @@ void add_participants(int classes, const std::vector<Person>& people, int method
   report.mean = participant_mean(shares);
   report.bootstrap = bootstrap_mean(shares, static_cast<std::uint64_t>(method));
   report.spread = spread_of(accuracies);
-  if (accuracies.size() < kFewestForBootstrap) return;
+  if (accuracies.size() < kMinForBootstrap) return;
   const auto pooled = cluster_bootstrap(accuracies, static_cast<std::uint64_t>(method));
   if (pooled && pooled->low < pooled->high) {
     report.d_prime_over_participants = d_prime(report.overall, classes, *pooled);
@@ -139,11 +139,11 @@ void add_participants(int classes, const std::vector<Person>& people, int method
 
 /// Adds the p of the fit by drawn tables: fewer of them where each has many trials.
 void judge(ChoiceModel& model, int trials, int method) {
-  constexpr int kMostDrawnTrials = 5'000'000;
-  constexpr int kFewestDraws = 199;
-  constexpr int kMostDraws = 999;
+  constexpr int kMaxDrawnTrials = 5'000'000;
+  constexpr int kMinDraws = 199;
+  constexpr int kMaxDraws = 999;
   if (!model.converged) return;
-  model.draws = std::clamp(kMostDrawnTrials / std::max(1, trials), kFewestDraws, kMostDraws);
+  model.draws = std::clamp(kMaxDrawnTrials / std::max(1, trials), kMinDraws, kMaxDraws);
   model.drawn_p = choice_model_p(model, model.draws, static_cast<std::uint64_t>(method));
 }
 
@@ -182,7 +182,7 @@ MethodReport method_report(const Outcomes& outcomes, int method,
                  [&] {
                    KnownMatches known;
                    report.chance =
-                       choices::chance_of(outcomes, method, choices::kMostChanceDeals, &known);
+                       choices::chance_of(outcomes, method, choices::kMaxChanceDeals, &known);
                    report.prevalence = choices::own_prevalence(outcomes, method, &known);
                  },
                  [&] {
@@ -273,7 +273,7 @@ MethodPair method_pair(int classes, const CountedTrials& counted, int first, int
   pair.second = second;
   pair.overall = compared(proportions);
   pair.odds_ratio = mantel_haenszel(proportions);
-  if (pair.odds_ratio && proportions.size() >= kFewestForBootstrap) {
+  if (pair.odds_ratio && proportions.size() >= kMinForBootstrap) {
     pair.odds_ratio->bootstrap = odds_ratio_bootstrap(proportions);
   }
   pair.mcnemar_mid_p = mcnemar_of(proportions);
@@ -367,10 +367,12 @@ void adjust_swaps(std::vector<MethodReport>& methods) {
 
 /// A public report lists participants by their names, which are ranks, and so not in the order of
 /// sessions.
-void order_by_name(std::vector<MethodReport>& methods) {
-  for (MethodReport& method : methods) {
+void order_by_name(StudyReport& report) {
+  for (MethodReport& method : report.methods) {
     std::ranges::sort(method.per_participant, {}, &ParticipantAccuracy::participant);
   }
+  if (!report.places) return;
+  std::ranges::sort(report.places->own.people, {}, &choices::Preference::participant);
 }
 
 }  // namespace
@@ -387,7 +389,10 @@ StudyReport make_report(const Outcomes& outcomes) {
     report.methods.push_back(method_report(outcomes, i, counted.back()));
   }
   adjust_swaps(report.methods);
-  if (outcomes.collection.is_public) order_by_name(report.methods);
+  report.places = choices::answers_by_place(
+      choices::people_with(outcomes, [](const TrialOutcome& trial) { return trial.counted; }),
+      classes);
+  if (outcomes.collection.is_public) order_by_name(report);
   report.pairs = method_pairs(classes, counted);
   if (report.methods.size() == 2) report.comparison = report.pairs.front().overall;
   report.together = methods_together(classes, counted);

@@ -2,6 +2,7 @@
 /// docs/data-dictionary.md, "Report".
 #pragma once
 
+#include "analysis/choices/preferences.hpp"
 #include "analysis/choices/subsets.hpp"
 #include "analysis/outcomes/outcomes.hpp"
 #include "analysis/outcomes/study_head.hpp"
@@ -41,9 +42,8 @@ struct ClassAccuracy {
   Interval jeffreys{};
   MeanEstimate mean{};  ///< mean of the participants' own accuracies with the class
 
-  /// Whether `mean` has an interval that says something: with two participants or more who differ.
   [[nodiscard]] bool has_interval_over_participants() const noexcept {
-    return mean.participants > 1 && mean.interval.low < mean.interval.high;
+    return mean.known_interval().has_value();
   }
 };
 
@@ -120,6 +120,8 @@ struct StudyReport : StudyHead {
   std::vector<MethodPair> pairs;               ///< every pair, if there are two or more methods
   std::optional<MethodsTogether> together;     ///< if there are three or more methods
   std::optional<CueReport> cues{};             ///< only if the traces were read
+  /// All methods together; nothing without an answer that counts.
+  std::optional<choices::AnswersByPlace> places{};
 };
 
 /// Makes the report from the outcomes that count.

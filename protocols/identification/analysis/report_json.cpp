@@ -1,3 +1,4 @@
+#include "analysis/choices/people_report.hpp"
 #include "analysis/report/bibliography.hpp"
 #include "analysis/report/json_figures.hpp"
 #include "protocols/identification/analysis/cues/cues_json.hpp"
@@ -377,6 +378,31 @@ Json method_object(const MethodReport& method, const std::vector<std::string>& c
   return object;
 }
 
+Json places_object(const StudyReport& report) {
+  if (!report.places) return nullptr;
+  const choices::AnswersByPlace& places = *report.places;
+  Json object{{"places", array_json(places.places,
+                                    [](const choices::PlaceUse& one) {
+                                      Json entry{{"named", one.named}};
+                                      put_mean_of_some(entry, one.excess.mean);
+                                      entry["p"] = figure_json(one.excess.p);
+                                      return entry;
+                                    })},
+              {"p", figure_json(places.p)},
+              {"deals", places.deals},
+              {"preferences", Json::parse(choices::preferences_json(places.own, report.classes))}};
+  put_method(
+      object,
+      "answers that count, all methods together, by their places on the screen, whose "
+      "pictures were drawn for each participant; places: mean over participants of the share "
+      "of answers less 1/K with Student's t interval and p (sign flips if all are alike); p: "
+      "that all together prefer no place, of layouts dealt anew, (b+1)/(m+1); preferences: of "
+      "the wrong answers that take one of two pictures for the other, names exchanged between "
+      "participants",
+      {"student1908", "holm1979", "phipson2010"});
+  return object;
+}
+
 }  // namespace
 
 std::string report_json(const StudyReport& report) {
@@ -400,6 +426,7 @@ std::string report_json(const StudyReport& report) {
       with_method({}, "quartiles by definition 7, over trials with a response", {"hyndman1996"});
   object["registration"] = registration_object(report.registration);
   object["collection"] = collection_object(report.collection);
+  object["places"] = places_object(report);
   if (report.cues) object["cues"] = cues_object(*report.cues);
   object["references"] = references_object();
   put_registered(object, report);

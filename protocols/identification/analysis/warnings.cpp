@@ -1,3 +1,4 @@
+#include "analysis/choices/people_report.hpp"
 #include "analysis/outcomes/departures.hpp"
 #include "analysis/report/page/wording.hpp"
 #include "analysis/report/text_figures.hpp"
@@ -17,13 +18,13 @@ namespace {
 using Warnings = std::vector<std::string>;
 
 constexpr int kSmallCell = 5;
-constexpr std::size_t kMostNames = 5;
+constexpr std::size_t kMaxNames = 5;
 constexpr double kFalseSwaps = 0.05;  ///< rate of false ones among the swaps that are reported
 constexpr double kCeiling = 0.95;
 
 /// The first few names of many.
 std::string few(const std::vector<std::string>& names) {
-  const std::size_t shown = std::min(names.size(), kMostNames);
+  const std::size_t shown = std::min(names.size(), kMaxNames);
   std::string text =
       fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<long>(shown), ", "));
   if (shown < names.size()) text += fmt::format(" and {} more", names.size() - shown);
@@ -299,10 +300,10 @@ void warn_of_participants(const StudyReport& report, Warnings& warnings) {
         "participants.");
   }
   for (const MethodReport& method : report.methods) {
-    if (method.mean.participants > 1 && method.mean.interval.low == method.mean.interval.high) {
-      warnings.push_back(
-          method.method +
-          ": all participants have the same accuracy; the interval's zero width is no certainty.");
+    if (method.mean.participants > 1 && !method.mean.known_interval()) {
+      warnings.push_back(method.method +
+                         ": all participants have the same accuracy, so that there is no t "
+                         "interval; that is no certainty.");
     }
   }
 }
@@ -317,6 +318,23 @@ void warn_of_information(const StudyReport& report, Warnings& warnings) {
         "classes.",
         method.method, counted(answered, "trial"), wanted, report.classes.size()));
   }
+}
+
+/// Somebody who prefers a picture is right with it more often than its texture is felt, and less
+/// often with all others.
+void warn_of_preferences(const StudyReport& report, Warnings& warnings) {
+  if (!report.places) return;
+  const std::string who = choices::preference_words(report.places->own, report.classes);
+  if (!who.empty()) {
+    warnings.push_back(who +
+                       ". By its place or by itself cannot be told; their accuracy with a texture "
+                       "tells of the preference as much as of sensitivity.");
+  }
+  if (report.places->p > kUsualLevel) return;
+  warnings.push_back(fmt::format(
+      "Participants preferred places on the screen ({}, layouts dealt anew): answers that follow "
+      "the place are right only by chance, so accuracy is too low.",
+      p_phrase(report.places->p)));
 }
 
 }  // namespace
@@ -337,6 +355,7 @@ std::vector<std::string> report_warnings(const Outcomes& outcomes, const StudyRe
     warn_of_ceiling(method, warnings);
     warn_of_chance(method, warnings);
   }
+  warn_of_preferences(report, warnings);
   warn_of_order(outcomes, warnings);
   warn_of_few_participants(report, warnings);
   warn_of_several(report, warnings);

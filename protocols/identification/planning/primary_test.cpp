@@ -101,8 +101,15 @@ PowerRun judged(const PrimaryTest& test, const analysis::Outcomes& outcomes, boo
       choices::primary_estimate(test, people, analysis::kConfidenceLevel);
   const analysis::Interval whole{is_difference(test) ? -1.0 : 0.0, 1.0};
   const analysis::Interval interval = found.interval.value_or(whole);
-  return {choices::primary_p(test, classes, people).value_or(1.0),
-          with_attainable ? attainable_of(test, choices::differences_of(people)) : 0.0,
+  double p = choices::primary_p(test, classes, people).value_or(1.0);
+  if (test.margin) {
+    // Methods that are not above chance are not shown to be as good as each other.
+    const choices::Selection counted{{}, {}, choices::counted_sessions(outcomes)};
+    for (const analysis::AboveChance& one : choices::above_chance(test, outcomes, counted)) {
+      p = std::max(p, one.p.value_or(1.0));
+    }
+  }
+  return {p, with_attainable ? attainable_of(test, choices::differences_of(people)) : 0.0,
           found.estimate.value_or(0.0), interval.low, interval.high};
 }
 

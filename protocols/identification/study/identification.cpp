@@ -47,17 +47,25 @@ std::shared_ptr<const Task> made(const std::optional<JsonValue>& /*section*/) {
   return std::make_shared<Identification>(min_methods);
 }
 
+constexpr Estimand kEstimands[] = {Estimand::mean_accuracy, Estimand::difference};
+
 }  // namespace
 
 const Protocol& classification() {
-  static constexpr Protocol kProtocol{
-      .name = "classification", .section = {}, .read = made<1>, .all_methods = false};
+  static constexpr Protocol kProtocol{.name = "classification",
+                                      .section = {},
+                                      .read = made<1>,
+                                      .all_methods = false,
+                                      .estimands = kEstimands};
   return kProtocol;
 }
 
 const Protocol& comparison() {
-  static constexpr Protocol kProtocol{
-      .name = "comparison", .section = {}, .read = made<2>, .min_methods = 2};
+  static constexpr Protocol kProtocol{.name = "comparison",
+                                      .section = {},
+                                      .read = made<2>,
+                                      .min_methods = 2,
+                                      .estimands = kEstimands};
   return kProtocol;
 }
 

@@ -23,7 +23,9 @@ pairs_of <- function(methods) {
   if (length(methods) < 2) list() else combn(methods, 2, simplify = FALSE)
 }
 
+# People who do not differ have no t and no interval.
 row_of <- function(by, first, second, estimate, error, df) {
+  if (error < 1e-12) error <- NA
   t <- estimate / error
   reach <- qt(0.975, df) * error
   data.frame(by, first, second, estimate, low = estimate - reach, high = estimate + reach, t, df,
@@ -140,6 +142,11 @@ as_p <- function(p) if (p < 1e-4) "p < 0.0001" else sprintf("p = %.3g", p)
 print_rows <- function(rows) {
   for (i in seq_len(NROW(rows))) {
     row <- rows[i, ]
+    if (is.na(row$t)) {
+      cat(sprintf("  %s less %s: %.3f; people do not differ, so that there is no t\n", row$first,
+                  row$second, row$estimate))
+      next
+    }
     holm <- if (row$p_holm != row$p) paste0(", ", as_p(row$p_holm), " after Holm") else ""
     cat(sprintf("  %s less %s: %.3f, 95 %% %.3f to %.3f; t(%g) = %.2f, %s%s\n", row$first,
                 row$second, row$estimate, row$low, row$high, row$df, row$t, as_p(row$p), holm))

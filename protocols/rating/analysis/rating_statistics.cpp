@@ -171,9 +171,9 @@ double noncentrality(double t, double degrees, double share) {
 std::optional<double> t_of(std::span<const double> differences) {
   if (differences.size() < 2) return std::nullopt;
   const auto n = static_cast<double>(differences.size());
+  if (all_alike(differences)) return std::nullopt;
   const double mean = without_noise(mean_of(differences));
-  const double sd = without_noise(standard_deviation(differences, mean, n - 1.0));
-  if (sd == 0.0) return std::nullopt;
+  const double sd = standard_deviation(differences, mean, n - 1.0);
   return mean / sd * std::sqrt(n);
 }
 
@@ -233,12 +233,13 @@ MethodDifference difference_of(std::span<const Repeats> participants, const Item
     const auto lower = mean_over(repeats, of_second);
     if (higher && lower) differences.push_back(without_noise(*higher - *lower));
   }
+  const std::optional<double> t = t_of(differences);
   return {first.begin()->method,
           second.begin()->method,
           static_cast<int>(of_first.size()),
           participant_mean(differences, differences_on(scale), level),
-          t_of(differences),
-          alone(t_test_p(differences, 0.0, Sides::two)),
+          t,
+          alone(t ? t_test_p(differences, 0.0, Sides::two) : std::nullopt),
           alone(sign_flip_p(differences)),
           standardised_difference(differences, level)};
 }

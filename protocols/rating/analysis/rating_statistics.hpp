@@ -235,7 +235,7 @@ struct MethodDifference {
   int classes = 0;                  ///< that both have
   MeanEstimate difference;          ///< first less second, in units of the scale
   std::optional<double> t{};        ///< of n - 1 degrees; nothing if all differences are the same
-  std::optional<FamilyP> t_test{};  ///< t_test_p, two-sided; nothing with fewer than two
+  std::optional<FamilyP> t_test{};  ///< t_test_p, two-sided; nothing without t
   std::optional<FamilyP> sign_flip{};  ///< sign_flip_p; nothing without participants
   std::optional<StandardisedDifference> standardised{};
 };

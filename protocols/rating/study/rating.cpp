@@ -248,11 +248,6 @@ void RatingTask::check(const JsonValue& file, const Study& study) const {
     file.refuse_below("/visits/methods",
                       "must be \"all\": everybody rates every method at each visit");
   }
-  if (study.registration.analysis) {
-    file.refuse_below("/registration/estimand",
-                      "is about right answers, which ratings have none of; leave estimand and what "
-                      "belongs to it out, and state the test in primary_test");
-  }
   if (study.session.confidence_levels > 0) {
     file.refuse_below("/session/confidence", "must be 0: a rating has no confidence");
   }

@@ -2,53 +2,58 @@
 
 #include "analysis/exports/data_table.hpp"
 #include "analysis/exports/export_folder.hpp"
-#include "analysis/statistics/descriptive.hpp"
 #include "core/errors.hpp"
 #include "protocols/threshold/analysis/report.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
 namespace touchtrial::analysis::threshold {
 namespace {
 
-using procedures::Censored;
 using Row = std::vector<DataCell>;
 
-DataCell side_cell(Censored side) {
-  if (side == Censored::no) return std::monostate{};
-  return std::string(side == Censored::below ? "below" : "above");
+DataCell censored_cell(const procedures::Threshold& threshold) {
+  const std::string_view word = word_of(threshold.censored);
+  return word.empty() ? DataCell{} : DataCell(std::string(word));
 }
 
 void add_threshold(Row& row, const procedures::Threshold& threshold) {
   row.push_back(or_nothing(threshold.level));
   row.push_back(or_nothing(threshold.low));
   row.push_back(or_nothing(threshold.high));
-  row.push_back(side_cell(threshold.censored));
+  row.push_back(censored_cell(threshold));
 }
 
-void add_estimate(Row& row, const std::optional<TrackEstimate>& estimate) {
-  add_threshold(row, estimate ? estimate->threshold : procedures::Threshold{});
-  row.push_back(or_nothing(estimate ? estimate->slope : std::nullopt));
-  row.push_back(or_nothing(estimate ? estimate->lapse : std::nullopt));
+/// Where the track's threshold lies, as the group's mean takes it; an open end is empty.
+void add_bounds(Row& row, const TrackReport& track, const std::vector<double>& levels) {
+  const Bounds bounds = track.estimate ? bounds_of(*track.estimate, levels) : Bounds{};
+  for (const double end : {bounds.low, bounds.high}) {
+    row.push_back(std::isfinite(end) ? DataCell(end) : DataCell{});
+  }
 }
 
 Row threshold_row(const ThresholdReport& report, const TrackReport& track) {
   const StandardReport& standard = report.standards[track.standard];
   const auto label = static_cast<std::size_t>(standard.of.class_index);
-  const TrackEstimate quoted = report.quoted(track).value_or(TrackEstimate{});
-  const Quantity weber = quantity_of(report.options(), standard.of, quoted.threshold);
+  const procedures::Threshold threshold =
+      track.estimate ? track.estimate->threshold : procedures::Threshold{};
+  const procedures::Threshold reversals = track.reversals.value_or(procedures::Threshold{});
+  const Quantity weber = quantity_of(report.options(), standard.of, threshold);
   Row row{track.participant,
           std::int64_t{track.track},
           label < report.classes.size() ? DataCell(report.classes[label]) : DataCell{},
           standard.of.value,
           std::int64_t{track.answers.n},
-          std::int64_t{track.answers.correct}};
-  add_estimate(row, track.posterior);
-  add_estimate(row, track.likelihood);
-  row.push_back(or_nothing(track.reversals ? track.reversals->level : std::nullopt));
-  row.push_back(side_cell(track.reversals ? track.reversals->censored : Censored::no));
+          std::int64_t{track.answers.correct},
+          std::int64_t{track.catches.n},
+          std::int64_t{track.catches.correct}};
+  add_threshold(row, threshold);
+  add_bounds(row, track, standard.levels);
+  row.push_back(or_nothing(reversals.level));
+  row.push_back(censored_cell(reversals));
   row.push_back(or_nothing(weber.value));
   row.push_back(or_nothing(weber.low));
   row.push_back(or_nothing(weber.high));
@@ -74,7 +79,7 @@ DataCell choice_cell(const Outcomes& outcomes, const std::optional<int>& choice)
 /// What a track is about; nothing for trials of none.
 std::optional<study::threshold::Standard> standard_of(const Outcomes& outcomes,
                                                       const TrialOutcome& trial) {
-  if (!in_track(trial)) return std::nullopt;
+  if (!trial.chosen || trial.chosen->track < 1) return std::nullopt;
   const auto all = study::threshold::standards_of(outcomes.design);
   const int each = std::max(study::threshold::options_of(outcomes.design).tracks_each, 1);
   const auto place = static_cast<std::size_t>((trial.chosen->track - 1) / each);
@@ -82,7 +87,8 @@ std::optional<study::threshold::Standard> standard_of(const Outcomes& outcomes,
 }
 
 DataCell track_cell(const TrialOutcome& trial) {
-  return in_track(trial) ? DataCell(std::int64_t{trial.chosen->track}) : DataCell{};
+  const bool has_track = trial.chosen && trial.chosen->track > 0;
+  return has_track ? DataCell(std::int64_t{trial.chosen->track}) : DataCell{};
 }
 
 DataCell standard_cell(const Outcomes& outcomes, const TrialOutcome& trial) {
@@ -128,12 +134,12 @@ const ThresholdOptions& options_of(const Outcomes& outcomes) {
   return study::threshold::options_of(outcomes.design);
 }
 
-/// The rows of tracks.csv that belong to a track.
+/// The rows of tracks.csv that belong to a track, catch trials among them.
 DataTable model_table(const Outcomes& outcomes) {
   DataTable table = track_trials_table(outcomes);
-  const auto kind = std::ranges::find(table.columns, "kind") - table.columns.begin();
+  const auto track = std::ranges::find(table.columns, "track") - table.columns.begin();
   std::erase_if(table.rows, [&](const std::vector<DataCell>& row) {
-    return row[static_cast<std::size_t>(kind)] != DataCell(std::string("track"));
+    return std::holds_alternative<std::monostate>(row[static_cast<std::size_t>(track)]);
   });
   return table;
 }
@@ -143,23 +149,32 @@ std::string notes_on_model(const Outcomes& outcomes) {
   const double share = procedures::share_at_threshold(options.track.grid.shape);
   return fmt::format(
       "# Threshold model of {}\n\n{}`threshold_model.csv` has one row for each answered trial of a "
-      "track, in sessions that count. `Rscript threshold_model.R` fits one model to all of them "
-      "with lme4 and prints the thresholds; with `--csv`, all their digits.\n\nThe model: "
-      "P(right) = g + (1 - g - l) Phi(a + b x), with the guess rate g = {:.4g} and the lapse rate "
-      "l = {:.4g} (the mean of the study's grid), an intercept and a slope for each standard, and "
-      "random intercepts and slopes of participants (Moscatelli, Mezzetti, Lacquaniti 2012, "
-      "Journal of Vision 12(11):26). x is the level, centred and scaled. If it is singular or does "
-      "not converge, the same without their correlation, then with random intercepts alone; the "
-      "script says which. A "
-      "threshold is the level with {:.1f} % right, as in the report; its interval is by the delta "
-      "method.\n\nAll participants have one lapse rate. The model takes the levels as given, "
-      "although an adaptive procedure "
-      "chose them by the answers. The report's thresholds are the ones to quote; this model shows "
-      "whether they depend on fitting each track alone.\n\nColumns: `level_db` ({}), `comparison` "
-      "(the quantity of the comparison), `target` and `response` (of the choices), `correct`.\n",
+      "track, catch trials among them, in sessions that count. `Rscript threshold_model.R` fits "
+      "one "
+      "model to all of them with lme4 and prints thresholds and their differences; with `--csv`, "
+      "all their digits.\n\nThe model (Moscatelli, Mezzetti, Lacquaniti 2012, Journal of Vision "
+      "12(11):26): P(right) = g + (1 - g - l) F(a + b x), with the study's function F ({}), the "
+      "guess "
+      "rate g = {:.4g} and an intercept and a slope for each standard; x is the level, centred by "
+      "standard and scaled. "
+      "Intercepts and slopes differ between participants and, with several standards, again "
+      "between a participant's standards:\n\n    (1 + x | participant) + (1 + x | "
+      "participant:standard)\n\nIf the trials do not determine that (singular, or not converged), "
+      "the same without correlations, then without slopes that differ between a participant's "
+      "standards, then with intercepts alone; never without participants' standards. The script "
+      "says what it fitted.\n\nThe lapse rate l is one for all participants: the likeliest where "
+      "every participant and standard has an intercept of its own, times the density Beta(1, 10). "
+      "Catch trials, at the highest level, tell most of it.\n\nA threshold is the level with "
+      "{:.1f} % right without lapses, as in the report. Intervals are by the delta method, with as "
+      "many degrees of freedom as participants, less one. How they cover: "
+      "docs/procedures-recovery.md. The model takes the levels as given, although an adaptive "
+      "procedure chose them by the answers. The report's thresholds are the ones to quote; this "
+      "model shows whether they depend on fitting each track alone.\n\nColumns: `level_db` ({}), "
+      "`comparison` (the quantity of the comparison), `target` and `response` (of the choices), "
+      "`correct`, `kind` (`track`, or `catch`: not heard by the procedure).\n",
       one_line(outcomes.study),
       outcomes.simulated ? "SIMULATED: every participant is a program.\n\n" : "",
-      options.track.grid.guess, mean_of(options.track.grid.lapses),
+      study::threshold::name_of(options.track.grid.shape), options.track.grid.guess,
       100.0 * (options.track.grid.guess + (1.0 - options.track.grid.guess) * share),
       study::threshold::unit_of_level(options));
 }
@@ -176,15 +191,13 @@ std::vector<TrialColumn> threshold_trial_columns() {
 }
 
 DataTable thresholds_table(const ThresholdReport& report, bool simulated) {
-  DataTable table{{"participant", "track", "class", "standard_value", "trials", "right"}, {}};
-  for (const std::string estimate : {"posterior", "likelihood"}) {
-    for (const char* of : {"_db", "_low_db", "_high_db", "_censored", "_slope", "_lapse"}) {
-      table.columns.push_back(estimate + of);
-    }
-  }
-  table.columns.insert(table.columns.end(),
-                       {"reversals_db", "reversals_censored", "weber", "weber_low", "weber_high",
-                        "fit_p", "learning_db", "criterion", "simulated"});
+  DataTable table{{"participant",  "track",      "class",        "standard_value",
+                   "trials",       "right",      "catch_trials", "catch_right",
+                   "threshold_db", "low_db",     "high_db",      "censored",
+                   "at_least_db",  "at_most_db", "reversals_db", "reversals_censored",
+                   "weber",        "weber_low",  "weber_high",   "fit_p",
+                   "learning_db",  "criterion",  "simulated"},
+                  {}};
   for (const TrackReport& track : report.tracks) {
     table.rows.push_back(threshold_row(report, track));
     table.rows.back().push_back(flag(simulated));
@@ -212,12 +225,10 @@ std::string threshold_model_script(const Outcomes& outcomes) {
   return fmt::format(
              "# Threshold model of the study {}{}. Run: Rscript threshold_model.R\n"
              "# Needs lme4; reads threshold_model.csv beside this file. What it means: "
-             "threshold_model.md.\nguess <- {:.17g}\nlapse <- {:.17g}\nshare_at_threshold <- "
-             "{:.17g}\n"
-             "centre_db <- {:.17g}\nscale_db <- {:.17g}\n\n",
-             one_line(outcomes.study), outcomes.simulated ? " (SIMULATED)" : "", grid.guess,
-             mean_of(grid.lapses), procedures::share_at_threshold(grid.shape),
-             0.5 * (levels.front() + levels.back()), range / 8.0) +
+             "threshold_model.md.\nshape <- \"{}\"\nguess <- {:.17g}\n"
+             "scale_db <- {:.17g}\n\n",
+             one_line(outcomes.study), outcomes.simulated ? " (SIMULATED)" : "",
+             study::threshold::name_of(grid.shape), grid.guess, range / 8.0) +
          std::string(threshold_model_functions());
 }
 

@@ -1,6 +1,7 @@
 /// \file What `export` writes of thresholds: tables (columns: docs/thresholds.md), and a long table of
-/// trials with the R script that fits a probit model with a guess rate to it, participants being
-/// random. Source: Moscatelli, Mezzetti, Lacquaniti 2012, Journal of Vision 12(11):26.
+/// trials with the R script that fits the study's function with a guess and a lapse rate to it,
+/// participants and their standards being random. Source: Moscatelli, Mezzetti, Lacquaniti 2012,
+/// Journal of Vision 12(11):26.
 #pragma once
 
 #include "analysis/exports/trial_tables.hpp"
@@ -17,7 +18,7 @@ namespace touchtrial::analysis::threshold {
 [[nodiscard]] DataTable thresholds_table(const ThresholdReport& report, bool simulated);
 
 /// tracks.csv: one row for each answered trial, as it was felt, of sessions that count. The track
-/// of a catch trial and of a trial of the control block is empty.
+/// of a trial of the control block is empty.
 [[nodiscard]] DataTable track_trials_table(const Outcomes& outcomes);
 
 /// What trials.csv and its like have in addition: track, standard and level_db.

@@ -14,26 +14,53 @@ namespace touchtrial::analysis::threshold {
 namespace {
 
 /// "-21.3 dB (-23.0 to -19.6 dB)"
-std::string decibels_with_interval(const MeanEstimate& mean) {
-  const std::optional<Interval> interval = mean.known_interval();
-  if (!interval) return fmt::format("{:.1f} dB", *mean.mean);
-  return fmt::format("{:.1f} dB ({:.1f} to {:.1f} dB)", *mean.mean, interval->low, interval->high);
+std::string decibels_with_interval(const CensoredMean& mean) {
+  if (!mean.mean) return "no mean";
+  if (!mean.interval) return fmt::format("{:.1f} dB", *mean.mean);
+  return fmt::format("{:.1f} dB ({:.1f} to {:.1f} dB)", *mean.mean, mean.interval->low,
+                     mean.interval->high);
+}
+
+/// ", 3 above the levels, 1 below"; empty if everybody's threshold is known.
+std::string beyond_in_words(const StandardReport& one) {
+  std::string text;
+  const auto add = [&](procedures::Censored censored, const char* where) {
+    const int n = one.number_of(censored);
+    if (n > 0) text += fmt::format(", {} {}", n, where);
+  };
+  add(procedures::Censored::above, "above the levels");
+  add(procedures::Censored::below, "below the levels");
+  add(procedures::Censored::undetermined, "not determined");
+  return text;
 }
 
 std::string alt_of_thresholds(const ThresholdReport& report) {
   std::string alt = "Each participant's threshold as a dot, the mean and its 95 % interval.";
   for (const StandardReport& one : report.standards) {
-    if (!one.mean.mean) continue;
-    alt += fmt::format(" {}: {} participants, {}.", one.words, one.mean.participants,
-                       decibels_with_interval(one.mean));
+    if (one.mean.participants == 0) continue;
+    alt += fmt::format(" {}: {} participants{}, {}.", one.words, one.mean.participants,
+                       beyond_in_words(one), decibels_with_interval(one.mean));
   }
   return alt;
 }
 
-std::string level_axis(const ThresholdReport& report) {
+/// Of an axis of levels, beyond its ends.
+double room_at_ends(const ThresholdReport& report) {
   const std::vector<double>& levels = report.options().track.levels;
-  const double room = std::max(0.05 * (levels.back() - levels.front()), 1.0);
-  return fmt::format("[{:.6g}:{:.6g}]", levels.front() - room, levels.back() + room);
+  return std::max(0.05 * (levels.back() - levels.front()), 1.0);
+}
+
+/// \param means  that must be seen too, in their second column
+std::string level_axis(const ThresholdReport& report, const Rows& means = {}) {
+  const std::vector<double>& levels = report.options().track.levels;
+  double low = levels.front();
+  double high = levels.back();
+  for (const std::vector<double>& row : means) {
+    low = std::min(low, row[1]);
+    high = std::max(high, row[1]);
+  }
+  const double room = room_at_ends(report);
+  return fmt::format("[{:.6g}:{:.6g}]", low - room, high + room);
 }
 
 std::string unit_label(const ThresholdReport& report) {
@@ -53,6 +80,8 @@ std::string short_name(const StandardReport& standard) {
 
 struct ThresholdRows {
   Rows dots;
+  Rows above;  ///< people, beyond the levels
+  Rows below;
   Rows means;  ///< place, mean, low, high
 };
 
@@ -60,33 +89,70 @@ ThresholdRows rows_of_thresholds(const ThresholdReport& report) {
   ThresholdRows rows;
   for (std::size_t i = 0; i < report.standards.size(); ++i) {
     const StandardReport& one = report.standards[i];
-    if (!one.mean.mean) continue;
+    if (one.levels.empty()) continue;
     const auto x = static_cast<double>(i + 1);
-    std::vector<double> sorted = one.thresholds;
+    const double room = room_at_ends(report);
+    std::vector<double> sorted;
+    for (const Bounds& bounds : bounds_of(one.thresholds)) {
+      if (bounds.exact()) sorted.push_back(bounds.low);
+    }
     std::ranges::sort(sorted);
     add_dots(rows.dots, x - 0.12, 0.3, sorted);
-    add_bar(rows.means, x + 0.2, *one.mean.mean, one.mean.known_interval());
+    const auto add_beyond = [&](Rows& to, procedures::Censored side, double level) {
+      add_dots(to, x - 0.12, 0.3,
+               std::vector(static_cast<std::size_t>(one.number_of(side)), level));
+    };
+    add_beyond(rows.above, procedures::Censored::above, one.levels.back() + 0.5 * room);
+    add_beyond(rows.below, procedures::Censored::below, one.levels.front() - 0.5 * room);
+    if (one.mean.mean) add_bar(rows.means, x + 0.2, *one.mean.mean, one.mean.interval);
   }
   return rows;
 }
 
-bool has_function(const ThresholdReport& report, std::size_t standard) {
-  return std::ranges::any_of(report.tracks, [&](const TrackReport& track) {
-    return track.standard == standard && track.observer;
-  });
+constexpr int kMarkAbove = 8;  ///< triangles, in gnuplot's numbers
+constexpr int kMarkBelow = 10;
+
+std::string data_of_thresholds(const ThresholdRows& rows) {
+  std::string data;
+  const auto add = [&data](const char* name, const Rows& of) {
+    if (!of.empty()) data += data_block(name, of);
+  };
+  add("dots", rows.dots);
+  add("above", rows.above);
+  add("below", rows.below);
+  add("means", rows.means);
+  return data;
 }
 
-/// Answers at each level of one standard: of the tracks that gave a threshold, or if none did of
-/// all.
+std::string plot_of_thresholds(const ThresholdRows& rows) {
+  std::string plot;
+  const auto add = [&plot](const Rows& of, const std::string& how) {
+    if (of.empty()) return;
+    plot += (plot.empty() ? "plot " : ", ") + how + " notitle";
+  };
+  const auto points = [](const char* name, int mark, std::size_t series) {
+    return fmt::format("${} using 1:2 with points pt {} ps 0.5 lc rgb '{}'", name, mark,
+                       series_colour(series));
+  };
+  add(rows.dots, points("dots", series_mark(0), 0));
+  add(rows.above, points("above", kMarkAbove, 1));
+  add(rows.below, points("below", kMarkBelow, 1));
+  add(rows.means,
+      fmt::format("$means using 1:2:3:4 with yerrorbars pt 13 ps 1 lw 1.8 lc rgb '{}'", kInk));
+  return plot + "\n";
+}
+
+/// Answers at each level of one standard, in all tracks.
 std::map<std::size_t, Proportion> pooled_answers(const ThresholdReport& report,
                                                  std::size_t standard) {
   std::map<std::size_t, Proportion> answers;
-  const bool fitted = has_function(report, standard);
+  const std::size_t top = report.standards[standard].levels.size() - 1;
   for (const TrackReport& track : report.tracks) {
-    if (track.standard != standard || (fitted && !track.observer)) continue;
+    if (track.standard != standard) continue;
     for (const procedures::TrackTrial& trial : track.trials) {
       answers[trial.level].add(trial.correct);
     }
+    if (track.catches.n > 0) answers[top] += track.catches;
   }
   return answers;
 }
@@ -104,13 +170,15 @@ Rows rows_of_answers(const ThresholdReport& report, std::size_t standard) {
   return rows;
 }
 
-/// The mean of the fitted functions at evenly spaced levels.
+/// The mean of the estimated functions at evenly spaced levels, of all tracks.
 Rows rows_of_curve(const ThresholdReport& report, std::size_t standard) {
   constexpr int kPoints = 120;
   const std::vector<double>& levels = report.options().track.levels;
   std::vector<const procedures::Observer*> observers;
   for (const TrackReport& track : report.tracks) {
-    if (track.standard == standard && track.observer) observers.push_back(&*track.observer);
+    if (track.standard == standard && track.estimate) {
+      observers.push_back(&track.estimate->observer);
+    }
   }
   Rows rows;
   if (observers.empty()) return rows;
@@ -139,13 +207,13 @@ Legend legend_of_functions(const Sheet& sheet, const ThresholdReport& report) {
   return Legend(sheet, 1.5,
                 std::vector<LegendEntry>{
                     mark_entry(7, series_colour(0), "all answers at a level; area by number"),
-                    {LegendEntry::Kind::line, std::string(kInk), 7, "mean of fitted functions"},
+                    {LegendEntry::Kind::line, std::string(kInk), 7, "mean of estimated functions"},
                     {LegendEntry::Kind::dashes, std::string(kInk), 7,
                      fmt::format("threshold: {:.1f} %", 100.0 * *report.criterion)}});
 }
 
 /// The most tracks that are drawn.
-constexpr std::size_t kMostTrackPanels = 12;
+constexpr std::size_t kMaxTrackPanels = 12;
 
 /// Trial and level of the right, or of the wrong answers.
 Rows rows_of_track(const ThresholdReport& report, const TrackReport& track, bool correct) {
@@ -171,9 +239,8 @@ std::string plot_of_track(std::size_t panel, const Rows& right, const Rows& wron
   return plot + "\n";
 }
 
-std::string threshold_line(const ThresholdReport& report, const TrackReport& track) {
-  const std::optional<TrackEstimate>& quoted = report.quoted(track);
-  return quoted && quoted->threshold.level ? dashed_line(*quoted->threshold.level) : "";
+std::string threshold_line(const TrackReport& track) {
+  return track.threshold() ? dashed_line(*track.threshold()) : "";
 }
 
 Legend legend_of_tracks(const Sheet& sheet) {
@@ -198,26 +265,24 @@ std::string panel_of_track(const ThresholdReport& report, const Panels& panels, 
              "set xrange [0:{}]\nset yrange {}\nset xlabel 'trial' offset 0, 0.4\n"
              "set ylabel 'level, dB'\n",
              track.trials.size() + 1, level_axis(report)) +
-         threshold_line(report, track) +
-         (panel == 0 ? legend_of_tracks(panels.sheet()).script() : "") +
+         threshold_line(track) + (panel == 0 ? legend_of_tracks(panels.sheet()).script() : "") +
          plot_of_track(panel, right, wrong) + "unset label\nunset arrow\nunset object\n";
 }
 
 std::string alt_of_track(const ThresholdReport& report, const TrackReport& track) {
-  const std::optional<TrackEstimate>& quoted = report.quoted(track);
   const std::string begin =
       fmt::format(" {}, {}: {} of {} right,", track.participant,
                   report.standards[track.standard].words, track.answers.correct, track.answers.n);
-  if (!quoted || !quoted->threshold.level) return begin + " no threshold.";
-  return begin + fmt::format(" threshold {:.1f} dB.", *quoted->threshold.level);
+  if (!track.threshold()) return begin + " no threshold.";
+  return begin + fmt::format(" threshold {:.1f} dB.", *track.threshold());
 }
 
 /// Level, d', low and high, of one standard.
 Rows rows_of_d_prime(const ThresholdReport& report, std::size_t standard) {
   Rows rows;
   for (const SameDifferentGroup& one : report.same_different_groups) {
-    if (one.standard != standard || !one.differencing.mean) continue;
-    add_bar(rows, one.level, *one.differencing.mean, one.differencing.known_interval());
+    if (one.standard != standard || !one.differencing.d_prime) continue;
+    add_bar(rows, one.level, *one.differencing.d_prime, one.differencing.interval);
   }
   return rows;
 }
@@ -226,7 +291,7 @@ Rows rows_of_d_prime(const ThresholdReport& report, std::size_t standard) {
 
 std::optional<Figure> thresholds_figure(const ThresholdReport& report) {
   const ThresholdRows rows = rows_of_thresholds(report);
-  if (rows.means.empty()) return {};
+  if (rows.dots.empty() && rows.above.empty() && rows.below.empty()) return {};
   std::vector<std::string> names;
   for (const StandardReport& one : report.standards) names.push_back(short_name(one));
   Sheet sheet{16.0, 8.0, report.simulated};
@@ -237,23 +302,19 @@ std::optional<Figure> thresholds_figure(const ThresholdReport& report) {
   const Legend legend(
       sheet, margins.left_cm,
       std::vector<LegendEntry>{mark_entry(series_mark(0), series_colour(0), "participants"),
-                               mark_entry(13, kInk, "mean, with 95 % t interval")});
+                               mark_entry(kMarkAbove, series_colour(1), "beyond the levels"),
+                               mark_entry(13, kInk, "mean, with 95 % interval")});
   margins.top_cm = legend.room_cm() + 0.2;
   Figure figure = figure_on(sheet, "thresholds", alt_of_thresholds(report), "thresholds");
   figure.caption = stamped(
       report.simulated,
-      "participants' thresholds, their mean and its 95 % t interval over participants. Censored "
-      "tracks are left out.");
-  figure.script =
-      data_block("dots", rows.dots) + data_block("means", rows.means) + sheet_head(sheet) +
-      panel_at(sheet, margins) + below.script() +
-      fmt::format("set yrange {}\nset ylabel '{}' noenhanced\n", level_axis(report),
-                  unit_label(report)) +
-      legend.script() +
-      fmt::format(
-          "plot $dots using 1:2 with points pt {} ps 0.5 lc rgb '{}' notitle, $means using "
-          "1:2:3:4 with yerrorbars pt 13 ps 1 lw 1.8 lc rgb '{}' notitle\n",
-          series_mark(0), series_colour(0), kInk);
+      "participants' thresholds, triangles for those beyond the levels, and the mean of all with "
+      "its 95 % interval.");
+  figure.script = data_of_thresholds(rows) + sheet_head(sheet) + panel_at(sheet, margins) +
+                  below.script() +
+                  fmt::format("set yrange {}\nset ylabel '{}' noenhanced\n",
+                              level_axis(report, rows.means), unit_label(report)) +
+                  legend.script() + plot_of_thresholds(rows);
   return figure;
 }
 
@@ -263,7 +324,7 @@ std::optional<Figure> functions_figure(const ThresholdReport& report) {
   const Panels panels(count, 2, 6.4, {1.5, 0.4, 0.6, 1.25}, report.simulated);
   Figure figure = figure_on(panels.sheet(), "functions",
                             "Right answers by level, all participants, and the mean of the "
-                            "functions that were fitted.",
+                            "functions that were estimated.",
                             "thresholds");
   const std::size_t said = figure.alt.size();
   figure.script = sheet_head(panels.sheet()) + "set multiplot\n";
@@ -287,9 +348,9 @@ std::optional<Figure> functions_figure(const ThresholdReport& report) {
   }
   figure.script += "unset multiplot\n";
   figure.caption = stamped(report.simulated,
-                           "right answers by level, all participants' trials pooled, and the mean "
-                           "of the functions fitted to their tracks; censored tracks are left "
-                           "out. An adaptive procedure puts "
+                           "right answers by level, all participants' trials pooled, catch trials "
+                           "among them, and the mean of the functions estimated from their tracks. "
+                           "An adaptive procedure puts "
                            "its trials near each participant's threshold, so pooled points lie "
                            "flatter than the function of one participant.");
   return figure;
@@ -297,7 +358,7 @@ std::optional<Figure> functions_figure(const ThresholdReport& report) {
 
 std::optional<Figure> tracks_figure(const ThresholdReport& report) {
   if (!report.has_thresholds() || report.tracks.empty()) return {};
-  const std::size_t count = std::min(report.tracks.size(), kMostTrackPanels);
+  const std::size_t count = std::min(report.tracks.size(), kMaxTrackPanels);
   const Panels panels(count, 3, 4.6, {1.4, 0.3, 0.6, 1.1}, report.simulated);
   Figure figure = figure_on(panels.sheet(), "tracks", "Levels by trial, one panel a track.",
                             "tracks-of-participants");
@@ -309,8 +370,8 @@ std::optional<Figure> tracks_figure(const ThresholdReport& report) {
   figure.script += "unset multiplot\n";
   figure.caption = stamped(
       report.simulated,
-      "the levels of each track by trial; dots are right answers, crosses wrong ones, and the "
-      "dashed line is the threshold that is quoted, if there is one." +
+      "the levels that the procedure chose by trial; dots are right answers, crosses wrong ones, "
+      "and the dashed line is the threshold, if there is one." +
           (count < report.tracks.size()
                ? fmt::format(" The first {} of {} tracks.", count, report.tracks.size())
                : std::string()));
@@ -345,8 +406,8 @@ std::optional<Figure> d_prime_figure(const ThresholdReport& report) {
   }
   figure.script += "unset multiplot\n";
   figure.caption = stamped(report.simulated,
-                           "d' of same or different by level, by differencing: means over "
-                           "participants with 95 % t intervals.");
+                           "d' of same or different by level, by differencing: all participants' "
+                           "answers pooled, with 95 % bootstrap intervals over participants.");
   return figure;
 }
 

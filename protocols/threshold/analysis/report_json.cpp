@@ -1,5 +1,9 @@
+#include "analysis/choices/people_report.hpp"
 #include "analysis/report/json_figures.hpp"
+#include "core/named.hpp"
 #include "protocols/threshold/analysis/report.hpp"
+
+#include <array>
 
 namespace touchtrial::analysis::threshold {
 namespace {
@@ -7,24 +11,19 @@ namespace {
 using Json = nlohmann::ordered_json;
 using procedures::Censored;
 
-Json censored_json(Censored side) {
-  if (side == Censored::no) return nullptr;
-  return side == Censored::below ? "below" : "above";
-}
-
 Json threshold_json(const procedures::Threshold& threshold) {
+  const std::string_view censored = word_of(threshold.censored);
   return {{"threshold", figure_json(threshold.level)},
           {"low", figure_json(threshold.low)},
           {"high", figure_json(threshold.high)},
-          {"censored", censored_json(threshold.censored)}};
+          {"censored", censored.empty() ? Json(nullptr) : Json(censored)}};
 }
 
-Json estimate_json(const std::optional<TrackEstimate>& estimate) {
-  if (!estimate) return nullptr;
-  Json object = threshold_json(estimate->threshold);
-  object["slope"] = figure_json(estimate->slope);
-  object["lapse"] = figure_json(estimate->lapse);
-  return object;
+/// The bounds as which a track counts in its participant's.
+Json in_mean_json(const TrackReport& track, const StandardReport& standard) {
+  if (!track.estimate) return nullptr;
+  const Bounds bounds = bounds_of(*track.estimate, standard.levels);
+  return interval_json(Interval{bounds.low, bounds.high});
 }
 
 Json quantity_json(const Quantity& quantity) {
@@ -43,20 +42,35 @@ Json fit_json(const std::optional<procedures::GoodnessOfFit>& fit) {
 
 Json track_json(const ThresholdReport& report, const TrackReport& track) {
   const StandardReport& standard = report.standards[track.standard];
-  const std::optional<TrackEstimate>& quoted = report.quoted(track);
-  const Quantity weber =
-      quoted ? quantity_of(report.options(), standard.of, quoted->threshold) : Quantity{};
+  const Quantity weber = track.estimate
+                             ? quantity_of(report.options(), standard.of, track.estimate->threshold)
+                             : Quantity{};
   return {{"participant", track.participant},
           {"track", track.track},
           {"standard", standard.words},
           {"trials", track.answers.n},
           {"right", track.answers.correct},
-          {"posterior", estimate_json(track.posterior)},
-          {"likelihood", estimate_json(track.likelihood)},
+          {"catch", {{"n", track.catches.n}, {"right", track.catches.correct}}},
+          {"estimate", track.estimate ? threshold_json(track.estimate->threshold) : Json(nullptr)},
+          {"in_mean", in_mean_json(track, standard)},
           {"reversals", track.reversals ? threshold_json(*track.reversals) : Json(nullptr)},
           {"weber", quantity_json(weber)},
           {"goodness_of_fit", fit_json(track.fit)},
           {"learning_db", figure_json(track.learning_db)}};
+}
+
+/// Adds mean, interval, standard deviation and median, and what keeps the first two away.
+void put_censored(Json& object, const std::string& name, const CensoredMean& mean) {
+  using enum Lack;
+  static constexpr auto kLacks = std::to_array<Named<Lack>>(
+      {{"few known", values}, {"most censored", most}, {"all alike", spread}});
+  object[name] = figure_json(mean.mean);
+  object["interval"] = interval_json(mean.interval);
+  object["lack"] = mean.lack == nothing ? Json(nullptr) : Json(name_in(kLacks, mean.lack));
+  object["sd"] = figure_json(mean.sd);
+  object["median"] = figure_json(mean.median);
+  object["median_within"] =
+      interval_json(Interval{mean.median_within.low, mean.median_within.high});
 }
 
 Json standard_json(const ThresholdReport& report, const StandardReport& one) {
@@ -68,10 +82,11 @@ Json standard_json(const ThresholdReport& report, const StandardReport& one) {
       {"highest_level", one.levels.empty() ? Json(nullptr) : figure_json(one.levels.back())},
       {"tracks", one.tracks},
       {"n", one.mean.participants},
-      {"censored_below", one.censored_below},
-      {"censored_above", one.censored_above}};
-  put_mean(object, one.mean);
-  object["sd"] = figure_json(one.mean.sd);
+      {"known", one.number_of(Censored::no)},
+      {"below", one.number_of(Censored::below)},
+      {"above", one.number_of(Censored::above)},
+      {"undetermined", one.number_of(Censored::undetermined)}};
+  put_censored(object, "mean", one.mean);
   object["weber"] = quantity_json(quantity_of(report.options(), one.of, mean_threshold(one.mean)));
   return object;
 }
@@ -81,12 +96,16 @@ void put_test(Json& object, const std::string& name, const GroupTest& test) {
   object["interval"] = interval_json(test.mean.known_interval());
   object["participants"] = test.mean.participants;
   object["p"] = figure_json(test.p);
+  object["test"] = !test.p ? Json(nullptr) : Json(test.alike ? "sign flips" : "t");
 }
 
 Json difference_json(const ThresholdReport& report, const DifferenceReport& one) {
   Json object{{"first", report.standards[one.first].words},
               {"second", report.standards[one.second].words}};
-  put_test(object, "difference", one.difference);
+  put_censored(object, "difference", one.difference);
+  object["participants"] = one.difference.participants;
+  object["known"] = one.difference.exact;
+  object["p"] = figure_json(one.p);
   object["p_holm"] = figure_json(one.p_holm);
   return object;
 }
@@ -99,16 +118,47 @@ Json right_json(const RightAnswers& one) {
           {"p", figure_json(one.p)}};
 }
 
-Json outside_json(const std::optional<AgainstGuessing>& outside, double guess) {
-  if (!outside) return nullptr;
-  Json object = right_json(outside->pooled);
+Json outside_json(const AgainstGuessing& outside, double guess) {
+  Json object = right_json(outside.pooled);
   object["guess"] = guess;
-  object["participants"] = array_json(outside->people, [](const RightAnswers& one) {
+  object["participants"] = array_json(outside.people, [](const RightAnswers& one) {
     Json own{{"participant", one.participant}};
     own.update(right_json(one));
     own["p_holm"] = figure_json(one.p_holm);
     return own;
   });
+  return object;
+}
+
+Json control_json(const ThresholdReport& report) {
+  if (!report.control) return nullptr;
+  const SoundReport& control = *report.control;
+  Json object = outside_json(control, report.guess);
+  object["anybody"] = Json::parse(choices::anybody_json(control.anybody));
+  object["detectable"] = {{"trials", control.detectable.trials},
+                          {"right", control.detectable.right},
+                          {"share", figure_json(control.detectable.share)},
+                          {"with", choices::kFoundWith}};
+  object["hearers"] = control.hearers;
+  object["without_hearers"] = Json::array();
+  for (std::size_t i = 0; i < control.without.size(); ++i) {
+    Json one{{"standard", report.standards[i].words},
+             {"participants", control.without[i].participants}};
+    put_censored(one, "mean", control.without[i]);
+    object["without_hearers"].push_back(std::move(one));
+  }
+  return object;
+}
+
+Json catch_json(const ThresholdReport& report) {
+  if (!report.catches) return nullptr;
+  Json object = outside_json(*report.catches, report.guess);
+  object["attentive"] = choices::kAttentive;
+  for (std::size_t i = 0; i < report.attention.size(); ++i) {
+    const choices::Attention& one = report.attention[i];
+    object["participants"][i]["attending"] = {
+        {"p", one.p}, {"p_holm", one.p_holm}, {"doubtful", one.is_doubtful()}};
+  }
   return object;
 }
 
@@ -142,10 +192,8 @@ Json level_json(const ThresholdReport& report, const SameDifferentLevel& one) {
           {"d_prime_independent", figure_json(one.d_independent)}};
 }
 
-Json mean_json(const MeanEstimate& mean) {
-  Json object{{"participants", mean.participants}};
-  put_mean(object, mean);
-  return object;
+Json pooled_json(const PooledDPrime& pooled) {
+  return {{"d_prime", figure_json(pooled.d_prime)}, {"interval", interval_json(pooled.interval)}};
 }
 
 Json same_different_json(const ThresholdReport& report) {
@@ -155,15 +203,15 @@ Json same_different_json(const ThresholdReport& report) {
   Json groups = array_json(report.same_different_groups, [&](const SameDifferentGroup& one) {
     return Json{{"standard", report.standards[one.standard].words},
                 {"level", one.level},
-                {"differencing", mean_json(one.differencing)},
-                {"independent", mean_json(one.independent)}};
+                {"participants", one.participants},
+                {"differencing", pooled_json(one.differencing)},
+                {"independent", pooled_json(one.independent)}};
   });
   return {{"levels", std::move(levels)}, {"groups", std::move(groups)}};
 }
 
 Json settings_json(const ThresholdReport& report) {
   const study::threshold::ThresholdOptions& options = report.options();
-  const Json quoted = report.by_posterior ? "posterior" : "likelihood";
   return {{"task", study::threshold::name_of(options.task)},
           {"question", study::threshold::name_of(options.question)},
           {"along", study::threshold::name_of(options.along)},
@@ -171,7 +219,6 @@ Json settings_json(const ThresholdReport& report) {
           {"unit", study::threshold::unit_of_level(options)},
           {"guess", report.guess},
           {"criterion", figure_json(report.criterion)},
-          {"quoted", report.has_thresholds() ? quoted : Json(nullptr)},
           {"levels", options.track.levels},
           {"without_answer", report.without_answer}};
 }
@@ -186,9 +233,13 @@ std::string report_json(const ThresholdReport& report) {
   members["tracks"] = array_json(report.tracks, of_report(track_json));
   members["standards"] = array_json(report.standards, of_report(standard_json));
   members["differences"] = array_json(report.differences, of_report(difference_json));
-  members["control"] = outside_json(report.control, report.guess);
-  members["catch"] = outside_json(report.catches, report.guess);
+  members["control"] = control_json(report);
+  members["catch"] = catch_json(report);
   members["intervals"] = array_json(report.choice_use, choice_json);
+  members["preferences"] =
+      report.preferences.people.empty()
+          ? Json(nullptr)
+          : Json::parse(choices::preferences_json(report.preferences, report.choices));
   members["sequence"] = {{"after_right", repetition_json(report.after_right)},
                          {"after_wrong", repetition_json(report.after_wrong)}};
   members["learning"] = Json::object();

@@ -1,7 +1,9 @@
+#include "core/named.hpp"
 #include "core/parallel.hpp"
 #include "protocols/threshold/analysis/report.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -9,7 +11,6 @@ namespace touchtrial::analysis::threshold {
 namespace {
 
 using choices::Person;
-using procedures::Censored;
 using procedures::LevelCounts;
 using procedures::Observer;
 using procedures::TrackTrial;
@@ -31,13 +32,17 @@ std::vector<TrackReport> tracks_of(const Person& person,
     tracks[i].standard = i / each;
   }
   for (const TrialOutcome* trial : person.trials) {
-    if (!in_track(*trial)) continue;
+    if (!in_track(*trial) && !is_catch(*trial)) continue;
     const auto track = static_cast<std::size_t>(trial->chosen->track - 1);
     const auto level = static_cast<std::size_t>(trial->chosen->level);
     if (track >= tracks.size()) continue;
     if (level >= standards[track / each].track.levels.size()) continue;
-    tracks[track].trials.push_back({level, trial->correct()});
-    tracks[track].answers.add(trial->correct());
+    if (is_catch(*trial)) {
+      tracks[track].catches.add(trial->correct());
+    } else {
+      tracks[track].trials.push_back({level, trial->correct()});
+      tracks[track].answers.add(trial->correct());
+    }
   }
   std::erase_if(tracks, [](const TrackReport& track) { return track.trials.empty(); });
   return tracks;
@@ -55,36 +60,13 @@ procedures::FitOptions fit_options(const ThresholdOptions& options) {
   return {.shape = options.track.grid.shape, .guess = options.track.grid.guess};
 }
 
-/// The estimate, and the observer that it describes.
-struct Estimated {
-  TrackEstimate estimate;
-  std::optional<Observer> observer;
-};
-
-Estimated with_observer(const procedures::Threshold& threshold, const Observer& observer) {
-  Estimated found{{threshold}, {}};
-  if (threshold.censored != Censored::no) return found;
-  found.estimate.slope = observer.slope;
-  found.estimate.lapse = observer.lapse;
-  found.observer = observer;
-  return found;
-}
-
-Estimated posterior_estimate(const TrackReport& track, const ThresholdOptions& options) {
-  const procedures::TrackSettings& settings = options.track;
-  const procedures::Posterior posterior =
-      procedures::posterior_of(settings.levels, settings.grid, track.trials);
-  const Observer mean{settings.grid.shape, procedures::mean_of(posterior.threshold()),
-                      procedures::mean_of(posterior.slope()), settings.grid.guess,
-                      procedures::mean_of(posterior.lapse())};
-  return with_observer(procedures::posterior_threshold(posterior, settings.levels), mean);
-}
-
-Estimated likelihood_estimate(std::span<const LevelCounts> counts,
-                              const ThresholdOptions& options) {
-  const procedures::FitOptions fit = fit_options(options);
-  return with_observer(procedures::likelihood_threshold(counts, fit),
-                       procedures::fit_observer(counts, fit).observer);
+/// Of the trials that the procedure chose and of the catch trials.
+std::vector<LevelCounts> counts_of_both(const TrackReport& track, std::span<const double> levels) {
+  std::vector<TrackTrial> trials = track.trials;
+  for (int i = 0; i < track.catches.n; ++i) {
+    trials.push_back({levels.size() - 1, i < track.catches.correct});
+  }
+  return procedures::counts_of(levels, trials);
 }
 
 /// What one trial tells of a change of the threshold, p being the share right at its level.
@@ -136,35 +118,27 @@ std::optional<double> learning_of(std::span<const TrackTrial> trials, const Obse
 }
 
 /// \param index  chooses the stream of random numbers
-void estimate(TrackReport& track, const ThresholdOptions& options, bool quotes_posterior,
-              std::size_t index) {
+void estimate(TrackReport& track, const ThresholdOptions& options, std::size_t index) {
   const std::vector<double>& levels = options.track.levels;
-  const std::vector<LevelCounts> counts = procedures::counts_of(levels, track.trials);
-  const Estimated posterior = posterior_estimate(track, options);
-  track.posterior = posterior.estimate;
-  if (quotes_posterior) track.observer = posterior.observer;
-  if (counts.size() >= 2) {
-    const Estimated likely = likelihood_estimate(counts, options);
-    track.likelihood = likely.estimate;
-    if (!quotes_posterior) track.observer = likely.observer;
-    if (is_constant(options)) {
-      RandomStream random(1, "threshold analysis: goodness of fit", index);
-      track.fit = procedures::goodness_of_fit(counts, fit_options(options), kFitDraws, random);
-    }
+  const procedures::ParameterGrid& assumed = options.track.grid;
+  const std::vector<LevelCounts> counts = counts_of_both(track, levels);
+  track.estimate = procedures::estimate_threshold(counts, levels, assumed.shape, assumed.guess);
+  if (is_constant(options) && counts.size() >= 2) {
+    RandomStream random(1, "threshold analysis: goodness of fit", index);
+    track.fit = procedures::goodness_of_fit(counts, fit_options(options), kFitDraws, random);
   }
   if (is_staircase(options)) {
     track.reversals = procedures::reversal_threshold(levels, track.trials);
   }
-  // Not the most likely observer, whose slope has no bound.
-  if (posterior.observer) {
-    track.learning_db = learning_of(track.trials, *posterior.observer, levels);
+  if (track.threshold()) {
+    track.learning_db = learning_of(track.trials, track.estimate->observer, levels);
   }
 }
 
 }  // namespace
 
 std::vector<TrackReport> track_reports(const study::Study& study, std::span<const Person> people,
-                                       bool by_posterior, int jobs) {
+                                       int jobs) {
   const ThresholdOptions& options = study::threshold::options_of(study);
   std::vector<ThresholdOptions> standards;
   for (const study::threshold::Standard& of : study::threshold::standards_of(study)) {
@@ -178,10 +152,16 @@ std::vector<TrackReport> track_reports(const study::Study& study, std::span<cons
     }
   }
   if (options.question == study::threshold::Question::same_different) return all;
-  in_parallel(jobs, all.size(), [&](std::size_t i) {
-    estimate(all[i], standards[all[i].standard], by_posterior, i);
-  });
+  in_parallel(jobs, all.size(),
+              [&](std::size_t i) { estimate(all[i], standards[all[i].standard], i); });
   return all;
+}
+
+std::string_view word_of(procedures::Censored censored) {
+  using enum procedures::Censored;
+  static constexpr auto kWords = std::to_array<Named<procedures::Censored>>(
+      {{"", no}, {"below", below}, {"above", above}, {"undetermined", undetermined}});
+  return name_in(kWords, censored);
 }
 
 std::optional<double> quantity_at(const ThresholdOptions& options,

@@ -1,8 +1,7 @@
+#include "analysis/choices/people_report.hpp"
 #include "analysis/report/page/wording.hpp"
 #include "core/text.hpp"
 #include "protocols/threshold/analysis/report.hpp"
-
-#include <algorithm>
 
 #include <fmt/format.h>
 
@@ -10,10 +9,6 @@ namespace touchtrial::analysis::threshold {
 namespace {
 
 using study::threshold::Along;
-using study::threshold::Question;
-
-/// Catch trials are at the highest level, where hardly anybody who attends is wrong.
-constexpr double kPoorCatches = 0.8;
 
 using Sentences = std::vector<std::string>;
 
@@ -24,36 +19,53 @@ void warn_of_sound(const ThresholdReport& report, Sentences& all) {
         "participants could hear what they were meant to feel.");
     return;
   }
-  const RightAnswers& pooled = report.control->pooled;
-  if (!pooled.p || *pooled.p > kUsualLevel) return;
+  if (!report.control->anybody.found()) return;
+  const std::string who = hearers_words(*report.control);
+  if (who.empty()) {
+    all.push_back(fmt::format(
+        "With the hand off the device participants together did better than guessing ({}): they "
+        "could hear something, and every threshold may be of the ear.",
+        p_phrase(report.control->anybody.p)));
+    return;
+  }
   all.push_back(fmt::format(
-      "With the hand off the device {} of {} answers were right, more than guessing gives ({}): "
-      "participants could hear something, and the thresholds may be of the ear.",
-      pooled.answers.correct, pooled.answers.n, p_phrase(*pooled.p)));
+      "With the hand off the device {}. They could hear something, and their thresholds may be of "
+      "the ear. The result keeps them; a table has the means without them.",
+      who));
 }
 
 void warn_of_censored(const ThresholdReport& report, Sentences& all) {
   for (const StandardReport& one : report.standards) {
-    const int censored = one.censored_below + one.censored_above;
-    if (censored == 0) continue;
-    all.push_back(fmt::format(
-        "{}: {} of {} reached a bound of the levels ({} below, {} above) and gave no threshold; "
-        "the mean is without them, and so too near to the middle of the levels.",
-        one.words, censored, counted(one.tracks, "track"), one.censored_below, one.censored_above));
+    if (one.mean.exact == one.mean.participants) continue;
+    const std::string known = fmt::format("{}: of {} {} {} a threshold inside the levels",
+                                          one.words, counted(one.mean.participants, "participant"),
+                                          one.mean.exact, one.mean.exact == 1 ? "has" : "have");
+    if (one.mean.lack == Lack::most) {
+      all.push_back(known +
+                    ", fewer than half, so there is no mean. Present levels that reach "
+                    "farther, or a texture that is felt more easily.");
+    } else if (one.mean.mean) {
+      all.push_back(known +
+                    "; the mean counts the others as beyond the levels, and assumes that "
+                    "all thresholds together are normally distributed in dB.");
+    }
   }
 }
 
 void warn_of_attention(const ThresholdReport& report, Sentences& all) {
-  if (!report.catches) return;
   std::vector<std::string> names;
-  for (const RightAnswers& one : report.catches->people) {
-    if (one.answers.share().value_or(1.0) < kPoorCatches) names.push_back(one.participant);
+  for (std::size_t i = 0; i < report.attention.size(); ++i) {
+    if (!report.attention[i].is_doubtful()) continue;
+    const RightAnswers& one = report.catches->people[i];
+    names.push_back(
+        fmt::format("{} ({} of {})", one.participant, one.answers.correct, one.answers.n));
   }
   if (names.empty()) return;
   all.push_back(fmt::format(
-      "Fewer than four of five catch trials, which are at the highest level, were answered right "
-      "by {}: not attending, not understanding, or levels that are too low.",
-      listed(names, " and ")));
+      "Fewer catch trials, which are at the highest level, were answered right than somebody who "
+      "attends would ({} or more; by Holm over participants) by {}: not attending, not "
+      "understanding, or levels that are too low.",
+      share_figure(choices::kAttentive), listed(names, " and ")));
 }
 
 void warn_of_fit(const ThresholdReport& report, Sentences& all) {
@@ -79,30 +91,26 @@ void warn_of_habits(const ThresholdReport& report, Sentences& all) {
         "describe a track.",
         learning.mean.mean.value_or(0.0) < 0.0 ? "better" : "worse", p_phrase(*learning.p)));
   }
-  if (report.options().question == Question::same_different) return;
-  // Of several answers, by Bonferroni.
-  const double level = kUsualLevel / std::max(1.0, static_cast<double>(report.choice_use.size()));
-  const bool prefers = std::ranges::any_of(report.choice_use, [level](const ChoiceUse& one) {
-    return one.excess.p && *one.excess.p <= level;
-  });
-  if (prefers) {
-    all.emplace_back(
-        "Participants preferred an interval. Their thresholds are too high, because answers that "
-        "follow the preference are right only by chance.");
-  }
+  const std::string who = choices::preference_words(report.preferences, report.choices);
+  if (who.empty()) return;
+  all.push_back(who +
+                ". Answers that follow a preference are right only by chance, so these thresholds "
+                "are too high: by 0.4 dB if, at the threshold, those shares are 94 % and 70 %, by "
+                "1.4 dB if they are 99 % and 64 %.");
 }
 
 void warn_of_design(const ThresholdReport& report, Sentences& all) {
   const auto& options = report.options();
+  if (study::threshold::missing_catch_trials(report.design) > 0) {
+    all.emplace_back(
+        "Fewer than six trials of a track, or than a tenth, were surely at its highest level, "
+        "where only lapses make answers wrong. A lapse then looks like a higher threshold: "
+        "thresholds of people who lapse are biased.");
+  }
   if (options.along == Along::order && options.rove_db == 0.0) {
     all.emplace_back(
         "Another order also has another strength, and gains were not roved: participants may have "
         "compared strengths.");
-  }
-  if (report.has_thresholds() && report.by_posterior && !report.tracks.empty()) {
-    all.emplace_back(
-        "Slopes and lapse rates of adaptive tracks are by-products: few trials are where they "
-        "show, and fitted slopes are too steep.");
   }
 }
 

@@ -2,61 +2,61 @@
 
 #include "core/errors.hpp"
 
-#include <cmath>
 #include <cstddef>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace touchtrial::planning::threshold {
 namespace {
 
-using nlohmann::json;
+using analysis::CensoredMean;
+using analysis::threshold::StandardReport;
+using analysis::threshold::ThresholdReport;
+using analysis::threshold::TrackReport;
 
-constexpr std::size_t kMinPilots = 3;
+constexpr int kMinPilots = 3;
 /// Right answers at the threshold that levels count from (d' = 1.62) among two and three intervals.
 constexpr double kRightOfTwo = 0.8744;
 constexpr double kRightOfThree = 0.794;
 
-/// The threshold of a track, at the share of right answers that levels count from, dB.
-double threshold_db(const json& track, double guess) {
-  const json& found = track.at("posterior");
-  const double right = guess > 0.4 ? kRightOfTwo : kRightOfThree;
-  // Along the track's Weibull function.
-  const double more = std::log10(-std::log((1.0 - right) / (1.0 - guess)));
-  return found.at("threshold").get<double>() + 20.0 * more / found.at("slope").get<double>();
+/// How far the level with the share of right answers that levels count from lies above the report's
+/// thresholds, in dB, along the functions of tracks with a threshold.
+double rise_db(const ThresholdReport& report, std::size_t standard) {
+  const double right = report.guess > 0.4 ? kRightOfTwo : kRightOfThree;
+  double sum = 0.0;
+  int n = 0;
+  for (const TrackReport& track : report.tracks) {
+    if (track.standard != standard || !track.threshold()) continue;
+    procedures::Observer observer = track.estimate->observer;
+    observer.lapse = 0.0;
+    sum += procedures::level_at(observer, right) - observer.threshold;
+    ++n;
+  }
+  return n > 0 ? sum / n : 0.0;
 }
 
 }  // namespace
 
-std::optional<std::vector<std::pair<std::string, double>>> pilot_means(const std::string& text,
-                                                                       const std::string& place) {
-  const json report = json::parse(text);
-  if (report.value("task", "") != "detection" || report.value("along", "") != "gain" ||
-      report.value("question", "") != "which-interval") {
+std::optional<std::vector<std::pair<std::string, double>>> pilot_means(
+    const ThresholdReport& report, const std::string& place) {
+  const study::threshold::ThresholdOptions& options = report.options();
+  if (options.task != study::threshold::Task::detection ||
+      options.along != study::threshold::Along::gain ||
+      options.question != study::threshold::Question::which_interval) {
     return std::nullopt;
   }
   std::vector<std::pair<std::string, double>> means;
-  for (const json& standard : report.at("standards")) {
-    double sum = 0.0;
-    std::size_t found = 0;
-    std::size_t censored = 0;
-    for (const json& track : report.at("tracks")) {
-      if (track.at("standard") != standard.at("standard")) continue;
-      if (track.at("posterior").at("threshold").is_null()) {
-        ++censored;
-        continue;
-      }
-      sum += threshold_db(track, report.at("guess").get<double>());
-      ++found;
-    }
-    if (found < kMinPilots || censored > found) {
+  for (std::size_t i = 0; i < report.standards.size(); ++i) {
+    const StandardReport& standard = report.standards[i];
+    const CensoredMean& mean = standard.mean;
+    if (mean.exact < kMinPilots || !mean.mean) {
       throw StudyError(one_line(fmt::format(
-          "{}: has {} thresholds of {} and {} that lie beyond its levels; it "
-          "needs {} or more, and fewer beyond",
-          place, found, standard.at("standard").get<std::string>(), censored, kMinPilots)));
+          "{}: has {} thresholds of {} and {} that are not known; it needs {} or more, and no more "
+          "that are not known",
+          place, mean.exact, standard.words, mean.participants - mean.exact, kMinPilots)));
     }
-    means.emplace_back(standard.at("class").get<std::string>(), sum / static_cast<double>(found));
+    means.emplace_back(report.classes.at(static_cast<std::size_t>(standard.of.class_index)),
+                       *mean.mean + rise_db(report, i));
   }
   if (means.empty()) throw StudyError(one_line(place + ": has no threshold yet"));
   return means;

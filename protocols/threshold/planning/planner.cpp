@@ -1,6 +1,5 @@
 #include "protocols/threshold/planning/planner.hpp"
 
-#include "analysis/report/results.hpp"
 #include "analysis/report/text_figures.hpp"
 #include "core/errors.hpp"
 #include "core/text.hpp"
@@ -20,16 +19,16 @@
 namespace touchtrial::planning::threshold {
 namespace {
 
-constexpr int kMostTrialsOfTrack = 2000;
+constexpr int kMaxTrialsOfTrack = 2000;
 
 std::vector<int> trials_to_try(const study::Study& study, const PowerOptions& options) {
   if (options.trials.empty()) return {study::threshold::options_of(study).track.trials};
   std::vector<int> trials = numbers_named(options.trials, "--trials", "a number of trials");
   std::ranges::sort(trials);
   const bool twice = std::ranges::adjacent_find(trials) != trials.end();
-  if (twice || trials.front() < 1 || trials.back() > kMostTrialsOfTrack) {
+  if (twice || trials.front() < 1 || trials.back() > kMaxTrialsOfTrack) {
     throw UsageError(fmt::format("--trials: give different numbers from 1 to {}, as 30,60,120",
-                                 kMostTrialsOfTrack));
+                                 kMaxTrialsOfTrack));
   }
   return trials;
 }
@@ -108,8 +107,7 @@ class ThresholdPlanner final : public Planner {
 
   std::vector<std::pair<std::string, double>> pilot_thresholds(
       const analysis::Outcomes& outcomes, const std::string& place) const override {
-    const std::string report = analysis::analysis_of(outcomes.design).results(outcomes, {})->json();
-    const auto means = pilot_means(report, place);
+    const auto means = pilot_means(analysis::threshold::make_report(outcomes), place);
     return means ? *means : Planner::pilot_thresholds(outcomes, place);
   }
 };

@@ -1,6 +1,6 @@
 #include "protocols/threshold/planning/threshold_plan.hpp"
 
-#include "analysis/statistics/mean_test.hpp"
+#include "analysis/statistics/descriptive.hpp"
 #include "core/parallel.hpp"
 #include "core/random.hpp"
 
@@ -12,7 +12,8 @@
 namespace touchtrial::planning::threshold {
 namespace {
 
-constexpr double kAnyNumber = std::numeric_limits<double>::max();
+using analysis::Bounds;
+
 constexpr double kNoInterval = std::numeric_limits<double>::infinity();
 
 /// One sample: half-widths, and whether the comparison was significant.
@@ -20,17 +21,16 @@ struct SampleResult {
   std::vector<double> half_widths;  ///< by standard
   double of_difference = kNoInterval;
   bool significant = false;
-  bool false_alarm = false;
+  std::optional<bool> false_alarm;  ///< nothing if nobody knows what no difference is
 };
 
-double half_width_of(std::span<const double> values) {
-  const analysis::MeanEstimate mean = analysis::participant_mean(values, {-kAnyNumber, kAnyNumber});
-  const auto interval = mean.known_interval();
+double half_width_of(std::span<const Bounds> people) {
+  const auto interval = analysis::censored_mean(people).interval;
   return interval ? 0.5 * (interval->high - interval->low) : kNoInterval;
 }
 
-bool rejects(std::span<const double> values, double alpha) {
-  const auto p = analysis::t_test_p(values, 0.0, analysis::Sides::two);
+bool rejects(std::span<const Bounds> people, double null, double alpha) {
+  const auto p = analysis::censored_p(people, null, analysis::Sides::two);
   return p && *p <= alpha;
 }
 
@@ -41,36 +41,31 @@ std::vector<std::size_t> drawn(std::size_t people, int size, RandomStream& rando
   return sample;
 }
 
-std::vector<double> thresholds_of_sample(const ThresholdPool& pool,
-                                         std::span<const std::size_t> sample,
-                                         std::size_t standard) {
-  std::vector<double> values;
-  for (const std::size_t person : sample) {
-    if (const auto& threshold = pool.people[person][standard]) values.push_back(*threshold);
-  }
-  return values;
+std::vector<Bounds> sampled(std::span<const Bounds> pool, std::span<const std::size_t> sample) {
+  std::vector<Bounds> people;
+  for (const std::size_t person : sample) people.push_back(pool[person]);
+  return people;
 }
 
-std::optional<double> difference_of(const std::vector<std::optional<double>>& person,
-                                    const std::pair<std::size_t, std::size_t>& of) {
-  const std::optional<double>& first = person[of.first];
-  const std::optional<double>& second = person[of.second];
-  if (!first || !second) return std::nullopt;
-  return *first - *second;
+/// Of the two thresholds that the plan compares.
+struct Differences {
+  std::vector<Bounds> people;
+  std::optional<double> mean;  ///< over the whole pool
+};
+
+Differences differences_of(const ThresholdPool& pool, const ThresholdPlan& plan) {
+  if (!plan.difference) return {};
+  std::vector<Bounds> people = differences_in(pool, *plan.difference);
+  const std::optional<double> mean = analysis::censored_mean(people).mean;
+  return {std::move(people), mean};
 }
 
-void compare(const ThresholdPool& pool, const ThresholdPlan& plan,
-             std::span<const std::size_t> sample, double mean_difference, SampleResult& result) {
-  std::vector<double> values;
-  for (const std::size_t person : sample) {
-    if (const auto value = difference_of(pool.people[person], *plan.difference)) {
-      values.push_back(*value);
-    }
-  }
-  result.of_difference = half_width_of(values);
-  result.significant = rejects(values, plan.alpha);
-  for (double& value : values) value -= mean_difference;
-  result.false_alarm = rejects(values, plan.alpha);
+void compare(const Differences& differences, const ThresholdPlan& plan,
+             std::span<const std::size_t> sample, SampleResult& result) {
+  const std::vector<Bounds> people = sampled(differences.people, sample);
+  result.of_difference = half_width_of(people);
+  result.significant = rejects(people, 0.0, plan.alpha);
+  if (differences.mean) result.false_alarm = rejects(people, *differences.mean, plan.alpha);
 }
 
 std::optional<double> finite_quantile(std::span<const double> sorted, double share) {
@@ -83,7 +78,8 @@ HalfWidths figures_of(std::vector<double> half_widths, const std::optional<doubl
   HalfWidths figures;
   figures.median = finite_quantile(half_widths, 0.5);
   figures.upper = finite_quantile(half_widths, 0.9);
-  figures.without = static_cast<int>(std::ranges::count(half_widths, kNoInterval));
+  figures.without.n = static_cast<int>(half_widths.size());
+  figures.without.correct = static_cast<int>(std::ranges::count(half_widths, kNoInterval));
   if (!wanted) return figures;
   figures.narrow.n = static_cast<int>(half_widths.size());
   figures.narrow.correct =
@@ -98,9 +94,8 @@ DifferencePower power_of(const std::vector<SampleResult>& samples, const Thresho
   for (const SampleResult& sample : samples) {
     widths.push_back(sample.of_difference);
     ++power.significant.n;
-    ++power.false_alarms.n;
     power.significant.correct += sample.significant ? 1 : 0;
-    power.false_alarms.correct += sample.false_alarm ? 1 : 0;
+    if (sample.false_alarm) power.false_alarms.add(*sample.false_alarm);
   }
   power.width = figures_of(std::move(widths), plan.width_db);
   power.power = analysis::wilson_interval(power.significant);
@@ -122,40 +117,37 @@ ThresholdRow threshold_row(const ThresholdPool& pool, const ThresholdPlan& plan,
 
 }  // namespace
 
-std::vector<double> differences_in(const ThresholdPool& pool,
+std::vector<Bounds> differences_in(const ThresholdPool& pool,
                                    const std::pair<std::size_t, std::size_t>& of) {
-  std::vector<double> values;
-  for (const auto& person : pool.people) {
-    if (const auto value = difference_of(person, of)) values.push_back(*value);
+  std::vector<Bounds> differences;
+  for (const std::vector<Bounds>& person : pool.people) {
+    differences.push_back(analysis::difference_of(person[of.first], person[of.second]));
   }
-  return values;
+  return differences;
 }
 
-std::vector<double> thresholds_in(const ThresholdPool& pool, std::size_t standard) {
-  std::vector<double> values;
-  for (const auto& person : pool.people) {
-    if (person[standard]) values.push_back(*person[standard]);
-  }
-  return values;
+std::vector<Bounds> thresholds_in(const ThresholdPool& pool, std::size_t standard) {
+  std::vector<Bounds> thresholds;
+  for (const std::vector<Bounds>& person : pool.people) thresholds.push_back(person[standard]);
+  return thresholds;
 }
 
 std::vector<ThresholdRow> rows_of(const ThresholdPool& pool, const ThresholdPlan& plan, int jobs) {
-  double mean_difference = 0.0;
-  if (plan.difference) {
-    const std::vector<double> all = differences_in(pool, *plan.difference);
-    if (!all.empty()) mean_difference = analysis::mean_of(all);
+  std::vector<std::vector<Bounds>> standards;
+  for (std::size_t i = 0; i < pool.standards.size(); ++i) {
+    standards.push_back(thresholds_in(pool, i));
   }
+  const Differences differences = differences_of(pool, plan);
   std::vector<ThresholdRow> rows;
   for (const int size : plan.participants) {
     std::vector<SampleResult> samples(static_cast<std::size_t>(plan.runs));
     in_parallel(jobs, samples.size(), [&](std::size_t run) {
       RandomStream random(plan.seed, "power: sample of " + std::to_string(size), run);
       const std::vector<std::size_t> sample = drawn(pool.people.size(), size, random);
-      for (std::size_t standard = 0; standard < pool.standards.size(); ++standard) {
-        samples[run].half_widths.push_back(
-            half_width_of(thresholds_of_sample(pool, sample, standard)));
+      for (const std::vector<Bounds>& people : standards) {
+        samples[run].half_widths.push_back(half_width_of(sampled(people, sample)));
       }
-      if (plan.difference) compare(pool, plan, sample, mean_difference, samples[run]);
+      if (plan.difference) compare(differences, plan, sample, samples[run]);
     });
     rows.push_back(threshold_row(pool, plan, size, samples));
   }

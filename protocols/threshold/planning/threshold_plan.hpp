@@ -3,7 +3,7 @@
 /// studies".
 #pragma once
 
-#include "analysis/statistics/descriptive.hpp"
+#include "analysis/statistics/censored_mean.hpp"
 #include "analysis/statistics/proportion.hpp"
 #include "protocols/threshold/planning/threshold_pool.hpp"
 
@@ -26,20 +26,21 @@ struct ThresholdPlan {
   double alpha = 0.05;  ///< of the comparison, two-sided
 };
 
-/// Half-widths of the 95 % t interval of a mean, over samples.
+/// Half-widths of the 95 % interval of a mean, over samples.
 struct HalfWidths {
   std::optional<double> median;  ///< nothing: that many samples have no interval
   std::optional<double> upper;   ///< nine tenths of the samples are narrower
-  int without = 0;               ///< samples with fewer than two thresholds, and so no interval
+  analysis::Proportion without;  ///< samples without an interval, as most are beyond the levels
   analysis::Proportion narrow;   ///< samples within the wanted half-width; of none without one
   analysis::Interval narrow_interval{};  ///< Wilson's, 95 %
 };
 
 struct DifferencePower {
   HalfWidths width;
-  analysis::Proportion significant;  ///< paired t test
+  analysis::Proportion significant;  ///< analysis::censored_p of the differences
   analysis::Interval power{};        ///< Wilson's, 95 %
-  /// The same samples, with the pool's mean difference taken off everybody's.
+  /// The same samples, with the pool's mean difference taken off everybody's; of none if the pool
+  /// has no mean.
   analysis::Proportion false_alarms;
   analysis::Interval type_one{};
 };
@@ -51,14 +52,13 @@ struct ThresholdRow {
   std::optional<DifferencePower> difference;
 };
 
-/// The participants who have both thresholds: first minus second.
-[[nodiscard]] std::vector<double> differences_in(const ThresholdPool& pool,
-                                                 const std::pair<std::size_t, std::size_t>& of);
-/// Those who have the threshold.
-[[nodiscard]] std::vector<double> thresholds_in(const ThresholdPool& pool, std::size_t standard);
+/// Everybody's thresholds: first minus second.
+[[nodiscard]] std::vector<analysis::Bounds> differences_in(
+    const ThresholdPool& pool, const std::pair<std::size_t, std::size_t>& of);
+[[nodiscard]] std::vector<analysis::Bounds> thresholds_in(const ThresholdPool& pool,
+                                                          std::size_t standard);
 
-/// One row for each size. A sample draws participants of the pool, each anew from all of them, with
-/// the thresholds that they have.
+/// One row for each size. A sample draws participants of the pool, each anew from all of them.
 /// \pre the pool has at least one participant and the standards of the plan
 /// \param jobs  threads; results do not depend on them
 [[nodiscard]] std::vector<ThresholdRow> rows_of(const ThresholdPool& pool,

@@ -4,8 +4,9 @@
 #include "core/strict_json.hpp"
 #include "protocols/threshold/planning/threshold_plan.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -13,13 +14,9 @@
 namespace touchtrial::planning::threshold {
 namespace {
 
-using analysis::MeanEstimate;
+using analysis::Bounds;
+using analysis::CensoredMean;
 using nlohmann::ordered_json;
-
-MeanEstimate any_mean(const std::vector<double>& values) {
-  constexpr double kMost = std::numeric_limits<double>::max();
-  return analysis::participant_mean(values, {-kMost, kMost});
-}
 
 std::string db_text(const std::optional<double>& value) {
   return value ? fmt::format("{:.2f}", *value) : "-";
@@ -35,26 +32,28 @@ std::string compared_words(const ThresholdPlanReport& report) {
   return words[report.plan.difference->first] + " less " + words[report.plan.difference->second];
 }
 
-/// The error of a mean that the pool leaves, because it is finite.
-std::optional<double> pool_error(const MeanEstimate& mean) {
+/// The error of a mean that the pool leaves, because it is finite. People beyond the levels tell
+/// something too, so it is a little less.
+std::optional<double> pool_error(const CensoredMean& mean) {
   if (!mean.sd) return std::nullopt;
-  return *mean.sd / std::sqrt(static_cast<double>(mean.participants));
+  return *mean.sd / std::sqrt(static_cast<double>(mean.exact));
 }
 
 std::vector<std::string> pool_cells(int trials, const std::string& what,
-                                    const std::vector<double>& values) {
-  const MeanEstimate mean = any_mean(values);
+                                    const std::vector<Bounds>& people) {
+  const CensoredMean mean = analysis::censored_mean(people);
   return {std::to_string(trials),
           what,
           std::to_string(mean.participants),
+          std::to_string(mean.exact),
           db_text(mean.mean),
           db_text(mean.sd),
           db_text(pool_error(mean))};
 }
 
 std::string pools_text(const ThresholdPlanReport& report) {
-  analysis::TextTable table({"trials", "thresholds", "people", "mean, dB", "SD", "error of mean"},
-                            {1});
+  analysis::TextTable table(
+      {"trials", "thresholds", "people", "known", "mean, dB", "SD", "error of mean"}, {1});
   std::string censored;
   for (const auto& [pool, rows] : report.pools) {
     for (std::size_t i = 0; i < pool.standards.size(); ++i) {
@@ -65,24 +64,29 @@ std::string pools_text(const ThresholdPlanReport& report) {
           pool_cells(pool.trials, "difference", differences_in(pool, *report.plan.difference)));
     }
     censored += fmt::format(
-        "  {} trials: {} of {} tracks censored ({} below, {} above the levels); {} sessions not "
-        "finished\n",
-        pool.trials, pool.censored_below + pool.censored_above, pool.tracks, pool.censored_below,
-        pool.censored_above, pool.unfinished);
+        "  {} trials: {} of {} thresholds not known ({} below, {} above the levels, {} not "
+        "determined); {} sessions not finished\n",
+        pool.trials, pool.below + pool.above + pool.undetermined,
+        pool.people.size() * pool.standards.size(), pool.below, pool.above, pool.undetermined,
+        pool.unfinished);
   }
   return table.text() + censored;
 }
 
 std::string widths_text(const ThresholdPlanReport& report) {
-  std::vector<std::string> header = {"trials", "participants", "threshold", "half-width, dB",
-                                     "90 % below"};
+  std::vector<std::string> header = {"trials",         "participants", "threshold",
+                                     "half-width, dB", "90 % below",   "without, %"};
   if (report.plan.width_db) {
     header.push_back(fmt::format("within {:.4g} dB, %", *report.plan.width_db));
   }
   analysis::TextTable table(header, {2});
   const auto add = [&](const ThresholdRow& row, const std::string& what, const HalfWidths& width) {
-    std::vector<std::string> cells = {std::to_string(row.trials), std::to_string(row.participants),
-                                      what, db_text(width.median), db_text(width.upper)};
+    std::vector<std::string> cells = {std::to_string(row.trials),
+                                      std::to_string(row.participants),
+                                      what,
+                                      db_text(width.median),
+                                      db_text(width.upper),
+                                      power_per_cent(width.without.share().value_or(0.0))};
     if (report.plan.width_db) cells.push_back(share_text(width.narrow, width.narrow_interval));
     table.add(std::move(cells));
   };
@@ -114,6 +118,24 @@ std::string stamp_of(const ThresholdPlanReport& report) {
          report.setting.subject;
 }
 
+/// One for each threshold and number of trials of which the pool has no mean.
+std::vector<std::string> sentences_of_weak_pools(const ThresholdPlanReport& report) {
+  std::vector<std::string> sentences;
+  for (const auto& [pool, rows] : report.pools) {
+    for (std::size_t i = 0; i < pool.standards.size(); ++i) {
+      const CensoredMean mean = analysis::censored_mean(thresholds_in(pool, i));
+      if (mean.lack != analysis::Lack::most) continue;
+      sentences.push_back(fmt::format(
+          "{}, {} trials: {} of {} simulated participants have a threshold inside the levels, "
+          "fewer "
+          "than half, so there is no mean, and hardly a study would have one. Give levels that "
+          "reach farther, a texture that is felt more easily, or another device.",
+          pool.standards[i], pool.trials, mean.exact, mean.participants));
+    }
+  }
+  return sentences;
+}
+
 std::vector<std::string> sentences_of(const ThresholdPlanReport& report) {
   std::vector<std::string> sentences = {
       fmt::format("Samples of each size: {}, drawn from the simulated participants, each anew from "
@@ -121,14 +143,16 @@ std::vector<std::string> sentences_of(const ThresholdPlanReport& report) {
                   "that the pool is finite is the error of the mean in the first table, and other "
                   "seeds show it.",
                   report.plan.runs),
-      "Half-width: of the 95 % t interval of the mean over participants; its median, and what nine "
-      "tenths of samples stay below. A participant's threshold is the mean of the own tracks that "
-      "are not censored; who has none is missing in a sample, as in a study. Add the participants "
-      "that you expect to lose."};
+      "Half-width: of the 95 % interval of the mean over participants; its median, and what nine "
+      "tenths of samples stay below. Means count everybody, as the report does: people beyond the "
+      "levels by the probability to lie there. Without: samples that have no interval, because "
+      "more than half are beyond. Add the participants that you expect to lose."};
+  std::ranges::move(sentences_of_weak_pools(report), std::back_inserter(sentences));
   if (report.plan.difference) {
     sentences.push_back(fmt::format(
-        "Power: paired t test of the difference, two-sided, level {:.4g}. Type-I error: the same "
-        "people, with their mean difference taken off everybody's.",
+        "Power: test of the mean difference by the same likelihood, two-sided, level {:.4g}; if "
+        "everybody is inside the levels it is the paired t test. Type-I error: the same people, "
+        "with their mean difference taken off everybody's.",
         report.plan.alpha));
   }
   return sentences;
@@ -149,15 +173,16 @@ ordered_json share_json(const analysis::Proportion& share, const analysis::Inter
 ordered_json widths_json(const HalfWidths& width) {
   ordered_json object = {{"half_width_median", number_json(width.median)},
                          {"half_width_90", number_json(width.upper)},
-                         {"samples_without_interval", width.without}};
+                         {"samples_without_interval", width.without.correct}};
   if (width.narrow.n > 0) object["within"] = share_json(width.narrow, width.narrow_interval);
   return object;
 }
 
-ordered_json mean_json(const std::string& what, const std::vector<double>& values) {
-  const MeanEstimate mean = any_mean(values);
+ordered_json mean_json(const std::string& what, const std::vector<Bounds>& people) {
+  const CensoredMean mean = analysis::censored_mean(people);
   return {{"of", what},
           {"people", mean.participants},
+          {"known", mean.exact},
           {"mean", number_json(mean.mean)},
           {"sd", number_json(mean.sd)},
           {"error_of_mean", number_json(pool_error(mean))}};
@@ -191,8 +216,9 @@ ordered_json pool_json(const ThresholdPlanReport& report, const ThresholdPool& p
                          {"people", pool.people.size()},
                          {"unfinished", pool.unfinished},
                          {"tracks", pool.tracks},
-                         {"censored_below", pool.censored_below},
-                         {"censored_above", pool.censored_above},
+                         {"below", pool.below},
+                         {"above", pool.above},
+                         {"undetermined", pool.undetermined},
                          {"thresholds", means}};
   if (report.plan.difference) {
     object["difference"] =

@@ -5,6 +5,7 @@
 #include "core/parallel.hpp"
 #include "protocols/procedures/estimates.hpp"
 #include "protocols/simulation/population.hpp"
+#include "protocols/threshold/analysis/person_threshold.hpp"
 #include "protocols/threshold/study/threshold.hpp"
 
 #include <cstddef>
@@ -18,12 +19,13 @@
 namespace touchtrial::planning::threshold {
 namespace {
 
+using analysis::threshold::PersonThreshold;
 using procedures::Censored;
-using procedures::Threshold;
+using procedures::ThresholdEstimate;
 using procedures::TrackTrial;
 using study::threshold::ThresholdOptions;
 
-/// The trials of each track.
+/// The trials of each track, also its catch trials.
 using TracksOfPerson = std::vector<std::vector<TrackTrial>>;
 
 study::Study with_trials(const study::Study& study, int trials) {
@@ -55,42 +57,35 @@ std::optional<TracksOfPerson> tracks_of_person(const PoolSetting& setting, int n
   return tracks;
 }
 
-Threshold threshold_of(const std::vector<TrackTrial>& trials,
-                       const procedures::TrackSettings& track) {
-  if (track.procedure == "constant-stimuli") {
-    return procedures::likelihood_threshold(procedures::counts_of(track.levels, trials),
-                                            {.shape = track.grid.shape, .guess = track.grid.guess});
-  }
-  return procedures::posterior_threshold(procedures::posterior_of(track.levels, track.grid, trials),
-                                         track.levels);
-}
-
-std::vector<Threshold> thresholds_of(const TracksOfPerson& tracks,
-                                     const procedures::TrackSettings& settings) {
-  std::vector<Threshold> thresholds;
-  for (const std::vector<TrackTrial>& trials : tracks) {
-    thresholds.push_back(threshold_of(trials, settings));
+/// By standard.
+std::vector<PersonThreshold> thresholds_of(const TracksOfPerson& tracks,
+                                           const study::Study& study) {
+  const std::vector<procedures::TrackSettings> settings =
+      study::threshold::block_settings(study).tracks;
+  const auto each = static_cast<std::size_t>(study::threshold::options_of(study).tracks_each);
+  std::vector<PersonThreshold> thresholds;
+  std::vector<ThresholdEstimate> own;
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    const std::vector<double>& levels = settings[i].levels;
+    const procedures::ParameterGrid& grid = settings[i].grid;
+    own.push_back(procedures::estimate_threshold(procedures::counts_of(levels, tracks[i]), levels,
+                                                 grid.shape, grid.guess));
+    if (own.size() < each) continue;
+    thresholds.push_back(analysis::threshold::person_threshold(own, levels));
+    own.clear();
   }
   return thresholds;
 }
 
 /// Adds a participant.
-void add_person(ThresholdPool& pool, const std::vector<Threshold>& thresholds,
-                std::size_t tracks_each) {
-  std::vector<std::optional<double>>& person = pool.people.emplace_back(pool.standards.size());
-  for (std::size_t standard = 0; standard < person.size(); ++standard) {
-    double sum = 0.0;
-    int n = 0;
-    for (std::size_t i = 0; i < tracks_each; ++i) {
-      const Threshold& threshold = thresholds[standard * tracks_each + i];
-      ++pool.tracks;
-      pool.censored_below += threshold.censored == Censored::below ? 1 : 0;
-      pool.censored_above += threshold.censored == Censored::above ? 1 : 0;
-      if (!threshold.level) continue;
-      sum += *threshold.level;
-      ++n;
-    }
-    if (n > 0) person[standard] = sum / n;
+void add_person(ThresholdPool& pool, const std::vector<PersonThreshold>& thresholds,
+                int tracks_each) {
+  pool.tracks += static_cast<int>(thresholds.size()) * tracks_each;
+  pool.people.push_back(analysis::threshold::bounds_of(thresholds));
+  for (const PersonThreshold& one : thresholds) {
+    pool.below += one.censored == Censored::below ? 1 : 0;
+    pool.above += one.censored == Censored::above ? 1 : 0;
+    pool.undetermined += one.censored == Censored::undetermined ? 1 : 0;
   }
 }
 
@@ -112,14 +107,13 @@ ThresholdPool simulated_thresholds(const study::StudyKey& key,
   const std::unique_ptr<const simulation::Population> population =
       simulation::population_of({changed, source, subject, options.seed, options.jobs});
   const PoolSetting setting{changed, source, subject, *population};
-  std::vector<std::optional<std::vector<Threshold>>> found(
+  std::vector<std::optional<std::vector<PersonThreshold>>> found(
       static_cast<std::size_t>(options.people));
   std::mutex counting;
   int done = 0;
   in_parallel(options.jobs, found.size(), [&](std::size_t i) {
     const auto tracks = tracks_of_person(setting, static_cast<int>(i) + 1);
-    const auto& track = study::threshold::options_of(changed.study).track;
-    if (tracks) found[i] = thresholds_of(*tracks, track);
+    if (tracks) found[i] = thresholds_of(*tracks, changed.study);
     const std::lock_guard lock(counting);
     if (progress) progress(++done, options.people);
   });
@@ -129,7 +123,7 @@ ThresholdPool simulated_thresholds(const study::StudyKey& key,
   }
   for (const auto& thresholds : found) {
     if (thresholds) {
-      add_person(pool, *thresholds, static_cast<std::size_t>(registered.tracks_each));
+      add_person(pool, *thresholds, registered.tracks_each);
     } else {
       ++pool.unfinished;
     }

@@ -2,6 +2,7 @@
 /// Source: docs/planning.md, "Power of threshold studies".
 #pragma once
 
+#include "analysis/statistics/censored_mean.hpp"
 #include "protocols/session/stimulus_source.hpp"
 #include "protocols/simulation/subject_model.hpp"
 #include "study/prepare.hpp"
@@ -18,13 +19,13 @@ namespace touchtrial::planning::threshold {
 struct ThresholdPool {
   int trials = 0;                      ///< of a track
   std::vector<std::string> standards;  ///< in words
-  /// By participant, then standard: the mean of the own tracks that are not censored; nothing if
-  /// all are.
-  std::vector<std::vector<std::optional<double>>> people;
+  /// By participant, then standard: as what the report counts the own tracks.
+  std::vector<std::vector<analysis::Bounds>> people;
   int unfinished = 0;  ///< participants whose session did not reach its end; not among `people`
   int tracks = 0;      ///< of all `people`
-  int censored_below = 0;
-  int censored_above = 0;
+  int below = 0;       ///< thresholds of people beyond the lowest level
+  int above = 0;
+  int undetermined = 0;
 };
 
 struct ThresholdPoolOptions {
@@ -34,8 +35,7 @@ struct ThresholdPoolOptions {
 };
 
 /// Simulates sessions without their control block, which comes after the tracks. The thresholds are
-/// those that `report` quotes: posterior means, or the most likely ones with constant stimuli.
-/// Participant n is the same person for every number of trials.
+/// those that `report` counts. Participant n is the same person for every number of trials.
 /// \param trials  of a track, in place of the study's
 /// \param progress  called after each participant, from one thread at a time
 /// \throws UsageError if the procedure cannot have so many trials, or the question has no

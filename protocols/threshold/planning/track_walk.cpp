@@ -1,13 +1,11 @@
 #include "protocols/threshold/planning/track_walk.hpp"
 
 #include "core/errors.hpp"
-#include "core/named.hpp"
 #include "core/random.hpp"
 #include "core/strict_json.hpp"
 #include "core/text.hpp"
 #include "protocols/threshold/study/threshold.hpp"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -66,16 +64,9 @@ ordered_json belief_json(const Belief& belief) {
   return {{"mean", belief.mean}, {"sd", belief.sd}, {"mode", belief.mode}};
 }
 
-std::string_view shape_word(procedures::Shape shape) {
-  using enum procedures::Shape;
-  static constexpr auto kNames = std::to_array<Named<procedures::Shape>>(
-      {{"logistic", logistic}, {"weibull", weibull}, {"normal", normal}});
-  return name_in(kNames, shape);
-}
-
 ordered_json walked_grid_json(const TrackWalk& walk) {
   const procedures::ParameterGrid& grid = walk.settings.grid;
-  return {{"shape", shape_word(grid.shape)},
+  return {{"shape", study::threshold::name_of(grid.shape)},
           {"levels", walk.settings.levels},
           {"threshold", grid.thresholds},
           {"slope", grid.slopes},

@@ -182,10 +182,16 @@ int ComparingParticipant::given_answer(RandomStream& random) {
   const int target = shown.right.value();
   const GivenFunction& given = *subject_.given_function;
   const procedures::ParameterGrid& grid = options_.track.grid;
-  const double own =
-      RandomStream(seed_, "subject: given threshold", static_cast<std::uint64_t>(number_)).normal();
-  const procedures::Observer observer{grid.shape, given.threshold + given.spread * own, given.slope,
-                                      grid.guess, given.lapse};
+  const auto person = static_cast<std::uint64_t>(number_);
+  const int standard = std::max(0, shown.level.value().track - 1) / options_.tracks_each;
+  const double own = RandomStream(seed_, "subject: given threshold", person).normal();
+  const double own_there =
+      RandomStream(seed_, "subject: given threshold at a standard",
+                   person * procedures::kMaxTracks + static_cast<std::uint64_t>(standard))
+          .normal();
+  const double threshold = given.threshold + given.spread * own + given.standard_step * standard +
+                           given.standard_spread * own_there;
+  const procedures::Observer observer{grid.shape, threshold, given.slope, grid.guess, given.lapse};
   const double level = options_.track.levels[static_cast<std::size_t>(shown.level.value().level)];
   const bool right = random.uniform() < procedures::shares_at(observer, level).correct;
   const auto others = static_cast<std::uint64_t>(labels_.size() - 1);

@@ -2,6 +2,7 @@
 
 #include "core/random.hpp"
 #include "core/strict_json.hpp"
+#include "protocols/threshold/study/registered_standards.hpp"
 #include "protocols/threshold/study/threshold_section.hpp"
 
 #include <algorithm>
@@ -115,7 +116,7 @@ class ThresholdOrder final : public Order {
       : Order(places_of(study), draw.secret),
         study_(study),
         trials_(study_, block_secret(draw)),
-        catches_(block_secret(draw)),
+        controls_(block_secret(draw)),
         block_(block_settings(study_), block_secret(draw)) {}
 
   Trial at(const Trial& scheduled) const override {
@@ -127,14 +128,14 @@ class ThresholdOrder final : public Order {
                        kMaxTrials * (times == interruptions_.end() ? 0 : times->second);
     Trial trial = scheduled;
     const std::optional<procedures::Presentation> next = block_.next();
-    if (next && next->track) {
-      trial.role = Role::scored;
-      trial.level = {static_cast<int>(*next->track) + 1, static_cast<int>(next->level)};
-      trials_.fill(trial, "threshold: trial", index, *next->track / tracks_each, next->level);
+    if (next) {
+      trial.role = next->is_catch ? Role::catch_trial : Role::scored;
+      trial.level = {static_cast<int>(next->track) + 1, static_cast<int>(next->level)};
+      trials_.fill(trial, "threshold: trial", index, next->track / tracks_each, next->level);
       return trial;
     }
-    trial.role = next ? Role::catch_trial : Role::control;
-    RandomStream random(catches_, "threshold: standard", index);
+    trial.role = Role::control;
+    RandomStream random(controls_, "threshold: standard", index);
     trials_.fill_easily(trial, "threshold: trial", index, random);
     return trial;
   }
@@ -147,7 +148,7 @@ class ThresholdOrder final : public Order {
  private:
   const Study& study_;
   TrialDraw trials_;
-  Digest catches_;
+  Digest controls_;
   procedures::Block block_;
   std::map<int, std::uint64_t> interruptions_;  ///< by trial
 };
@@ -177,17 +178,28 @@ class ThresholdTask final : public study::Task {
       file.refuse_below("/methods/0/name", "must be \"fixed\", whose order the levels change");
     }
     check_section(file, study);
+    check_registered(file, study);
   }
   std::string in_clear() const override { return section_json(options_); }
   std::string rule(const Study& /*study*/) const override {
-    return "touchtrial threshold 1: levels by the procedure's answers, ties within 1e-9 to the "
-           "smallest; draws by BLAKE2b(participant's secret, purpose, trial); " +
+    return "touchtrial threshold 2: levels by the procedure's answers, ties within 1e-9 to the "
+           "smallest; catch trials dealt evenly to tracks, at their highest level; draws by "
+           "BLAKE2b(participant's secret, purpose, trial); " +
            section_json(options_);
+  }
+  std::vector<std::string> advice(const Study& study) const override {
+    const int missing = missing_catch_trials(study);
+    if (missing == 0) return {};
+    return {fmt::format(
+        "/threshold/catch: {} are too few to tell lapses from a higher threshold, and thresholds "
+        "of people who lapse will be biased; give {}",
+        options_.catch_trials, options_.catch_trials + missing)};
   }
   int scored_trials(const Study& study) const override {
     return static_cast<int>(standards_of(study).size()) * options_.tracks_each *
            options_.track.trials;
   }
+  int answered_catches(const Study& /*study*/) const override { return options_.catch_trials; }
   Fields fields(const Study& study) const override {
     return {
         .methods = methods(study.methods.front()), .mixtures = mixtures(study), .levelled = true};
@@ -278,6 +290,9 @@ std::shared_ptr<const study::Task> read_task(const std::optional<JsonValue>& sec
   return std::make_shared<ThresholdTask>(section ? read_section(*section) : ThresholdOptions{});
 }
 
+constexpr Estimand kEstimands[] = {Estimand::mean_threshold, Estimand::threshold_difference,
+                                   Estimand::threshold_equality};
+
 }  // namespace
 
 const ThresholdOptions& options_of(const Study& study) {
@@ -295,7 +310,8 @@ const Protocol& protocol() {
                                       .section = "threshold",
                                       .read = read_task,
                                       .min_classes = 1,
-                                      .adaptive = true};
+                                      .adaptive = true,
+                                      .estimands = kEstimands};
   return kProtocol;
 }
 
@@ -374,6 +390,23 @@ procedures::BlockSettings block_settings(const Study& study) {
     block.tracks.insert(block.tracks.end(), static_cast<std::size_t>(options.tracks_each), track);
   }
   return block;
+}
+
+int missing_catch_trials(const Study& study) {
+  constexpr int kLeast = 6;
+  const ThresholdOptions& options = options_of(study);
+  if (options.question == Question::same_different) return 0;
+  const procedures::BlockSettings block = block_settings(study);
+  int of_each = 0;
+  for (const procedures::TrackSettings& track : block.tracks) {
+    const int own = track.procedure == "constant-stimuli"
+                        ? track.trials / static_cast<int>(track.levels.size())
+                        : 0;
+    const int wanted = std::max(kLeast, (track.trials + 9) / 10);
+    of_each = std::max(of_each, std::min(wanted, track.trials / 2) - own);
+  }
+  const int of_all = of_each * static_cast<int>(block.tracks.size());
+  return std::max(0, of_all - block.catch_trials);
 }
 
 Digest block_secret(const ScheduleDraw& draw) {

@@ -53,7 +53,7 @@ struct ThresholdOptions {
   procedures::TrackSettings track{};
   std::vector<double> standards{};  ///< of discrimination along gain and order, else {0}
   int tracks_each = 1;              ///< of each class and standard, 1 to 8 in all
-  int catch_trials = 0;             ///< at the highest level, in no track
+  int catch_trials = 0;             ///< of all tracks: procedures::BlockSettings
   double rove_db = 0.0;             ///< each interval's gain is drawn from a range so wide, 0: not
   bool feedback = false;
   int practice_trials = 0;  ///< of a round, at the highest level
@@ -73,6 +73,7 @@ struct ThresholdOptions {
 [[nodiscard]] std::string_view name_of(Task task);
 [[nodiscard]] std::string_view name_of(Question question);
 [[nodiscard]] std::string_view name_of(Along along);
+[[nodiscard]] std::string_view name_of(procedures::Shape shape);
 
 /// By class, then by standard: what track t, from 0, is about is at t / tracks_each.
 [[nodiscard]] std::vector<Standard> standards_of(const Study& study);
@@ -94,6 +95,12 @@ struct ThresholdOptions {
 [[nodiscard]] procedures::BlockSettings block_settings(const Study& study);
 /// Of one participant: what Block is made from.
 [[nodiscard]] Digest block_secret(const ScheduleDraw& draw);
+
+/// The catch trials that the study lacks for a tenth of each track's trials, and six or more, to be
+/// at the highest level, where only lapses make answers wrong: without them a lapse looks like a
+/// higher threshold. A short track needs half of its trials at most.
+/// \return 0 for same or different, which has no thresholds
+[[nodiscard]] int missing_catch_trials(const Study& study);
 
 /// The quantity of the comparison at a level: A + dA, in the units of Standard::value; of detection
 /// the level itself.

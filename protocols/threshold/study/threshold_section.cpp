@@ -30,9 +30,9 @@ constexpr auto kShapeNames =
                                              {"logistic", procedures::Shape::logistic},
                                              {"normal", procedures::Shape::normal}});
 
-constexpr std::size_t kMostValues = 200;
+constexpr std::size_t kMaxValues = 200;
 constexpr NumberRange kLevelRange{-200.0, 40.0};
-constexpr double kMostTables = 20e6;  ///< numbers of all tracks' posteriors
+constexpr double kMaxTables = 20e6;  ///< numbers of all tracks' posteriors
 
 /// A list, or {"from", "to", "step"}.
 std::vector<double> read_values(const JsonValue& place, const NumberRange& range,
@@ -45,13 +45,13 @@ std::vector<double> read_values(const JsonValue& place, const NumberRange& range
     const double step = object.at("step").number({0.0, 1000.0, true});
     const double steps = std::floor((to - from) / step + 1e-9);
     if (to < from) place.refuse("must not end below its beginning; exchange from and to");
-    if (steps >= static_cast<double>(kMostValues)) {
-      place.refuse(fmt::format("has more than {} values; give a larger step", kMostValues));
+    if (steps >= static_cast<double>(kMaxValues)) {
+      place.refuse(fmt::format("has more than {} values; give a larger step", kMaxValues));
     }
     for (int i = 0; i <= static_cast<int>(steps); ++i) values.push_back(from + i * step);
     return values;
   }
-  for (const JsonValue& item : place.items(1, kMostValues)) values.push_back(item.number(range));
+  for (const JsonValue& item : place.items(1, kMaxValues)) values.push_back(item.number(range));
   if (std::ranges::adjacent_find(values, std::greater_equal<>()) != values.end()) {
     place.refuse("must ascend, each value once; sort the list");
   }
@@ -91,8 +91,8 @@ void read_up_down(const JsonValue& place, procedures::TrackSettings& track) {
   if (const auto m = object.find("up_for_one_down")) rule.up_for_one_down = read_count(*m, 1, 100);
   if (const auto m = object.find("steps_down")) {
     rule.steps_down.clear();
-    for (const JsonValue& item : m->items(1, kMostValues)) {
-      rule.steps_down.push_back(read_count(item, 1, kMostValues));
+    for (const JsonValue& item : m->items(1, kMaxValues)) {
+      rule.steps_down.push_back(read_count(item, 1, kMaxValues));
     }
   }
   if (const auto m = object.find("first_level")) {
@@ -201,6 +201,9 @@ std::string_view name_of(Question question) {
 std::string_view name_of(Along along) {
   return name_in(kAlongNames, along);
 }
+std::string_view name_of(procedures::Shape shape) {
+  return name_in(kShapeNames, shape);
+}
 
 ThresholdOptions read_section(const JsonValue& section) {
   const JsonObject object =
@@ -283,10 +286,10 @@ void check_section(const JsonValue& file, const Study& study) {
   };
   const std::vector<Standard> standards = standards_of(study);
   const auto tracks = standards.size() * static_cast<std::size_t>(options.tracks_each);
-  if (tracks > procedures::kMostTracks) {
+  if (tracks > procedures::kMaxTracks) {
     refuse("/tracks", fmt::format("makes {} tracks for a participant, more than {}; give fewer "
                                   "classes, standards or tracks",
-                                  tracks, procedures::kMostTracks));
+                                  tracks, procedures::kMaxTracks));
   }
   for (const Standard& standard : standards) {
     const std::size_t own = levels_of(options, standard).size();
@@ -316,10 +319,10 @@ void check_section(const JsonValue& file, const Study& study) {
                         static_cast<double>(options.track.grid.thresholds.size()) *
                         static_cast<double>(options.track.grid.slopes.size()) *
                         static_cast<double>(options.track.grid.lapses.size());
-  if (tables > kMostTables) {
+  if (tables > kMaxTables) {
     refuse("/grid", fmt::format("needs tables of {:.0f} million numbers for all tracks, more than "
                                 "{:.0f}; give fewer levels or values",
-                                tables / 1e6, kMostTables / 1e6));
+                                tables / 1e6, kMaxTables / 1e6));
   }
   try {
     static_cast<void>(procedures::Block(block_settings(study), Digest{}));
@@ -332,9 +335,9 @@ void check_section(const JsonValue& file, const Study& study) {
   if (options.along == Along::blend) {
     const auto mixtures = study.classes.front().images.size() * study.classes.back().images.size() *
                           options.track.levels.size();
-    if (mixtures > kMostValues) {
+    if (mixtures > kMaxValues) {
       refuse("/levels", fmt::format("and images make {} mixtures, more than {}; give fewer",
-                                    mixtures, kMostValues));
+                                    mixtures, kMaxValues));
     }
   }
   if (study.level) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -69,6 +70,23 @@ TEST_CASE("bootstrap_mean of many values nears the normal interval of their mean
   // The Monte-Carlo error of a 2.5 % quantile of 9,999 is .027 standard errors of the mean.
   CHECK(std::abs(interval.low - (mean - 1.96 * error)) < 0.15 * error);
   CHECK(std::abs(interval.high - (mean + 1.96 * error)) < 0.15 * error);
+}
+
+TEST_CASE("the bootstrap of any statistic, here a mean, nears that of means") {
+  const std::vector<double> values{0.2, 0.5, 0.6, 0.9, 0.4, 0.3, 0.8, 0.7};
+  const auto mean = [&](std::span<const std::size_t> drawn) {
+    double sum = 0.0;
+    for (const std::size_t i : drawn) sum += values[i];
+    return sum / static_cast<double>(drawn.size());
+  };
+  const analysis::Interval known = *analysis::bootstrap_mean(values, 0, 49'999);
+  const analysis::Interval found = *analysis::bootstrap_statistic(values.size(), mean, 0, 49'999);
+  CHECK(found.low == Approx(known.low).margin(0.01));
+  CHECK(found.high == Approx(known.high).margin(0.01));
+  CHECK(found == analysis::bootstrap_statistic(values.size(), mean, 0, 49'999));
+  CHECK_FALSE(analysis::bootstrap_statistic(1, mean));
+  const auto nothing = [](std::span<const std::size_t>) { return std::nan(""); };
+  CHECK_THROWS_AS(analysis::bootstrap_statistic(3, nothing), std::invalid_argument);
 }
 
 TEST_CASE("A bootstrap repeats itself, and another index gives other draws") {

@@ -34,8 +34,19 @@ TEST_CASE("participant_mean has no mean without participants and no interval fro
 TEST_CASE("participant_mean keeps its interval within what is possible") {
   const std::vector<double> wide{0.0, 1.0};
   CHECK(analysis::participant_mean(wide).interval == analysis::Interval{0.0, 1.0});
+}
+
+TEST_CASE("participants who are all alike have no interval") {
   const std::vector<double> perfect{1.0, 1.0, 1.0};
+  CHECK(analysis::all_alike(perfect));
+  CHECK(analysis::participant_mean(perfect).mean == 1.0);
   CHECK(analysis::participant_mean(perfect).interval == analysis::Interval{1.0, 1.0});
+  CHECK_FALSE(analysis::participant_mean(perfect).known_interval());
+  const std::vector<double> but_for_rounding{0.1 + 0.2, 0.3, 0.3};
+  CHECK(analysis::all_alike(but_for_rounding));
+  CHECK_FALSE(analysis::participant_mean(but_for_rounding).known_interval());
+  CHECK_FALSE(analysis::all_alike(std::vector{0.3}));
+  CHECK_FALSE(analysis::all_alike(std::vector{0.3, 0.30001}));
 }
 
 TEST_CASE("participant_mean refuses values that are not finite") {

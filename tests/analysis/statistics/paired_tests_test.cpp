@@ -67,7 +67,7 @@ TEST_CASE("rounding leaves no difference where there is none") {
   const analysis::MethodComparison comparison = analysis::compare_methods(same);
   CHECK(comparison.difference == 0.0);
   CHECK(comparison.db == 0.0);
-  CHECK(comparison.known_interval() == analysis::Interval{0.0, 0.0});
+  CHECK_FALSE(comparison.known_interval());
   CHECK(comparison.bootstrap == analysis::Interval{0.0, 0.0});
 }
 

@@ -50,6 +50,12 @@ TEST_CASE("strata of one participant each leave nothing to estimate an interval 
   CHECK_FALSE(found.random.has_value());
 }
 
+TEST_CASE("strata without any spread within them have no interval") {
+  const StratifiedMean found = *stratified_mean(Strata{{0.4, 0.4}, {0.6, 0.6, 0.6}});
+  CHECK(found.mean == Approx(0.52));
+  CHECK_FALSE(found.interval.has_value());
+}
+
 TEST_CASE("equal strata have the interval of participants, but for one degree each") {
   const StratifiedMean found = *stratified_mean(Strata{{0.4, 0.6}, {0.4, 0.6}}, {0.0, 1.0}, 0.9);
   const std::vector<double> all = {0.4, 0.6, 0.4, 0.6};

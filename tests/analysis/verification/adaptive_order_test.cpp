@@ -50,11 +50,10 @@ class BlockOrder final : public Order {
     const auto next = block_.next();
     REQUIRE(next);
     return {.place = scheduled.place,
-            .role = next->track ? Role::scored : Role::catch_trial,
+            .role = next->is_catch ? Role::catch_trial : Role::scored,
             .planes = {{}, {}},
             .right = target_,
-            .level = Level{next->track ? static_cast<int>(*next->track) + 1 : 0,
-                           static_cast<int>(next->level)}};
+            .level = Level{static_cast<int>(next->track) + 1, static_cast<int>(next->level)}};
   }
   void answered(const Trial&, const Answer& answer) override {
     block_.answer(schedule().choice_of(answer) == target_);
@@ -154,10 +153,8 @@ TEST_CASE("a session presents what its procedure chooses after the answers so fa
   while (session.current() != nullptr) {
     const Trial& shown = *session.current();
     const auto [track, level] = shown.level.value();
-    const bool is_catch = track == 0;
-    CHECK(is_catch == (shown.role == Role::catch_trial));
-    record.push_back({{is_catch ? std::nullopt : std::optional<std::size_t>(track - 1),
-                       static_cast<std::size_t>(level)},
+    record.push_back({{static_cast<std::size_t>(track - 1), static_cast<std::size_t>(level),
+                       shown.role == Role::catch_trial},
                       answered_right(shown)});
     answer_current(session);
   }
@@ -237,6 +234,10 @@ TEST_CASE("the check names the first trial that the procedure would not have pre
                       holds_text(trial));
     CHECK_THROWS_WITH(lab.check(altered([](AnswerBody& body) { body.track.reset(); })),
                       holds_text("presented no level"));
+    CHECK_THROWS_WITH(lab.check(altered([](AnswerBody& body) {
+      body.kind = body.kind == "catch" ? "scored" : "catch";
+    })),
+                      holds_text(trial) && holds_text("(catch)") && holds_text("(scored)"));
     CHECK_THROWS_WITH(lab.check(altered([](AnswerBody& body) { body.answer = Chosen{2}; })),
                       holds_text(trial) && holds_text("position 2"));
     // Another answer is possible by itself, and shows in what came later, if anything did.

@@ -32,7 +32,7 @@ TEST_CASE("a device without any mass has the least mass") {
   DeviceDynamics tip(model_of(0.0));
   tip.tick({3.0, 0.0, 0.0}, {});
   CHECK(tip.true_velocity_mm_s().x ==
-        Approx(1000.0 * kT * 3.0 / DeviceDynamics::kLeastMassKg).epsilon(1e-12));
+        Approx(1000.0 * kT * 3.0 / DeviceDynamics::kMinMassKg).epsilon(1e-12));
 }
 
 // Friction.

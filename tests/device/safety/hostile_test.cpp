@@ -219,7 +219,7 @@ class HostileDevice final : public HapticDevice {
 
   [[nodiscard]] DeviceInfo info() const override {
     DeviceInfo info{"hostile", "", max_force_n_, true};
-    info.max_support_n = kMostSupportN;
+    info.max_support_n = kMaxSupportN;
     info.has_encoders = true;
     return info;
   }
@@ -239,7 +239,7 @@ class HostileDevice final : public HapticDevice {
   void halt() noexcept override { halted = true; }
   void rearm() noexcept override {}
 
-  static constexpr double kMostSupportN = 2.0;
+  static constexpr double kMaxSupportN = 2.0;
   std::vector<Vec3> written;
   bool halted = false;
 
@@ -318,7 +318,7 @@ TEST_CASE(
     ServoHooks hooks{.control = &control};
     const ServoReport report = device::run_servo(device, force, sink, options, clock, hooks);
     Judge judge(limits_on(device.info(), options.limits), 1.0 / options.rate_hz,
-                HostileDevice::kMostSupportN);
+                HostileDevice::kMaxSupportN);
     for (std::size_t i = 0; i + 1 < device.written.size(); ++i) judge.see(device.written[i], false);
     forces += judge.forces();
     INFO(judge.first_broken);

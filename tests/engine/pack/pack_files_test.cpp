@@ -218,7 +218,7 @@ TEST_CASE("a manifest's text has sorted keys and every key once") {
         "{\n  \"fields\": [],\n  \"format\": \"touchtrial-pack\",\n  \"investigator_box\": \"" +
             std::string(64, '0') + "\",\n  \"pictures\": [],\n  \"seal\": \"" +
             std::string(64, '0') + "\",\n  \"signature\": \"" + std::string(128, '0') +
-            "\",\n  \"study_id\": \"00ff\",\n  \"version\": 4\n}\n");
+            "\",\n  \"study_id\": \"00ff\",\n  \"version\": 5\n}\n");
   CHECK(engine::manifest_to_json(manifest).find(
             "\"normal_n\": 0.5,\n        \"tangential_n\": 0.1\n") != std::string::npos);
 }
@@ -264,11 +264,11 @@ TEST_CASE("manifest_from_json names the place of what it refuses") {
   };
   const auto tried = GENERATE(values<Case>({
       {"touchtrial-pack", "zip", "/format: must be"},
-      {"\"version\": 4", "\"version\": 2", "/version: is not 4"},
-      {"\"version\": 4", "\"version\": \"3\"", "/version: must be a whole number"},
-      {"\"version\": 4", "\"version\": 4, \"note\": 0", "/note: is not a known key"},
-      {"\"version\": 4", "\"version\": 4, \"a/b~c\": 0", "/a~1b~0c: is not a known key"},
-      {",\n  \"version\": 4", "", "/version: is missing"},
+      {"\"version\": 5", "\"version\": 4", "/version: is not 5"},
+      {"\"version\": 5", "\"version\": \"3\"", "/version: must be a whole number"},
+      {"\"version\": 5", "\"version\": 5, \"note\": 0", "/note: is not a known key"},
+      {"\"version\": 5", "\"version\": 5, \"a/b~c\": 0", "/a~1b~0c: is not a known key"},
+      {",\n  \"version\": 5", "", "/version: is missing"},
       {"\"00ff\"", "\"bark\"", "/study_id: must be hexadecimal"},
       {"\"00ff\"", "17", "/study_id: must be text"},
       {"aaaaaaaaaaaaaaaa", "../aaaaaaaaaaaaa", "/fields/0/code: must be 16"},
@@ -317,7 +317,7 @@ TEST_CASE("manifest_from_json refuses texts that are not manifests") {
 }
 
 TEST_CASE("manifest_from_json refuses a key that is twice in one object") {
-  CHECK(is_refused(with("\"version\": 4", "\"version\": 4, \"version\": 4"),
+  CHECK(is_refused(with("\"version\": 5", "\"version\": 5, \"version\": 5"),
                    "/version: is there twice"));
   CHECK(is_refused(with("\"normal_n\"", "\"tangential_n\": 9, \"normal_n\""),
                    "/fields/0/gains/tangential_n: is there twice"));

@@ -46,6 +46,12 @@ double share_of_long_track(UpDown rule, const std::string& name) {
   return shares_at(observer, sum / n).correct;
 }
 
+Posterior belief_after(const TrackSettings& track, std::span<const TrackTrial> trials) {
+  Posterior posterior(track.levels, track.grid);
+  for (const TrackTrial& trial : trials) posterior.observe(trial.level, trial.correct);
+  return posterior;
+}
+
 }  // namespace
 
 TEST_CASE("staircases converge to the points of Levitt and Kaernbach") {
@@ -108,15 +114,18 @@ TEST_CASE("constant stimuli present every level equally often, mixed or in block
 TEST_CASE("a block deals every track once a round and a catch trial in every stretch") {
   Block block(every_kind(), some_secret(1));
   std::vector<int> seen(7, 0);
+  std::vector<int> caught(7, 0);
   std::vector<std::size_t> catches;
   std::size_t trial = 0;
   while (const auto now = block.next()) {
-    if (now->track) {
-      ++seen[*now->track];
+    if (!now->is_catch) {
+      ++seen[now->track];
       CHECK(*std::max_element(seen.begin(), seen.end()) -
                 *std::min_element(seen.begin(), seen.end()) <=
             1);
     } else {
+      ++caught[now->track];
+      CHECK(now->level == block.settings().tracks[now->track].levels.size() - 1);
       catches.push_back(trial);
     }
     block.answer(trial % 3 != 0);
@@ -124,6 +133,8 @@ TEST_CASE("a block deals every track once a round and a catch trial in every str
   }
   CHECK(seen == std::vector<int>(7, 24));
   REQUIRE(catches.size() == 10);
+  std::ranges::sort(caught);
+  CHECK(caught == std::vector<int>{1, 1, 1, 1, 2, 2, 2});
   CHECK(catches.front() > 0);
   for (std::size_t i = 0; i < catches.size(); ++i) {
     CHECK(catches[i] / 18 <= i + 1);
@@ -151,8 +162,8 @@ TEST_CASE("after each answer a replayed block names the same level, and has the 
   const Block again = replay(settings, some_secret(9), answers);
   for (std::size_t track = 0; track < settings.tracks.size(); ++track) {
     const TrackSettings& one = settings.tracks[track];
-    const Posterior a = posterior_of(one.levels, one.grid, straight.trials(track));
-    const Posterior b = posterior_of(one.levels, one.grid, again.trials(track));
+    const Posterior a = belief_after(one, straight.trials(track));
+    const Posterior b = belief_after(one, again.trials(track));
     for (std::size_t i = 0; i < a.weights().size(); ++i) {
       CHECK(std::bit_cast<std::uint64_t>(a.weights()[i]) ==
             std::bit_cast<std::uint64_t>(b.weights()[i]));

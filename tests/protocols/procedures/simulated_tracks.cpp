@@ -1,5 +1,6 @@
 #include "protocols/procedures/simulated_tracks.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace touchtrial::tracked {
@@ -30,18 +31,32 @@ TrackSettings usual_track(const std::string& procedure, int trials) {
 }
 
 std::vector<TrackTrial> answered_track(const TrackSettings& settings, const Observer& observer,
-                                       std::uint64_t seed) {
+                                       std::uint64_t seed, double drift_db) {
   RandomStream orders(seed, "tracked/order");
   RandomStream answers(seed, "tracked/answers");
   const std::unique_ptr<Procedure> procedure = make_procedure(settings, orders);
   std::vector<TrackTrial> trials;
   for (int i = 0; i < settings.trials; ++i) {
     const std::size_t level = procedure->next();
-    const double share = shares_at(observer, settings.levels[level]).correct;
+    Observer now = observer;
+    now.threshold += drift_db * ((i + 0.5) / settings.trials - 0.5);
+    const double share = shares_at(now, settings.levels[level]).correct;
     trials.push_back({level, answers.uniform() < share});
     procedure->answer(trials.back().correct);
   }
   return trials;
+}
+
+ThresholdEstimate estimate_of(const TrackSettings& settings, std::span<const TrackTrial> trials,
+                              const Observer& observer, std::uint64_t seed) {
+  RandomStream answers(seed, "tracked/asymptote");
+  const double share = shares_at(observer, settings.levels.back()).correct;
+  std::vector<TrackTrial> all(trials.begin(), trials.end());
+  for (int i = 0; i < std::max(6, settings.trials / 10); ++i) {
+    all.push_back({settings.levels.size() - 1, answers.uniform() < share});
+  }
+  return estimate_threshold(counts_of(settings.levels, all), settings.levels, settings.grid.shape,
+                            settings.grid.guess);
 }
 
 Observer some_observer(std::uint64_t seed) {

@@ -279,7 +279,9 @@ TEST_CASE("what of other sections does not suit ratings is refused with its plac
   CHECK_THAT(refusal_of(divided), holds_text("s.json: /visits/methods: must be \"all\""));
   divided["visits"]["methods"] = "all";
   CHECK(refusal_of(divided).empty());
-  refused("/registration/estimand", "difference", "/registration/estimand: is about right answers");
+  refused("/registration/estimand", "difference",
+          "/registration/estimand: \"difference\" is no question that the protocol rating answers; "
+          "leave");
   refused("/session/confidence", 5, "/session/confidence: must be 0");
   refused("/session/sight", "blindfold", "/session/sight: must be \"curtain\"");
   json other = rating_file();

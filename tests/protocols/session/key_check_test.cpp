@@ -45,6 +45,18 @@ TEST_CASE("what a station seals opens with its study's key") {
   }
 }
 
+TEST_CASE("a station's file with other codes of practice than the key is refused") {
+  TinyStudyOptions options = with_pictures();
+  options.trials = R"({"practice": 2})";
+  options.practised = 2;
+  const TinyStudy study(options);
+  using Key = study::StationKey;
+  CHECK(fault_of(study, [](Key&) {}) == "nothing");
+  CHECK_THAT(fault_of(study, [](Key& key) { std::swap(key.practice[0], key.practice[1]); }),
+             holds_text("other codes"));
+  CHECK_THAT(fault_of(study, [](Key& key) { key.practice.pop_back(); }), holds_text("other codes"));
+}
+
 TEST_CASE("every station of a divided study is proved, and an older file of one is not") {
   const TinyStudy study(with_pictures());
   study::StudyKey key = study.key();

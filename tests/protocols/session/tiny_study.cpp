@@ -2,12 +2,16 @@
 
 #include "core/random.hpp"
 #include "engine/image_file.hpp"
+#include "study/practice.hpp"
 #include "study/signed_pack.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <numbers>
+#include <span>
 #include <vector>
 
 namespace touchtrial {
@@ -44,10 +48,18 @@ study::Study study_with(const TinyStudyOptions& options) {
                                   ? ""
                                   : ",\"" + options.protocol + "\":" + options.section;
   const std::string visits = options.visits.empty() ? "" : ",\"visits\":" + options.visits;
+  std::string practice;
+  for (int i = 0; i < options.practised; ++i) {
+    const std::string name = "practice" + std::to_string(i);
+    practice += std::string(practice.empty() ? R"(,"practice":{"criterion":0,"classes":[)" : ",") +
+                R"({"label":")" + name + R"(","images":[")" + name + R"(.png"]})";
+  }
+  if (!practice.empty()) practice += "]}";
   return study::parse_study(R"({"study":"tiny","protocol":")" + protocol + R"(","classes":[)" +
                                 classes + R"(],"methods":)" + methods + R"(,"trials":)" +
                                 options.trials + R"(,"rendering":)" + options.rendering + section +
-                                visits + R"(,"seed":)" + std::to_string(kTinyStudySeed) + "}",
+                                visits + practice + R"(,"seed":)" + std::to_string(kTinyStudySeed) +
+                                "}",
                             ".", "tiny.json");
 }
 
@@ -69,21 +81,27 @@ engine::Gains times(double factor, const engine::Gains& gains) {
 engine::Pack write_pack(const std::filesystem::path& folder, const study::StudyKey& key,
                         const TinyStudyOptions& options) {
   std::vector<engine::TextureField> fields;
-  for (const study::KeyedStimulus& keyed : key.stimuli) {
+  const std::vector<study::KeyedStimulus> all = key.fields();
+  for (const study::KeyedStimulus& keyed : all) {
     fields.push_back(engine::make_texture_field(tiny_texture(keyed.stimulus, options.side_px),
                                                 key.study.rendering));
   }
   std::vector<engine::FieldView> views;
   for (const engine::TextureField& field : fields) views.push_back(field.view());
-  const engine::StudyGains gains = engine::choose_gains(views, key.study.rendering);
+  const std::span<const engine::FieldView> every(views);
+  std::vector<engine::Gains> gains =
+      engine::choose_gains(every.first(key.stimuli.size()), key.study.rendering).of_field;
+  std::ranges::copy(
+      study::practice_gains(every.subspan(key.stimuli.size()), gains, key.study.rendering),
+      std::back_inserter(gains));
   std::filesystem::create_directories(folder);
   engine::PackManifest manifest{key.study_id, {}};
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    const std::string& code = key.stimuli[i].code;
+    const std::string& code = all[i].code;
     const Digest checksum = engine::write_field(folder, code, views[i]);
-    const bool is_first = key.stimuli[i].stimulus.class_index == 0;
+    const bool is_first = all[i].stimulus.class_index == 0;
     const double factor = options.smooth ? 0.0 : (is_first ? options.first_gain : 1.0);
-    manifest.entries.push_back({code, checksum, {}, times(factor, gains.of_field[i])});
+    manifest.entries.push_back({code, checksum, {}, times(factor, gains[i])});
   }
   study::sign(manifest, key,
               options.pictures ? study::picture_digests(key.study) : std::vector<Digest>());
@@ -103,9 +121,10 @@ study::StudyKey key_in(const std::filesystem::path& folder, const TinyStudyOptio
   study::StudyKey key = key_with(options);
   if (!options.pictures) return key;
   key.study.folder = folder;
-  for (int i = 0; i < static_cast<int>(key.study.classes.size()); ++i) {
+  const auto classes = static_cast<int>(key.study.classes.size()) + options.practised;
+  for (int i = 0; i < classes; ++i) {
     write_picture(tiny_texture({.class_index = i}, options.side_px),
-                  folder / key.study.classes[static_cast<std::size_t>(i)].images.front());
+                  folder / key.study.class_at(i).images.front());
   }
   return key;
 }
@@ -113,8 +132,11 @@ study::StudyKey key_in(const std::filesystem::path& folder, const TinyStudyOptio
 }  // namespace
 
 Plane<double> tiny_texture(const study::StimulusIndex& stimulus, int side_px) {
-  const Weave& weave = kWeaves[stimulus.class_index];
-  const int image = stimulus.exemplar + 100 * stimulus.method;
+  const auto shown = static_cast<std::size_t>(stimulus.class_index);
+  const Weave& weave = kWeaves[shown % kWeaves.size()];
+  // Textures of practice are like the study's.
+  const int image =
+      stimulus.exemplar + 100 * stimulus.method + 10000 * static_cast<int>(shown / kWeaves.size());
   RandomStream random(static_cast<std::uint64_t>(image), weave.label);
   Plane<double> texture(side_px, side_px);
   constexpr int kWaves = 12;

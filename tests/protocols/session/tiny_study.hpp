@@ -28,6 +28,7 @@ struct TinyStudyOptions {
   std::string trials = "{}";     ///< the study file's "trials"
   std::string rendering = "{}";  ///< the study file's "rendering"
   std::string visits{};          ///< the study file's "visits"; empty: one
+  int practised = 0;             ///< practice classes; `trials` says how often they are presented
   bool pictures = false;         ///< the classes' pictures are there: the textures, in grey
 };
 

@@ -93,7 +93,7 @@ TEST_CASE("the reader keeps keys, bounds, types, words and defaults of the schem
   CHECK(both.objects().size() == 1 + 7);
   both.check_keys();
   both.check_values();
-  CHECK(both.check_bounds() == 2 * (13 + 3 + 1 + 4 + 4 + 3 + 6 + 4));
+  CHECK(both.check_bounds() == 2 * (13 + 3 + 1 + 4 + 4 + 3 + 6 + 6));
   const auto read_again = [](const json& subject) {
     return simulation::subject_model_json(parsed(subject));
   };
@@ -121,7 +121,8 @@ TEST_CASE("every key of a subject file is read, and written back to the last dig
     "fatigue": {"noise_per_min": 0.03, "lapse_per_min": 0.11, "recovered": 0.65},
     "thought": {"shift_s": 0.21, "easy_s": 0.75, "hard_s": 2.25, "margin": 3.5, "spread": 0.42,
                 "longest_s": 29},
-    "given_function": {"threshold": -18, "spread": 2, "slope": 3.75, "lapse": 0.024}})");
+    "given_function": {"threshold": -18, "spread": 2, "standard_step": 1.5,
+                       "standard_spread": 0.5, "slope": 3.75, "lapse": 0.024}})");
   simulation::SubjectModel model;
   model.sense = engine::ThresholdCurve::tan_1994;
   model.threshold_spread_db = 2.5;
@@ -154,7 +155,7 @@ TEST_CASE("every key of a subject file is read, and written back to the last dig
                                           .margin = 3.5,
                                           .spread = 0.42,
                                           .longest_s = 29.0};
-  model.given_function = simulation::GivenFunction{-18.0, 2.0, 3.75, 0.024};
+  model.given_function = simulation::GivenFunction{-18.0, 2.0, 3.75, 0.024, 1.5, 0.5};
   const std::string written = simulation::subject_model_json(model);
   CHECK(json::parse(written) == file);
   CHECK(simulation::subject_model_json(parsed(file)) == written);

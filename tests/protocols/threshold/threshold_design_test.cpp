@@ -1,12 +1,16 @@
 // What a study file says of a threshold, and what its participants are presented.
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "protocols/threshold/study/registered_standards.hpp"
 #include "protocols/threshold/study/threshold.hpp"
 #include "protocols/threshold/threshold_study.hpp"
 #include "study/protocol.hpp"
+#include "study/study_sections.hpp"
 #include "support/catch.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 
@@ -71,6 +75,19 @@ std::vector<study::Trial> presented(const study::Study& study, const study::Sche
 
 const auto kAlwaysRight = [](const study::Trial&) { return true; };
 
+std::vector<study::Trial> with_role(const std::vector<study::Trial>& trials, study::Role role) {
+  std::vector<study::Trial> all;
+  std::ranges::copy_if(trials, std::back_inserter(all),
+                       [&](const study::Trial& shown) { return shown.role == role; });
+  return all;
+}
+
+std::vector<study::Level> levels_of(const std::vector<study::Trial>& trials) {
+  std::vector<study::Level> all;
+  for (const study::Trial& shown : trials) all.push_back(shown.level.value());
+  return all;
+}
+
 }  // namespace
 
 TEST_CASE("a threshold study has one class at least, and the section that it needs") {
@@ -122,6 +139,90 @@ TEST_CASE("what cannot be presented or answered is refused with its place and a 
   const json huge = {{"slopes", {{"from", 1}, {"to", 200}, {"step", 1}}},
                      {"lapses", {{"from", 0}, {"to", 0.4}, {"step", 0.0021}}}};
   refused(detection_file(), "/threshold/grid", huge, "million numbers");
+}
+
+TEST_CASE("a registered question is one that a report of thresholds answers") {
+  const auto with = [](const json& registration, json file = detection_file()) {
+    file["registration"] = registration;
+    return refusal_of(file);
+  };
+  CHECK(with({{"estimand", "mean-threshold"}}).empty());
+  CHECK(with({{"estimand", "mean-accuracy"}, {"participants", 12}, {"looks", {6}}}) ==
+        "s.json: /registration/estimand: \"mean-accuracy\" is no question that the protocol "
+        "threshold answers; register one that it does: mean-threshold, threshold-difference, "
+        "threshold-equality");
+  CHECK_THAT(with({{"estimand", "mean-threshold"}, {"participants", 12}, {"looks", {6}}}),
+             holds_text("/registration/looks: belongs to a test"));
+  CHECK_THAT(with({{"estimand", "mean-threshold"}, {"margin_db", 3}}),
+             holds_text("/registration/margin_db: belongs to a test"));
+  CHECK_THAT(with({{"estimand", "threshold-difference"}}),
+             holds_text("/registration/estimand: is of two standards, but the study has 1"));
+  const json difference = {{"estimand", "threshold-difference"},
+                           {"smallest_effect_db", 2},
+                           {"participants", 12},
+                           {"looks", {6}}};
+  CHECK(with(difference, gain_file()).empty());
+  CHECK_THAT(with({{"estimand", "threshold-equality"}}, gain_file()),
+             holds_text("/registration/margin_db: is missing"));
+  const json equality = {{"estimand", "threshold-equality"}, {"margin_db", 3}};
+  CHECK(with(equality, gain_file()).empty());
+  const auto refused = [&](const char* key, const json& value) {
+    json more = equality;
+    more[key] = value;
+    return with(more, gain_file());
+  };
+  CHECK_THAT(refused("sides", "one"), holds_text("/registration/sides: belongs to no equality"));
+  CHECK_THAT(refused("margin", 0.1), holds_text("/registration/margin: is about right answers"));
+  CHECK_THAT(refused("test", "sign-flip"), holds_text("/registration/test: is about right"));
+  CHECK_THAT(refused("smallest_effect_db", 1), holds_text("whose size is \"margin_db\""));
+  json alike = detection_file();
+  alike["threshold"].update(
+      {{"question", "same-different"}, {"procedure", "constant-stimuli"}, {"levels", {-10, 0}}});
+  CHECK_THAT(with({{"estimand", "mean-threshold"}}, alike),
+             holds_text("which \"same-different\" does not give"));
+}
+
+TEST_CASE("registered standards are named as in the study file, each once") {
+  const auto with = [](const json& standards, const char* estimand, json file = gain_file()) {
+    file["registration"] = {{"estimand", estimand}, {"standards", standards}};
+    return refusal_of(file);
+  };
+  const json low = {{"value", -18}};
+  const json high = {{"class", "a"}, {"value", -6}};
+  CHECK(with(json::array({low}), "mean-threshold").empty());
+  CHECK(with({high, low}, "threshold-difference").empty());
+  CHECK(with(json::array(), "mean-threshold") ==
+        "s.json: /registration/estimand: is of one standard, but the study has 2; name the "
+        "standards in \"standards\", of: a, standard -18 dB; a, standard -6 dB");
+  CHECK_THAT(with({low, high}, "mean-threshold"),
+             holds_text("/registration/standards: is of one standard, but it names 2"));
+  CHECK_THAT(with({{{"value", -12}}}, "mean-threshold"),
+             holds_text("/registration/standards/0: is no standard of the study"));
+  CHECK_THAT(with({{{"class", "a"}}}, "mean-threshold"), holds_text("fits 2 standards"));
+  CHECK_THAT(with({low, low}, "threshold-difference"),
+             holds_text("/registration/standards/1: is the same standard twice"));
+  json file = gain_file();
+  file["registration"] = {{"estimand", "threshold-difference"}, {"standards", {high, low}}};
+  const study::Study study = study_of(file);
+  CHECK(study::threshold::registered_standards(study) == std::vector<std::size_t>{1, 0});
+  file["registration"] = study::to_json(study.registration);
+  CHECK(study_of(file).registration == study.registration);
+  const auto fields = study::fields_of(study.registration);
+  CHECK(fields.front().second ==
+        "mean over participants of the threshold, standard a at -6 less standard -18");
+}
+
+TEST_CASE("a rule on missed catch trials leaves somebody out only if there are more of them") {
+  const auto with = [](int catch_trials, int most) {
+    json file = detection_file();
+    file["threshold"]["catch"] = catch_trials;
+    file["registration"] = {{"estimand", "mean-threshold"},
+                            {"exclusion_rules", {{"missed_catch", most}}}};
+    return refusal_of(file);
+  };
+  CHECK(with(6, 2).empty());
+  CHECK_THAT(with(0, 2), holds_text("of which the study has none"));
+  CHECK_THAT(with(6, 6), holds_text("a session has 6 catch trials, so that nobody misses more"));
 }
 
 TEST_CASE("of two intervals the target alone has the texture, each equally often") {
@@ -266,6 +367,100 @@ TEST_CASE("catch trials are at the highest level, and control trials come last w
   CHECK(caught == 6);
 }
 
+TEST_CASE("catch trials are dealt evenly to the tracks, each at its standard's highest level") {
+  json file = gain_file();
+  file["threshold"]["levels"] = {{"from", -30}, {"to", 20}, {"step", 1}};
+  file["threshold"]["catch"] = 13;
+  const study::Study study = study_of(file);
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const auto caught =
+        with_role(presented(study, draw_of(seed), kAlwaysRight), study::Role::catch_trial);
+    std::map<int, int> of_track;
+    for (const study::Trial& shown : caught) {
+      const bool is_first = shown.level->track == 1;
+      ++of_track[shown.level->track];
+      CHECK(shown.level->level == (is_first ? 46 : 29));  // 16 and -1 dB
+      const auto target = static_cast<std::size_t>(shown.right.value());
+      CHECK(shown.planes[1 - target].gain_db == (is_first ? -18.0 : -6.0));
+      CHECK(shown.planes[target].gain_db <= 1e-9);
+      CHECK(shown.planes[target].gain_db > -1.0);
+    }
+    CHECK(of_track.size() == 2);
+    CHECK(of_track[1] + of_track[2] == 13);
+    CHECK(std::abs(of_track[1] - of_track[2]) == 1);
+  }
+}
+
+TEST_CASE("no procedure hears of a catch trial, and an interrupted one comes again as it was") {
+  json file = gain_file();
+  const auto scored = [&file](int catches, bool is_caught_right) {
+    file["threshold"]["catch"] = catches;
+    const study::Study study = study_of(file);
+    const auto all = presented(study, draw_of(6), [&](const study::Trial& shown) {
+      if (shown.role == study::Role::catch_trial) return is_caught_right;
+      return (7 * shown.level->level + shown.level->track) % 3 != 0;
+    });
+    return levels_of(with_role(all, study::Role::scored));
+  };
+  const std::vector<study::Level> without = scored(0, true);
+  CHECK(without.size() == 120);
+  CHECK(scored(12, true) == without);
+  CHECK(scored(12, false) == without);
+
+  const study::Study study = study_of(file);
+  const auto order = study::make_order(study, draw_of(6));
+  int interrupted = 0;
+  for (const study::Trial& scheduled : order->schedule().trials) {
+    const study::Trial shown = order->at(scheduled);
+    if (shown.role == study::Role::catch_trial) {
+      order->interrupted(shown);
+      const study::Trial again = order->at(scheduled);
+      CHECK(again.role == shown.role);
+      CHECK(again.level == shown.level);
+      ++interrupted;
+    }
+    order->answered(shown, Chosen{0});
+  }
+  CHECK(interrupted == 12);
+}
+
+TEST_CASE("a schedule does not tell which trials are catch trials") {
+  json file = gain_file();
+  file["threshold"]["catch"] = 12;
+  const auto schedule = study::make_schedule(study_of(file), draw_of(1));
+  REQUIRE(schedule.trials.size() == 132);
+  for (const study::Trial& scheduled : schedule.trials) {
+    study::Trial place;
+    place.place.trial = scheduled.place.trial;
+    CHECK(scheduled == place);
+  }
+}
+
+TEST_CASE("preparing a study says how many catch trials it lacks to tell lapses") {
+  const auto advice = [](json file, const json& section) {
+    file["threshold"].update(section);
+    const study::Study study = study_of(file);
+    const std::vector<std::string> all = study.task->advice(study);
+    return all.empty() ? std::string() : all.front();
+  };
+  CHECK(advice(detection_file(), json::object()).starts_with("/threshold/catch: 0 are too few"));
+  CHECK(advice(detection_file(), json::object()).ends_with("give 6"));
+  CHECK(advice(detection_file(), {{"catch", 5}}).ends_with("give 6"));
+  CHECK(advice(detection_file(), {{"catch", 6}}).empty());
+  CHECK(advice(detection_file(), {{"trials", 100}, {"catch", 9}}).ends_with("give 10"));
+  CHECK(advice(gain_file(), {{"catch", 6}}).ends_with("give 12"));
+  CHECK(advice(detection_file(), {{"trials", 8}}).ends_with("give 4"));  // half, at most
+  // Trials of the highest level are among those of constant stimuli.
+  const json constant = {{"procedure", "constant-stimuli"}, {"levels", {-30, -20, -10, 0}}};
+  json many = constant;
+  many["trials"] = 24;
+  CHECK(advice(detection_file(), many).empty());
+  many["trials"] = 12;
+  CHECK(advice(detection_file(), many).ends_with("give 3"));
+  many["question"] = "same-different";
+  CHECK(advice(detection_file(), many).empty());
+}
+
 TEST_CASE("the section's schema and its reader have the same keys, words and bounds") {
   const std::filesystem::path root = TOUCHTRIAL_SOURCE_DIR;
   const json schema = json::parse(text_of(read_file(root / "config/schema/study.schema.json")))
@@ -319,6 +514,7 @@ TEST_CASE("the studies of thresholds that ship can be read, and say what they pr
     CHECK(study::threshold::options_of(study).control_trials > 0);
     CHECK(study::threshold::options_of(study).practice_trials > 0);
     CHECK(json::parse(study.task->in_clear()).size() == 19);
+    CHECK(study.task->advice(study).empty());
   }
 }
 

@@ -17,6 +17,7 @@
 #include "support/temp_folder.hpp"
 
 #include <cmath>
+#include <map>
 
 namespace touchtrial {
 namespace {
@@ -98,6 +99,37 @@ TEST_CASE("simulated participants feel strong textures, guess at the weakest, an
   CHECK(std::abs(heard - 30) < 16);
 }
 
+TEST_CASE("catch trials are sealed as such with the track that they count for") {
+  SimulatedThresholds study(
+      threshold_options(R"("task": "discrimination", "interval_s": 0.4, "trials": 6, "catch": 8,
+                           "levels": [-20, -10, 0, 10], "standards": [-6])"),
+      1);
+  CHECK(analysis::verify_study(study.store(), &study.tiny().key(), &study.tiny().pack()).holds());
+  const analysis::Outcomes outcomes = study.outcomes();
+  std::map<int, int> scored;  // by track
+  std::map<int, int> caught;
+  for (const analysis::TrialOutcome& trial : outcomes.trials) {
+    if (!trial.response) continue;
+    if (trial.scored) ++scored[trial.chosen->track];
+    if (trial.role != study::Role::catch_trial) continue;
+    CHECK_FALSE(trial.counted);
+    CHECK(trial.chosen->level == 1);  // a standard of -6 dB has no level above -1 dB
+    ++caught[trial.chosen->track];
+  }
+  CHECK(scored == std::map<int, int>{{1, 6}, {2, 6}, {3, 6}, {4, 6}, {5, 6}});
+  std::map<int, int> tracks;  // by their number of catch trials
+  for (const auto& [track, n] : caught) ++tracks[n];
+  CHECK(tracks == std::map<int, int>{{1, 2}, {2, 3}});
+  std::size_t sealed = 0;
+  for (const record::Event& event : study.store().events(1)) {
+    if (event.kind != record::EventKind::answered) continue;
+    CHECK(event.body.find("kind") == std::string::npos);
+    if (sealed == 0) sealed = event.sealed.size();
+    CHECK(event.sealed.size() == sealed);
+  }
+  CHECK(sealed > 0);
+}
+
 TEST_CASE("an adaptive threshold study is complete and passes every check") {
   SimulatedThresholds study(threshold_options(kTinyDetection));
   CHECK(study.report().sessions == 2);
@@ -148,9 +180,10 @@ TEST_CASE("datasets of a threshold study keep to BIDS and Psych-DS, and tell int
 }
 
 TEST_CASE("nothing in clear of an adaptive study tells a level, or whether answers were right") {
-  SimulatedThresholds study(threshold_options(kTinyDetection), 1);
+  SimulatedThresholds study(threshold_options(kTinyDetection + R"(, "catch": 6)"), 1);
   for (const record::Event& event : study.store().events(1)) {
-    for (const char* word : {"\"level\"", "\"track\"", "\"target\"", "\"position\"", "\"gain"}) {
+    for (const char* word : {"\"level\"", "\"track\"", "\"target\"", "\"position\"", "\"gain",
+                             "\"catch\"", "\"scored\""}) {
       CHECK(event.body.find(word) == std::string::npos);
     }
   }

@@ -50,7 +50,7 @@ TEST_CASE("only the first of very many gaps are named") {
   const std::vector<EnrolledSession> sessions = {completed(1, 1000)};
   const EnrolmentBalance balance = enrolment_balance(sessions);
   CHECK(balance.gap_count == 999);
-  CHECK(balance.gaps.size() == kMostGaps);
+  CHECK(balance.gaps.size() == kMaxGaps);
   CHECK_THAT(imbalances(balance).front(), holds_text("and 979 more"));
 }
 

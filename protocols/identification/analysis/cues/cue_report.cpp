@@ -185,7 +185,7 @@ MethodCues method_cues(const FeltStudy& study, int method, const std::string& la
 
 using Warnings = std::vector<std::string>;
 
-constexpr int kFewestTrials = 2;
+constexpr int kMinTrials = 2;
 
 void warn_of_study(const Outcomes& outcomes, const CueReport& report, Warnings& warnings) {
   if (outcomes.visual) {
@@ -219,19 +219,19 @@ void warn_of_numbers(const MethodCues& cues, Warnings& warnings) {
     warnings.push_back(cues.method + ": no trial can be judged by the observers.");
     return;
   }
-  if (cues.fewest_of_a_class < kFewestTrials) {
+  if (cues.fewest_of_a_class < kMinTrials) {
     warnings.push_back(
         fmt::format("{}: somebody has fewer than {} trials of a class, so the observers know what "
                     "that hand feels of it only from other hands, and the available accuracy is "
                     "too low.",
-                    cues.method, kFewestTrials));
+                    cues.method, kMinTrials));
   }
   const auto participants = static_cast<int>(cues.participants.size());
-  if (participants < kFewestForVerdict) {
+  if (participants < kMinForVerdict) {
     warnings.push_back(
         fmt::format("{}: {} cannot decide which cue was used: a verdict needs {} or more, because "
                     "intervals over fewer are too narrow.",
-                    cues.method, counted(participants, "participant"), kFewestForVerdict));
+                    cues.method, counted(participants, "participant"), kMinForVerdict));
   } else if (cues.match && !cues.match->difference.interval) {
     warnings.push_back(cues.method +
                        ": the observers' difference has no interval, so there is no verdict on "

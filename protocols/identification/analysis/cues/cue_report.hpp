@@ -69,7 +69,7 @@ struct ObserverFigures : MatchingNoise {
 
 /// With fewer participants there is no verdict on which observer confuses classes as they do,
 /// because a bootstrap over so few participants gives intervals that are too narrow.
-inline constexpr int kFewestForVerdict = 6;
+inline constexpr int kMinForVerdict = 6;
 
 /// The observer whose confusions are nearest to the participants'. Each observer is made as
 /// uncertain as the participants if noise can do that, because an observer that is never wrong has
@@ -78,7 +78,7 @@ struct CueMatch {
   Cue best = Cue::rms;    ///< with the least matched divergence
   Cue second = Cue::rms;  ///< with the second least matched divergence
   CueFigure difference;   ///< matched divergence of second minus that of best, bits
-  /// The difference's interval excludes 0, with kFewestForVerdict participants or more, and the
+  /// The difference's interval excludes 0, with kMinForVerdict participants or more, and the
   /// best observer can be as uncertain as the participants.
   bool told_apart = false;
 };

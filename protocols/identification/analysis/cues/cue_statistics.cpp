@@ -218,7 +218,7 @@ std::optional<CueMatch> match_of(const Numbers& observed, const std::vector<Numb
   match.second = kCues[order[1]];
   match.difference =
       jackknifed(observed, without, kAnySign, kMatchedAt + order[1], kMatchedAt + order[0]);
-  match.told_apart = without.size() >= kFewestForVerdict && match.difference.interval &&
+  match.told_apart = without.size() >= kMinForVerdict && match.difference.interval &&
                      match.difference.interval->low > 0.0;
   return match;
 }

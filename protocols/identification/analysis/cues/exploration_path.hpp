@@ -16,7 +16,7 @@
 
 namespace touchtrial::analysis::identification {
 
-inline constexpr int kMostPathPoints = 2000;
+inline constexpr int kMaxPathPoints = 2000;
 
 /// One sample of the trace. It also stands for the samples up to the next point.
 struct PathPoint {
@@ -45,7 +45,7 @@ struct ExplorationPath {
   std::string method;
   bool answered_right = false;
   double duration_s = 0.0;
-  std::vector<PathPoint> points;  ///< evenly spaced in time, kMostPathPoints at most
+  std::vector<PathPoint> points;  ///< evenly spaced in time, kMaxPathPoints at most
   PathTexture texture;
 };
 
@@ -88,7 +88,7 @@ struct TrialName {
 /// Every n-th sample of a trace, with the smallest n that gives at most `count` points.
 /// \throws std::invalid_argument if `count` is below 1
 [[nodiscard]] std::vector<PathPoint> thinned_path(const record::Trace& trace,
-                                                  int count = kMostPathPoints);
+                                                  int count = kMaxPathPoints);
 
 /// A field of a pack as a picture of the surface at the centres of its pixels. Mid-grey is the
 /// field's mean; black and white are 2.5 standard deviations away from it. Lighter pixels feel

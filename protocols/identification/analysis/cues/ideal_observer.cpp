@@ -52,10 +52,10 @@ void check(std::span<const ObservedTrial> trials, int classes) {
   }
 }
 
-constexpr std::size_t kMostForNoise = 2000;
+constexpr std::size_t kMaxForNoise = 2000;
 /// The upper bound of the search for the noise. Features are logarithms, and a factor of e^4 is far
 /// more than the difference between any two textures.
-constexpr double kMostNoise = 4.0;
+constexpr double kMaxNoise = 4.0;
 constexpr int kHalvings = 12;
 
 /// The places of the trials that determine the noise: judged, with a response, and evenly chosen.
@@ -65,10 +65,10 @@ std::vector<std::size_t> places_for_noise(const std::vector<AnswerShares>& ideal
   for (std::size_t i = 0; i < ideal.size(); ++i) {
     if (!ideal[i].empty() && responses[i]) all.push_back(i);
   }
-  if (all.size() <= kMostForNoise) return all;
+  if (all.size() <= kMaxForNoise) return all;
   std::vector<std::size_t> some;
-  for (std::size_t i = 0; i < kMostForNoise; ++i) {
-    some.push_back(all[i * all.size() / kMostForNoise]);
+  for (std::size_t i = 0; i < kMaxForNoise; ++i) {
+    some.push_back(all[i * all.size() / kMaxForNoise]);
   }
   return some;
 }
@@ -108,7 +108,7 @@ MatchingNoise matching_noise(const Observer& observer, std::span<const ObservedT
   const double without_noise = share_with(0.0);
   if (without_noise <= wanted) return {0.0, without_noise, wanted};
   double low = 0.0;
-  double high = kMostNoise;
+  double high = kMaxNoise;
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (low + high);
     (share_with(middle) > wanted ? low : high) = middle;

@@ -23,7 +23,7 @@ constexpr double kPanel_cm = 6.0;  ///< least height of a panel and the room abo
 constexpr double kSpread = 0.6;    ///< width of the methods of one class, in widths of a class
 constexpr double kHalfRow = 0.36;  ///< half the width of the dots of one pair
 /// The most participants that are drawn as dots for each pair of methods.
-constexpr std::size_t kMostDifferences = 200;
+constexpr std::size_t kMaxDifferences = 200;
 
 double aside(std::size_t number, std::size_t count) {
   if (count < 2) return 0.0;
@@ -83,7 +83,7 @@ std::vector<double> differences(const MethodReport& first, const MethodReport& s
     }
   }
   std::sort(all.begin(), all.end());
-  return evenly_chosen(all, kMostDifferences);
+  return evenly_chosen(all, kMaxDifferences);
 }
 
 /// The places of the dots: equal differences stand side by side around the place of their pair.

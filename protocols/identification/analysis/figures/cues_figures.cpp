@@ -65,7 +65,7 @@ std::string panel_script(const CueReport& cues, const MethodCues& method, std::s
 
 /// The most grey values along the texture's longer side. More would be too fine for print and would
 /// make the script large.
-constexpr int kMostPixels = 250;
+constexpr int kMaxPixels = 250;
 constexpr double kPicture_cm = 10.0;
 /// A palette that runs from dark to bright in grey as well, and whose colours differ from the
 /// texture's grey (after Okabe and Ito).
@@ -75,7 +75,7 @@ constexpr const char* kForcePalette =
 /// Every n-th grey value of the texture.
 std::string texture_data(const PathTexture& texture) {
   const GreyImage& grey = texture.grey;
-  const int step = (std::max(grey.width(), grey.height()) + kMostPixels - 1) / kMostPixels;
+  const int step = (std::max(grey.width(), grey.height()) + kMaxPixels - 1) / kMaxPixels;
   std::string data = "$texture << EOD\n";
   for (int y = 0; y < grey.height(); y += step) {
     for (int x = 0; x < grey.width(); x += step) {
@@ -89,7 +89,7 @@ std::string texture_data(const PathTexture& texture) {
 
 std::string texture_plot(const PathTexture& texture) {
   const GreyImage& grey = texture.grey;
-  const int step = (std::max(grey.width(), grey.height()) + kMostPixels - 1) / kMostPixels;
+  const int step = (std::max(grey.width(), grey.height()) + kMaxPixels - 1) / kMaxPixels;
   const int columns = (grey.width() + step - 1) / step;
   const int rows = (grey.height() + step - 1) / step;
   const double x_mm = texture.geometry.width_mm() / columns;

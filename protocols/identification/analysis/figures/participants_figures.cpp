@@ -84,7 +84,7 @@ std::string alt_of_participants(const StudyReport& report) {
 /// interval would be as wide as the panel.
 constexpr int kTrialsOfPoint = 15;
 /// The most points that readers can tell apart.
-constexpr int kMostPositions = 60;
+constexpr int kMaxPositions = 60;
 
 struct Point {
   double first = 0.0;
@@ -112,7 +112,7 @@ int places_together(const std::vector<GroupAccuracy>& groups) {
   const auto places = static_cast<int>(groups.size());
   const double of_place = static_cast<double>(trials) / std::max(places, 1);
   const int needed = static_cast<int>(std::ceil(kTrialsOfPoint / std::max(of_place, 1.0)));
-  return std::max({1, needed, (places + kMostPositions - 1) / kMostPositions});
+  return std::max({1, needed, (places + kMaxPositions - 1) / kMaxPositions});
 }
 
 std::vector<Point> points_of(const std::vector<GroupAccuracy>& groups) {
@@ -337,7 +337,7 @@ std::optional<Figure> reaction_figure(const StudyReport& report) {
       fmt::format("reaction times by presented class, from plane-on to the answer, all "
                   "participants' trials with a response. At most {} trials a class are drawn, "
                   "evenly over their order.",
-                  kMostDots));
+                  kMaxDots));
   return figure;
 }
 

@@ -11,7 +11,7 @@ namespace touchtrial::analysis::identification {
 
 namespace {
 
-constexpr const char* kNoWidth = " *";   ///< refers to a note below the table
+constexpr const char* kAlike = " *";     ///< refers to a note below the table
 constexpr const char* kOfTrials = " †";  ///< refers to a note below the table
 
 std::string pair_name(const StudyReport& report, const MethodPair& pair) {
@@ -26,23 +26,20 @@ std::string odds_figure(const std::optional<OddsRatio>& odds) {
                           : plain_range(odds->interval, 2) + kOfTrials);
 }
 
-/// The t interval, which needs at least two participants.
+/// Whether all participants' differences are equal, which does not mean that they are certain.
+bool are_alike(const MethodComparison& paired) {
+  return paired.participants > 1 && !paired.known_interval();
+}
+
+/// The t interval, with a mark where there is none because all differences are equal.
 std::string t_range(const MethodComparison& comparison) {
-  return comparison.participants > 1 && comparison.difference ? share_range(comparison.interval)
-                                                              : kNoFigure;
+  return share_range(comparison.known_interval()) + (are_alike(comparison) ? kAlike : "");
 }
 
-/// Tells whether all participants' differences are equal. The interval then has no width, which
-/// does not mean that the difference is certain.
-bool has_no_width(const MethodComparison& paired) {
-  return paired.participants > 1 && paired.difference &&
-         paired.interval.high - paired.interval.low < 1e-9;
-}
-
-Cited note_on_width() {
+Cited note_on_alike() {
   return {
-      "* Every participant has the same difference, so that the interval has no width: it does not "
-      "show how certain the number is."};
+      "* Every participant has the same difference, so that there is no t interval: nothing shows "
+      "how certain the number is."};
 }
 
 std::string sentence_of(const StudyReport& report, const MethodPair& pair) {
@@ -84,7 +81,7 @@ Table pair_table(const StudyReport& report) {
     std::vector<Cell> row{pair_name(report, pair),
                           std::to_string(overall.participants),
                           Cell(points_figure(overall.difference), true),
-                          t_range(overall) + (has_no_width(overall) ? kNoWidth : ""),
+                          t_range(overall),
                           share_range(overall.bootstrap),
                           p_figure(overall.p)};
     if (holm) row.emplace_back(p_figure(pair.p_holm));
@@ -115,8 +112,8 @@ Table pair_table(const StudyReport& report) {
          "bootstrap.",
          {Source::robins_breslow_greenland}});
   }
-  const auto has_none = [](const MethodPair& pair) { return has_no_width(pair.overall); };
-  if (std::ranges::any_of(report.pairs, has_none)) table.notes.push_back(note_on_width());
+  const auto has_none = [](const MethodPair& pair) { return are_alike(pair.overall); };
+  if (std::ranges::any_of(report.pairs, has_none)) table.notes.push_back(note_on_alike());
   if (holm) {
     table.notes.push_back({"Holm: adjusted over all pairs of methods.", {Source::holm}});
   }
@@ -138,7 +135,7 @@ std::vector<Cell> class_row(const std::string& label, const ClassComparison& one
                         fmt::format("{}/{}", one.second.correct, one.second.n),
                         share_figure(one.second.share()),
                         points_figure(difference),
-                        t_range(one.paired) + (has_no_width(one.paired) ? kNoWidth : ""),
+                        t_range(one.paired),
                         p_figure(one.paired.p)};
   if (mcnemar) row.emplace_back(p_figure(one.mcnemar_mid_p));
   row.emplace_back(signed_plain_figure(db, 2));
@@ -166,8 +163,8 @@ Table class_table(const StudyReport& report, const MethodPair& pair, std::size_t
        "at, not to test with.",
        {Source::student, Source::phipson_smyth}}};
   if (std::any_of(pair.classes.begin(), pair.classes.end(),
-                  [](const ClassComparison& one) { return has_no_width(one.paired); })) {
-    table.notes.push_back(note_on_width());
+                  [](const ClassComparison& one) { return are_alike(one.paired); })) {
+    table.notes.push_back(note_on_alike());
   }
   return table;
 }

@@ -11,8 +11,7 @@ namespace touchtrial::analysis::identification {
 namespace {
 
 std::string mean_range(const MeanEstimate& mean) {
-  const bool has_width = mean.participants > 1 && mean.interval.low < mean.interval.high;
-  return has_width ? share_range(mean.interval) : kNoFigure;
+  return share_range(mean.known_interval());
 }
 
 std::vector<Cell> observer_row(const ObserverFigures& observer) {
@@ -85,7 +84,7 @@ Table confusing_table(const StudyReport& report, const MethodCues& method, std::
 }
 
 /// With fewer participants, an interval over participants does not support a verdict.
-constexpr std::size_t kFewestToTell = 6;
+constexpr std::size_t kMinToJudge = 6;
 
 bool reaches(const MethodCues& method, Cue cue) {
   const auto found = std::ranges::find(method.observers, cue, &ObserverFigures::cue);
@@ -94,7 +93,7 @@ bool reaches(const MethodCues& method, Cue cue) {
 
 std::string verdict_of(const MethodCues& method, const CueMatch& match) {
   const std::size_t participants = method.participants.size();
-  if (participants < kFewestToTell) {
+  if (participants < kMinToJudge) {
     return fmt::format("with {} it cannot be decided whether the two differ",
                        counted(static_cast<std::int64_t>(participants), "participant"));
   }

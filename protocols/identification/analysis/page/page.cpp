@@ -75,10 +75,12 @@ std::string prevalence_phrase(const MethodReport& method) {
       share_figure(found.estimate), share_range(found.interval));
 }
 
-/// What a reader of the interval might miss.
-const char* remark_on(const Interval& interval) {
-  if (interval == Interval{0.0, 1.0}) return ", which is every possible value";
-  return interval.low < interval.high ? "" : ", which has no width because they do not differ";
+/// The t interval, with what a reader of it might miss.
+std::string interval_phrase(const MeanEstimate& mean) {
+  const std::optional<Interval> interval = mean.known_interval();
+  if (!interval) return "no t interval, because they do not differ";
+  return "95% t interval " + share_range(interval) +
+         (*interval == Interval{0.0, 1.0} ? ", which is every possible value" : "");
 }
 
 /// The sentence for readers to quote.
@@ -97,21 +99,20 @@ std::string headline_of(const StudyReport& report, const MethodReport& method) {
       method.bootstrap ? ", bootstrap interval " + share_range(method.bootstrap) : "";
   return fmt::format(
              "{}: participants were right in {} of their trials on average "
-             "({}, {}; 95% t interval {}{}{}{}). Chance is {}.",
+             "({}, {}; {}{}{}). Chance is {}.",
              method.method, share_figure(method.mean.mean), who, counted(method.overall.n, "trial"),
-             share_range(method.mean.interval), remark_on(method.mean.interval), bootstrap,
-             spread_phrase(method), share_figure(chance_share(report))) +
+             interval_phrase(method.mean), bootstrap, spread_phrase(method),
+             share_figure(chance_share(report))) +
          chance_phrase(method) + prevalence_phrase(method);
 }
 
 std::vector<Cell> headline_row(const MethodReport& method) {
   const MeanEstimate& mean = method.mean;
-  const bool interval = mean.participants > 1;
   return {method.method,
           std::to_string(mean.participants),
           std::to_string(method.overall.n),
           Cell(share_figure(mean.mean), true),
-          interval ? share_range(mean.interval) : kNoFigure,
+          share_range(mean.known_interval()),
           share_range(method.bootstrap),
           spread_figure(method.spread)};
 }
@@ -211,10 +212,10 @@ Document study_document(const StudyReport& report, const Provenance& provenance,
                         const Pictures& pictures) {
   Document document = framed_document(
       report, {"result", "Result", {}},
-      {accuracy_section(report), confusions_section(report), comparison_section(report),
-       visits_section(report), order_section(report), confidence_section(report),
-       times_section(report), cues_section(report, explores(pictures)), robustness_section(report),
-       methods_section(report)},
+      {accuracy_section(report), confusions_section(report), places_section(report),
+       comparison_section(report), visits_section(report), order_section(report),
+       confidence_section(report), times_section(report), cues_section(report, explores(pictures)),
+       robustness_section(report), methods_section(report)},
       provenance, pictures);
   if (report.methods.size() < 2) capitalise_captions(document);
   return document;

@@ -15,6 +15,9 @@ namespace touchtrial::analysis::identification {
 void add_headline(const StudyReport& report, Section& section);
 [[nodiscard]] Section accuracy_section(const StudyReport& report);
 [[nodiscard]] Section confusions_section(const StudyReport& report);
+/// Answers by their places on the screen, and who prefers a picture.
+/// \return a section without blocks if no answer has a place
+[[nodiscard]] Section places_section(const StudyReport& report);
 /// The comparison of two or more methods.
 /// \return a section without blocks if there is one method
 [[nodiscard]] Section comparison_section(const StudyReport& report);

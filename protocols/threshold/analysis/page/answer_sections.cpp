@@ -1,3 +1,4 @@
+#include "analysis/choices/people_report.hpp"
 #include "analysis/report/page/wording.hpp"
 #include "core/text.hpp"
 #include "protocols/threshold/analysis/page/sections.hpp"
@@ -27,6 +28,67 @@ Table outside_table(const std::string& id, const std::string& caption,
   return table;
 }
 
+/// The p that somebody who attends answers so few catch trials right.
+void add_attention(const std::vector<choices::Attention>& attention, Table& table) {
+  for (const char* title : {"p, attending", "by Holm"}) table.columns.push_back({title});
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const bool is_person = i < attention.size();
+    table.rows[i].emplace_back(is_person ? p_figure(attention[i].p) : kNoFigure);
+    table.rows[i].emplace_back(is_person ? p_figure(attention[i].p_holm) : kNoFigure);
+  }
+  table.notes.push_back({fmt::format(
+      "p, attending: exact binomial probability of as few right answers or fewer of somebody who "
+      "has {} of catch trials right; by Holm: adjusted over participants. Only where that is {} or "
+      "less do a participant's answers say that attention or understanding was missing.",
+      share_figure(choices::kAttentive), kUsualLevel)});
+}
+
+Table without_table(const ThresholdReport& report) {
+  Table table{"thresholds-without-hearers",
+              "Thresholds without those who could hear, means over participants",
+              columns_of({"standard", "n", "all (dB)", "n, without", "without (dB)"})};
+  for (std::size_t i = 0; i < report.control->without.size(); ++i) {
+    const StandardReport& one = report.standards[i];
+    const CensoredMean& without = report.control->without[i];
+    table.rows.push_back({one.words, std::to_string(one.mean.participants),
+                          threshold_text(mean_threshold(one.mean), one.levels),
+                          std::to_string(without.participants),
+                          threshold_text(mean_threshold(without), one.levels)});
+  }
+  table.notes = {{fmt::format("Left out: {}. The result keeps them.",
+                              listed(report.control->hearers, " and "))}};
+  return table;
+}
+
+/// What the control block could have found.
+std::string detectable_words(const SoundReport& control) {
+  const choices::Detectable& one = control.detectable;
+  const std::string people =
+      counted(static_cast<std::int64_t>(control.people.size()), "participant");
+  if (!one.share) {
+    return fmt::format(" {} are too few to find anybody among {}.", counted(one.trials, "trial"),
+                       people);
+  }
+  return fmt::format(
+      " Among {}, somebody who is right in {} of {} is found with a probability of {}; who hears "
+      "less may pass.",
+      people, share_figure(one.share), counted(one.trials, "trial"), choices::kFoundWith);
+}
+
+/// "; without them bark: −20.1 [−22.0, −18.2] dB (9 participants)"
+std::string without_words(const ThresholdReport& report) {
+  std::vector<std::string> all;
+  for (std::size_t i = 0; i < report.control->without.size(); ++i) {
+    const CensoredMean& mean = report.control->without[i];
+    if (!mean.mean) continue;
+    const StandardReport& standard = report.standards[i];
+    all.push_back(fmt::format("{}: {} dB ({})", standard.words,
+                              threshold_text(mean_threshold(mean), standard.levels),
+                              counted(mean.participants, "participant")));
+  }
+  return all.empty() ? "" : "; without them " + listed(all, " and ");
+}
+
 std::string control_meaning(const ThresholdReport& report) {
   return fmt::format(
       "In the control block the hand was off the device, which moved by itself: only its sound was "
@@ -35,11 +97,19 @@ std::string control_meaning(const ThresholdReport& report) {
       share_figure(report.guess));
 }
 
+/// By which test a p over participants is.
+std::string test_words(bool alike) {
+  return std::string("p by Student's t over participants") +
+         (alike ? ", by sign flips where all of them are alike." : ".");
+}
+
 Table choices_table(const ThresholdReport& report) {
   Table table{"named-choices",
               "How often each answer was given, and how often it was right; trials of tracks",
               columns_of({"answer", "given", "right answer", "difference (points)", "t 95%", "p"})};
+  bool alike = false;
   for (const ChoiceUse& one : report.choice_use) {
+    alike = alike || one.excess.alike;
     const std::optional<Interval> interval = one.excess.mean.known_interval();
     table.rows.push_back({one.choice, std::to_string(one.named), std::to_string(one.targets),
                           points_figure(one.excess.mean.mean), share_range(interval),
@@ -47,9 +117,33 @@ Table choices_table(const ThresholdReport& report) {
   }
   table.notes = {
       {"Difference: mean over participants of the share given less the share right, in "
-       "percentage points; p by Student's t.",
+       "percentage points; " +
+           test_words(alike),
        {Source::student}}};
   return table;
+}
+
+Table own_preferences_table(const ThresholdReport& report) {
+  Table table = choices::preferences_table(report.preferences, report.choices, "answer");
+  table.notes = {
+      {fmt::format(
+           "Without a preference somebody is right as often wherever the right answer is. p: right "
+           "answers keep their places and targets are drawn anew, {} times; by Holm: adjusted over "
+           "participants.",
+           report.preferences.anybody.deals),
+       {Source::holm, Source::phipson_smyth}}};
+  return table;
+}
+
+std::string preferences_sentence(const ThresholdReport& report) {
+  const choices::Anybody& anybody = report.preferences.anybody;
+  const std::string who = choices::preference_words(report.preferences, report.choices);
+  if (who.empty()) {
+    return fmt::format("Preferences of participants' own: no sign ({}, by people).",
+                       p_phrase(anybody.p));
+  }
+  return fmt::format("Preferences of participants' own ({}, by people): {}.", p_phrase(anybody.p),
+                     who);
 }
 
 std::vector<Cell> repetition_row(const std::string& name, const Repetition& one) {
@@ -71,7 +165,8 @@ Table repetitions_table(const ThresholdReport& report) {
   table.notes = {
       {"In any order: what participants' own shares of answers give if answers do not "
        "depend on the one before. Targets are drawn trial by trial and depend on "
-       "nothing; p by Student's t over participants.",
+       "nothing; " +
+           test_words(report.after_right.excess.alike || report.after_wrong.excess.alike),
        {Source::student}}};
   return table;
 }
@@ -91,60 +186,33 @@ std::string learning_sentence(const ThresholdReport& report) {
   return text + ". Below 0 participants became better.";
 }
 
-std::string cell_of(const Proportion& of) {
-  return fmt::format("{} of {}", of.correct, of.n);
-}
-
-Table same_different_table(const ThresholdReport& report, const std::string& id,
-                           const std::string& caption, bool pooled) {
-  Table table{id, caption,
-              columns_of({"participant", "standard", "level (dB)", "hits", "false alarms",
-                          "at all levels", "d' differencing", "d' independent"},
-                         {"standard"})};
-  for (const SameDifferentLevel& one : report.same_different) {
-    if (one.participant.empty() != pooled) continue;
-    table.rows.push_back({pooled ? "all, pooled" : one.participant,
-                          report.standards[one.standard].words, plain_figure(one.level, 1),
-                          cell_of(one.different), cell_of(one.same), cell_of(one.same_at_all),
-                          plain_figure(one.d_differencing, 2), plain_figure(one.d_independent, 2)});
-  }
-  return table;
-}
-
-Table group_d_prime_table(const ThresholdReport& report) {
-  Table table{"d-prime-by-level",
-              "d' of same or different: means over participants with t intervals",
-              columns_of({"standard", "level (dB)", "n", "d' differencing", "t 95%",
-                          "d' independent", "t 95%"})};
-  for (const SameDifferentGroup& one : report.same_different_groups) {
-    table.rows.push_back(
-        {report.standards[one.standard].words, plain_figure(one.level, 1),
-         std::to_string(one.differencing.participants), plain_figure(one.differencing.mean, 2),
-         plain_range(one.differencing.known_interval(), 2), plain_figure(one.independent.mean, 2),
-         plain_range(one.independent.known_interval(), 2)});
-  }
-  table.notes = {
-      {"Differencing: the observer compares how far the two impressions are apart; to quote where "
-       "levels are mixed or gains roved. Independent: each impression is judged by itself, which "
-       "needs two fixed stimuli; its d' is smaller (Macmillan and Creelman 2005, chapter 9). Hits "
-       "are those of the level, false alarms those of all levels of the standard. Half an answer "
-       "stands for none and is taken from all. With fewer hits than false alarms a participant's "
-       "own d' is 0, which is most likely, and enters these means as minus the d' of the exchanged "
-       "shares, so that guessing gives 0 on average."}};
-  return table;
-}
-
 }  // namespace
 
-Section same_different_section(const ThresholdReport& report) {
-  Section section{"same-or-different", "Same or different", {}};
-  if (report.same_different.empty()) return section;
-  section.blocks.emplace_back(group_d_prime_table(report));
-  section.blocks.emplace_back(same_different_table(
-      report, "same-different-pooled", "Answers \"different\", all participants pooled", true));
-  section.blocks.emplace_back(same_different_table(report, "same-different-participants",
-                                                   "Answers \"different\" by participant", false));
-  return section;
+std::string sound_sentence(const ThresholdReport& report) {
+  if (!report.control) {
+    return "There was no control block with the hand off the device: whether the textures could be "
+           "heard is not known.";
+  }
+  const SoundReport& control = *report.control;
+  const RightAnswers& pooled = control.pooled;
+  const std::string counts = fmt::format(
+      "With the hand off the device {} of {} answers were right ({} {}; guessing gives {})",
+      pooled.answers.correct, pooled.answers.n, share_figure(pooled.answers.share()),
+      share_range(pooled.interval), share_figure(report.guess));
+  const std::string p = p_phrase(control.anybody.p);
+  if (!control.anybody.found()) {
+    return fmt::format("{}: by people no sign that anybody could hear it ({}).{}", counts, p,
+                       detectable_words(control));
+  }
+  if (control.hearers.empty()) {
+    return fmt::format(
+        "{}: more than by guessing ({}, by people), though nobody stands out. Participants could "
+        "hear something, and every threshold may be of the ear.",
+        counts, p);
+  }
+  return fmt::format(
+      "{}. Somebody could hear it ({}, by people): {}. Their thresholds may be of the ear{}.",
+      counts, p, hearers_words(control), without_words(report));
 }
 
 Section control_section(const ThresholdReport& report) {
@@ -153,11 +221,14 @@ Section control_section(const ThresholdReport& report) {
     section.blocks.emplace_back(Cited{control_meaning(report)});
     section.blocks.emplace_back(outside_table(
         "control-block", "Right answers with the hand off the device", *report.control));
+    if (!report.control->hearers.empty()) section.blocks.emplace_back(without_table(report));
   }
   if (report.catches) {
-    section.blocks.emplace_back(outside_table(
-        "catch-trials", "Right answers in catch trials, which are at the highest level",
-        *report.catches));
+    Table table = outside_table("catch-trials",
+                                "Right answers in catch trials, which are at the highest level",
+                                *report.catches);
+    add_attention(report.attention, table);
+    section.blocks.emplace_back(std::move(table));
   }
   return section;
 }
@@ -168,6 +239,10 @@ Section habits_section(const ThresholdReport& report) {
   const std::string learning = learning_sentence(report);
   if (!learning.empty()) section.blocks.emplace_back(Cited{learning});
   section.blocks.emplace_back(choices_table(report));
+  if (!report.preferences.people.empty()) {
+    section.blocks.emplace_back(Cited{preferences_sentence(report)});
+    section.blocks.emplace_back(own_preferences_table(report));
+  }
   section.blocks.emplace_back(repetitions_table(report));
   return section;
 }

@@ -3,6 +3,7 @@
 #include "protocols/threshold/analysis/page/sections.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -34,15 +35,14 @@ std::string estimate_words(const ThresholdReport& report) {
   if (!report.has_thresholds()) {
     return "The question has no fixed guess rate, so there are d' by level and no thresholds.";
   }
-  if (report.by_posterior) {
-    return "Quoted are posterior means with credible intervals. In simulations with known "
-           "observers they are nearly without bias after 30 adaptive trials and their intervals "
-           "cover at least what they state, while those of maximum likelihood cover less in short "
-           "adaptive tracks (procedures-recovery.md). Slopes fitted to adaptive tracks are too "
-           "steep.";
-  }
-  return "Quoted are maximum-likelihood fits with profile intervals, which with constant stimuli "
-         "cover what they state (procedures-recovery.md). Goodness of fit is by simulation.";
+  return "A threshold's 95 % interval holds the thresholds that the answers do not reject, "
+         "whatever "
+         "the observer's slope and lapse rate may be; its number is the likeliest threshold of "
+         "usual "
+         "observers. Answers to the catch trials, which are at the highest level and tell how "
+         "often somebody lapses, count as those to the procedure's trials do. Nothing depends on "
+         "which observers the procedure assumed. procedures-recovery.md shows how far to trust it, "
+         "with simulated observers of many kinds.";
 }
 
 std::string question_words(const ThresholdOptions& options) {
@@ -82,23 +82,58 @@ std::string criterion_words(const ThresholdReport& report) {
       share_figure(report.criterion), share_figure(report.guess));
 }
 
+/// Empty if everybody's threshold is known.
 std::string censored_words(const StandardReport& one) {
-  const int censored = one.censored_below + one.censored_above;
-  if (censored == 0) return "";
-  return fmt::format(" {} of {} gave none, {} below the lowest level and {} above the highest.",
-                     censored, counted(one.tracks, "track"), one.censored_below,
-                     one.censored_above);
+  if (one.mean.exact == one.mean.participants) return "";
+  return fmt::format(
+      " Of {} {} {} a threshold inside the levels; {} above the highest, {} below the lowest, {} "
+      "not determined.",
+      counted(one.mean.participants, "participant"), one.mean.exact,
+      one.mean.exact == 1 ? "has" : "have", one.number_of(Censored::above),
+      one.number_of(Censored::below), one.number_of(Censored::undetermined));
 }
 
-std::string people_words(const MeanEstimate& mean) {
+/// "−12.5", "above 0.0" or "between −5.0 and −2.5"; empty if nothing is known of it.
+std::string median_text(const CensoredMean& mean) {
+  if (mean.median) return plain_figure(mean.median, 1);
+  const auto& [low, high] = mean.median_within;
+  if (!std::isfinite(low)) return std::isfinite(high) ? "below " + plain_figure(high, 1) : "";
+  if (!std::isfinite(high)) return "above " + plain_figure(low, 1);
+  return "between " + plain_figure(low, 1) + " and " + plain_figure(high, 1);
+}
+
+std::string lack_words(Lack lack) {
+  switch (lack) {
+    case Lack::nothing:
+      break;
+    case Lack::values:
+      return "fewer than two thresholds are known";
+    case Lack::most:
+      return "more than half of the thresholds are not known";
+    case Lack::spread:
+      return "those that are known are all alike";
+  }
+  return "";
+}
+
+std::string people_words(const CensoredMean& mean) {
   if (mean.participants == 1) return "of one participant";
-  return fmt::format("mean of {} with its 95 % t interval, standard deviation {}",
-                     counted(mean.participants, "participant"), plain_figure(mean.sd, 1));
+  const std::string people = "mean of " + counted(mean.participants, "participant");
+  if (!mean.interval) return people + ", without an interval: " + lack_words(mean.lack);
+  const char* kind = mean.exact == mean.participants ? "t" : "likelihood";
+  return fmt::format("{} with its 95 % {} interval, standard deviation {}, median {}", people, kind,
+                     plain_figure(mean.sd, 1), median_text(mean));
+}
+
+std::string no_mean_words(const CensoredMean& mean) {
+  const std::string median = median_text(mean);
+  return fmt::format("no mean, because {}.{}", lack_words(mean.lack),
+                     median.empty() ? "" : fmt::format(" Median: {} dB.", median));
 }
 
 std::string standard_sentence(const ThresholdReport& report, const StandardReport& one) {
   if (one.tracks == 0) return one.words + ": no trials that count.";
-  if (!one.mean.mean) return one.words + ": no threshold." + censored_words(one);
+  if (!one.mean.mean) return one.words + ": " + no_mean_words(one.mean) + censored_words(one);
   const procedures::Threshold mean = mean_threshold(one.mean);
   std::string text = fmt::format("{}: {} dB, {}.", one.words, threshold_text(mean, one.levels),
                                  people_words(one.mean));
@@ -111,83 +146,75 @@ std::string standard_sentence(const ThresholdReport& report, const StandardRepor
   return text + censored_words(one);
 }
 
-std::string control_sentence(const ThresholdReport& report) {
-  if (!report.control) {
-    return "There was no control block with the hand off the device: whether the textures could be "
-           "heard is not known.";
-  }
-  const RightAnswers& pooled = report.control->pooled;
-  const std::string counts = fmt::format(
-      "With the hand off the device {} of {} answers were right ({} {}, exact, one-sided {} "
-      "against guessing)",
-      pooled.answers.correct, pooled.answers.n, share_figure(pooled.answers.share()),
-      share_range(pooled.interval), p_phrase(pooled.p.value_or(1.0)));
-  if (pooled.p.value_or(1.0) <= kUsualLevel) {
-    return counts +
-           ": more than by guessing. Participants could hear it; the threshold may be of "
-           "the ear.";
-  }
-  return counts +
-         ": no sign that anybody could hear it. Few trials show only what is easily "
-         "heard.";
-}
-
 std::string difference_sentence(const SameDifferentGroup& one, const ThresholdReport& report) {
-  return fmt::format("{}, {} dB: d' {} {} by differencing, mean of {}.",
+  return fmt::format("{}, {} dB: d' {} {} by differencing, all answers of {} pooled.",
                      report.standards[one.standard].words, plain_figure(one.level, 1),
-                     plain_figure(one.differencing.mean, 2),
-                     plain_range(one.differencing.known_interval(), 2),
-                     counted(one.differencing.participants, "participant"));
+                     plain_figure(one.differencing.d_prime, 2),
+                     plain_range(one.differencing.interval, 2),
+                     counted(one.participants, "participant"));
 }
 
-/// How the quoted thresholds were estimated.
-std::string quoted_words(const ThresholdReport& report) {
-  return report.by_posterior ? "posterior means" : "maximum likelihood";
+std::string or_no_figure(const std::string& text) {
+  return text.empty() ? kNoFigure : text;
+}
+
+Cited mean_note() {
+  return {
+      "Levels are logarithms, so their mean is that of a geometric mean. Mean and SD are of the "
+      "normal distribution that is most likely for everybody, of those beyond the levels by "
+      "the probability to lie there (Tobin 1958). The interval is by likelihood ratio, with "
+      "the degrees of freedom of those who are known. If everybody is, that is Student's.",
+      {Source::student, Source::tobin}};
 }
 
 Table standards_table(const ThresholdReport& report) {
   const ThresholdOptions& options = report.options();
   const std::string quantity = quantity_name(options);
   Table table{"thresholds-by-standard",
-              fmt::format("Thresholds in {}, {}; means over participants with t intervals",
-                          study::threshold::unit_of_level(options), quoted_words(report)),
-              columns_of({"standard", "n", "threshold and 95% (dB)", "SD (dB)", "tracks", "below",
-                          "above"})};
+              fmt::format("Thresholds in {}; means over participants",
+                          study::threshold::unit_of_level(options)),
+              columns_of({"standard", "n", "mean and 95% (dB)", "SD (dB)", "median (dB)", "known",
+                          "below", "above", "not determined", "tracks"})};
   if (!quantity.empty()) table.columns.push_back({quantity + " and 95%"});
   for (const StandardReport& one : report.standards) {
     const procedures::Threshold mean = mean_threshold(one.mean);
     std::vector<Cell>& row = table.rows.emplace_back(std::vector<Cell>{
         one.words, std::to_string(one.mean.participants), threshold_text(mean, one.levels),
-        plain_figure(one.mean.sd, 1), std::to_string(one.tracks),
-        std::to_string(one.censored_below), std::to_string(one.censored_above)});
+        plain_figure(one.mean.sd, 1), or_no_figure(median_text(one.mean)),
+        std::to_string(one.number_of(Censored::no)), std::to_string(one.number_of(Censored::below)),
+        std::to_string(one.number_of(Censored::above)),
+        std::to_string(one.number_of(Censored::undetermined)), std::to_string(one.tracks)});
     if (!quantity.empty()) {
       row.emplace_back(quantity_text(quantity_of(options, one.of, mean), options));
     }
   }
   table.notes = {
-      {"n: participants with a threshold, each the mean of the own tracks. Below, above: tracks "
-       "that reached a bound of the levels; they give no number and are left out of the mean."},
-      {"Levels are logarithms, so their mean is that of a geometric mean. The interval is "
-       "Student's, over participants.",
-       {Source::student}}};
+      {"n: participants with a track, all of whom the mean counts, each with the mean of the own "
+       "tracks. Known: the estimate lies inside the levels. Below, above: it lies beyond the "
+       "lowest or the highest level, and counts as beyond. Not determined: the answers say hardly "
+       "anything, or own tracks differ in this. If more than half are not known there is no mean."},
+      {mean_note()}};
   return table;
 }
 
 Table differences_table(const ThresholdReport& report) {
   Table table{
       "differences-of-standards",
-      "Differences of thresholds, first minus second, of participants who have both",
-      columns_of({"first", "second", "n", "difference (dB)", "t 95% (dB)", "p", "p by Holm"},
+      "Differences of thresholds, first minus second, of participants with tracks of both",
+      columns_of({"first", "second", "n", "known", "difference (dB)", "95% (dB)", "p", "p by Holm"},
                  {"second"})};
   for (const DifferenceReport& one : report.differences) {
-    const MeanEstimate& mean = one.difference.mean;
+    const CensoredMean& mean = one.difference;
     table.rows.push_back({report.standards[one.first].words, report.standards[one.second].words,
-                          std::to_string(mean.participants), signed_plain_figure(mean.mean, 1),
-                          plain_range(mean.known_interval(), 1), p_figure(one.difference.p),
-                          p_figure(one.p_holm)});
+                          std::to_string(mean.participants), std::to_string(mean.exact),
+                          signed_plain_figure(mean.mean, 1), plain_range(mean.interval, 1),
+                          p_figure(one.p), p_figure(one.p_holm)});
   }
-  table.notes = {{"p: Student's t test, two-sided; by Holm: adjusted over all pairs.",
-                  {Source::student, Source::holm}}};
+  table.notes = {
+      {"Mean, interval and p, two-sided, as for thresholds; a difference is known if both "
+       "thresholds are, and has a bound if one of them lies beyond the levels. By Holm: adjusted "
+       "over all pairs.",
+       {Source::student, Source::tobin, Source::holm}}};
   return table;
 }
 
@@ -195,9 +222,9 @@ bool any_track(const ThresholdReport& report, bool (*has)(const TrackReport&)) {
   return std::ranges::any_of(report.tracks, has);
 }
 
-std::string estimate_text(const std::optional<TrackEstimate>& estimate,
-                          const std::vector<double>& levels) {
-  return estimate ? threshold_text(estimate->threshold, levels) : kNoFigure;
+/// "6 of 6"
+std::string catches_text(const Proportion& of) {
+  return of.n == 0 ? kNoFigure : fmt::format("{} of {}", of.correct, of.n);
 }
 
 Table tracks_table(const ThresholdReport& report) {
@@ -205,9 +232,8 @@ Table tracks_table(const ThresholdReport& report) {
   Table table{
       "tracks",
       fmt::format("Every track: thresholds in {}", study::threshold::unit_of_level(options)),
-      columns_of({"participant", "track", "standard", "n", "right",
-                  report.by_posterior ? "posterior, to quote" : "posterior",
-                  report.by_posterior ? "likelihood" : "likelihood, to quote", "slope", "lapses"},
+      columns_of({"participant", "track", "standard", "n", "right", "catch trials right",
+                  "threshold and 95% (dB)"},
                  {"standard"})};
   const bool turns =
       any_track(report, [](const TrackReport& t) { return t.reversals.has_value(); });
@@ -218,20 +244,18 @@ Table tracks_table(const ThresholdReport& report) {
   if (!quantity.empty()) table.columns.push_back({quantity});
   for (const TrackReport& track : report.tracks) {
     const StandardReport& standard = report.standards[track.standard];
-    const TrackEstimate quoted = report.quoted(track).value_or(TrackEstimate{});
+    const procedures::Threshold threshold = track.estimate.value().threshold;
     std::vector<Cell>& row = table.rows.emplace_back(
         std::vector<Cell>{track.participant, std::to_string(track.track), standard.words,
                           std::to_string(track.answers.n), share_figure(track.answers.share()),
-                          estimate_text(track.posterior, standard.levels),
-                          estimate_text(track.likelihood, standard.levels),
-                          plain_figure(quoted.slope, 2), share_figure(quoted.lapse)});
+                          catches_text(track.catches), threshold_text(threshold, standard.levels)});
     if (turns) {
       row.emplace_back(track.reversals ? threshold_text(*track.reversals, standard.levels)
                                        : kNoFigure);
     }
     if (fits) row.emplace_back(track.fit ? p_figure(track.fit->p) : kNoFigure);
     if (!quantity.empty()) {
-      row.emplace_back(quantity_text(quantity_of(options, standard.of, quoted.threshold), options));
+      row.emplace_back(quantity_text(quantity_of(options, standard.of, threshold), options));
     }
   }
   return table;
@@ -240,18 +264,24 @@ Table tracks_table(const ThresholdReport& report) {
 /// What the columns of the tracks mean.
 std::vector<Cited> tracks_notes(const ThresholdReport& report) {
   const procedures::TrackSettings& track = report.options().track;
+  const bool is_any_fitted =
+      any_track(report, [](const TrackReport& t) { return t.fit.has_value(); });
   std::vector<Cited> notes = {
-      {"Posterior: mean and 95 % credible interval, over the study's grid. Likelihood: the most "
-       "likely observer and the 95 % profile interval, the guess rate held. Slope and lapses are "
-       "those of the estimate to quote. Below, above: the track reached a bound of the levels and "
-       "has no threshold; open: the interval has no end on this side."}};
+      {"Threshold: with its 95 % interval, as under Analysis. Above, below: with usual "
+       "lapse rates the whole interval lies beyond the highest or the lowest level. Not "
+       "determined: the answers tell "
+       "neither a threshold inside the levels nor a side; where an end of the interval is known "
+       "it is stated. n and right: trials that the procedure chose; catch trials are at the "
+       "highest level and count in the threshold too."}};
   if (track.procedure.ends_with("up-down")) {
     notes.push_back({fmt::format(
         "Reversals: mean of the last turns of the staircase. It estimates the level with {} right, "
-        "not the threshold's {}, so the two are not to be compared; it has no interval.",
+        "not the threshold's {}, so the two are not to be compared; it has no interval, and is "
+        "above "
+        "or below where one of these turns was at a bound of the levels.",
         share_figure(procedures::convergence_of(track.up_down)), share_figure(report.criterion))});
   }
-  if (!report.by_posterior) {
+  if (is_any_fitted) {
     notes.push_back(
         {"p of the fit: the share of data sets of the fitted observer itself that deviate as much "
          "from their own fits, of 399 (Wichmann and Hill 2001). With few trials a level it finds "
@@ -270,6 +300,17 @@ std::string interval_text(const std::optional<double>& low, const std::optional<
                           int decimals) {
   if (!low && !high) return "";
   return " [" + end_text(low, decimals) + ", " + end_text(high, decimals) + "]";
+}
+
+std::string undetermined_text(const procedures::Threshold& threshold) {
+  const auto& [level, low, high, censored] = threshold;
+  const std::string text = "not determined";
+  if (low && high) {
+    return text + ", between " + plain_figure(low, 1) + " and " + plain_figure(high, 1);
+  }
+  if (low) return text + ", above " + plain_figure(low, 1);
+  if (high) return text + ", below " + plain_figure(high, 1);
+  return text;
 }
 
 std::optional<double> hundredfold(const std::optional<double>& share) {
@@ -295,7 +336,7 @@ void add_headline(const ThresholdReport& report, Section& section) {
       say(difference_sentence(one, report));
     }
   }
-  say(control_sentence(report));
+  say(sound_sentence(report));
 }
 
 Section thresholds_section(const ThresholdReport& report) {
@@ -320,8 +361,8 @@ Section methods_section(const ThresholdReport& report) {
   section.blocks.emplace_back(Cited{procedure_words(report)});
   section.blocks.emplace_back(Cited{estimate_words(report)});
   section.blocks.emplace_back(Cited{
-      "A track that reaches a bound of the levels, or whose posterior gathers at the end of its "
-      "grid, is censored: it says on which side the threshold lies and enters no mean."});
+      "A threshold above or below the levels, or that the answers do not determine, has no number. "
+      "It is stated by what is known of it."});
   return section;
 }
 
@@ -343,6 +384,7 @@ std::string threshold_text(const procedures::Threshold& threshold,
   if (levels.empty()) return kNoFigure;
   if (threshold.censored == Censored::below) return "below " + plain_figure(levels.front(), 1);
   if (threshold.censored == Censored::above) return "above " + plain_figure(levels.back(), 1);
+  if (threshold.censored == Censored::undetermined) return undetermined_text(threshold);
   if (!threshold.level) return kNoFigure;
   return plain_figure(threshold.level, 1) + interval_text(threshold.low, threshold.high, 1);
 }

@@ -10,8 +10,8 @@
 
 namespace touchtrial::analysis::threshold {
 
-/// A threshold with its interval, in dB: "−21.3 [−23.0, −19.6]". A censored one: "below −40.0"; an
-/// end that was not found: "open".
+/// A threshold with its interval, in dB: "−21.3 [−23.0, −19.6]". A censored one: "below −40.0",
+/// "not determined, above −20.0"; an end that was not found: "open".
 /// \param levels  of the track
 [[nodiscard]] std::string threshold_text(const procedures::Threshold& threshold,
                                          const std::vector<double>& levels);
@@ -23,6 +23,9 @@ namespace touchtrial::analysis::threshold {
 
 /// \return a section without blocks if the question is another one
 [[nodiscard]] Section same_different_section(const ThresholdReport& report);
+/// Whether anybody could hear it with the hand off the device, who, and the means without them; or
+/// what the block could have found.
+[[nodiscard]] std::string sound_sentence(const ThresholdReport& report);
 /// The control block with the hand off the device, and the catch trials.
 [[nodiscard]] Section control_section(const ThresholdReport& report);
 /// Preferred choices, repeated answers and learning.

@@ -78,12 +78,12 @@ TEST_CASE("report folder: refuses to write over a file that no report's list nam
   const TempFolder folder;
   const fs::path out = folder.path();
   make_folder(out / "tables");
-  CHECK_NOTHROW(refuse_strangers(out));
+  CHECK_NOTHROW(refuse_foreign_files(out));
   for (const std::string path : {"report.html", "tables/a.md"}) {
     replace_file(out / path, std::string_view("mine"));
     CHECK_THROWS_AS(write_report_folder(out, {{"results.json", "1"}, {path, "ours"}}), FileError);
     CHECK(content_of(out / path) == "mine");
     CHECK_FALSE(is_there(out / "results.json"));
   }
-  CHECK_THROWS_AS(refuse_strangers(out), FileError);
+  CHECK_THROWS_AS(refuse_foreign_files(out), FileError);
 }

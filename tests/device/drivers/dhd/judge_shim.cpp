@@ -32,7 +32,7 @@ namespace {
 using touchtrial::Vec3;
 using namespace touchtrial::testing;
 constexpr int kTimeGuard = 1;
-constexpr int kMostDof = 8;
+constexpr int kMaxDof = 8;
 constexpr int kFalconType = 60;
 
 void* library() {
@@ -84,9 +84,9 @@ Vec3 cross(Vec3 a, Vec3 b) {
 }
 
 /// \return what the library adds to a force at these joint angles, N
-Vec3 carried_n(const std::array<double, kMostDof>& angles, char id) {
-  std::array<double, kMostDof> joints = angles;
-  std::array<double, kMostDof> torques{};
+Vec3 carried_n(const std::array<double, kMaxDof>& angles, char id) {
+  std::array<double, kMaxDof> joints = angles;
+  std::array<double, kMaxDof> torques{};
   double j[3][3] = {};
   maker<GravityOf>("dhdJointAnglesToGravityJointTorques")(joints.data(), torques.data(), 7, id);
   maker<OfAngles>("dhdDeltaJointAnglesToJacobian")(joints[0], joints[1], joints[2], j, id);
@@ -181,7 +181,7 @@ class Entry {
 
 /// Puts the tip where the hand is.
 void place_tip(char id) {
-  std::array<int, kMostDof> counts{};
+  std::array<int, kMaxDof> counts{};
   const Vec3 at = desk().hand.place_m;
   using ToCounts = int(double, double, double, int*, int*, int*, char);
   maker<ToCounts>("dhdDeltaPositionToEncoder")(at.x, at.y, at.z, &counts[0], &counts[1], &counts[2],
@@ -215,7 +215,7 @@ int open_simulator(bool is_robotic) {
                      : open(all.arm, &device, 0.00025);
   if (id < 0) return id;
   // The calibration of the simulator.
-  std::array<int, kMostDof> counts{};
+  std::array<int, kMaxDof> counts{};
   using ToCounts = int(double, double, double, int*, int*, int*, char);
   maker<ToCounts>("dhdDeltaPositionToEncoder")(0.0, 0.0, 0.02, &counts[0], &counts[1], &counts[2],
                                                static_cast<char>(id));
@@ -313,7 +313,7 @@ void note_ours(Vec3 whole_n) {
 /// After a force: what the tip does to a hand, the hand's motion, and the line in the log.
 void feel(int result, char id) {
   Desk& all = desk();
-  std::array<double, kMostDof> angles{};
+  std::array<double, kMaxDof> angles{};
   maker<int(double*, char)>("dhdGetJointAngles")(angles.data(), id);
   Vec3 tip_n;
   maker<int(double*, double*, double*, char)>("dhdGetForce")(&tip_n.x, &tip_n.y, &tip_n.z, id);

@@ -382,7 +382,7 @@ TEST_CASE("one impossible reading is left out, several in a row are accepted") {
   CHECK(norm(rig.sample().position_mm) < 0.06);
   rig.lockstep.steps(4);
   CHECK(norm(rig.sample().position_mm) < 0.06);
-  rig.lockstep.steps(FalconExchange::kMostJumps);
+  rig.lockstep.steps(FalconExchange::kMaxJumps);
   CHECK(norm(rig.sample().position_mm) < 0.06);
   rig.lockstep.steps(2);
   CHECK(rig.sample().position_mm.x == Approx(25.0).margin(0.06));

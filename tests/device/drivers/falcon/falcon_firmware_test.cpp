@@ -183,8 +183,8 @@ TEST_CASE("a firmware file that is not named, is missing or has the wrong size i
   CHECK_THROWS_WITH(read_falcon_firmware({}), holds_text("set falcon.firmware"));
   CHECK_THROWS_WITH(read_falcon_firmware(folder.path() / "none.bin"), holds_text("cannot be read"));
   CHECK_THROWS_WITH(read_falcon_firmware(folder.path()), holds_text("falcon.firmware"));
-  const int size = GENERATE(0, 1, static_cast<int>(kLeastFirmwareBytes) - 1,
-                            static_cast<int>(kMostFirmwareBytes) + 1);
+  const int size = GENERATE(0, 1, static_cast<int>(kMinFirmwareBytes) - 1,
+                            static_cast<int>(kMaxFirmwareBytes) + 1);
   std::ofstream(folder.path() / "odd.bin") << std::string(static_cast<std::size_t>(size), 'x');
   CHECK_THROWS_WITH(read_falcon_firmware(folder.path() / "odd.bin"),
                     holds_text("is not a Falcon's firmware"));

@@ -158,16 +158,16 @@ TEST_CASE("a plug-in's text without an end ends where its room does") {
 
 TEST_CASE("what a plug-in reports or gets wrong latches as a fault, and the force is zero") {
   using device::DeviceFault;
-  using device::plugin::Trouble;
-  const auto [name, fault, trouble] = GENERATE(table<const char*, DeviceFault, Trouble>(
-      {{"staying", DeviceFault::link_lost, Trouble::lost},
-       {"warm", DeviceFault::warm_motors, Trouble::warm_motors},
-       {"unknown_code", DeviceFault::driver, Trouble::failed},
-       {"values", DeviceFault::bad_data, Trouble::not_finite},
-       {"huge", DeviceFault::bad_data, Trouble::absurd},
-       {"numbering", DeviceFault::bad_data, Trouble::sequence_fell},
-       {"unknown_readiness", DeviceFault::bad_data, Trouble::unknown_readiness},
-       {"memory", DeviceFault::bad_data, Trouble::wrote_past}}));
+  using device::plugin::PluginFault;
+  const auto [name, fault, trouble] = GENERATE(table<const char*, DeviceFault, PluginFault>(
+      {{"staying", DeviceFault::link_lost, PluginFault::lost},
+       {"warm", DeviceFault::warm_motors, PluginFault::warm_motors},
+       {"unknown_code", DeviceFault::driver, PluginFault::failed},
+       {"values", DeviceFault::bad_data, PluginFault::not_finite},
+       {"huge", DeviceFault::bad_data, PluginFault::absurd},
+       {"numbering", DeviceFault::bad_data, PluginFault::sequence_fell},
+       {"unknown_readiness", DeviceFault::bad_data, PluginFault::unknown_readiness},
+       {"memory", DeviceFault::bad_data, PluginFault::wrote_past}}));
   PluginRig rig(broken_by(name));
   for (int i = 0; i < 50; ++i) (void)rig.motors_after({0.0, 1.0, 0.0});
   REQUIRE(rig.library.observed_force_n() == Vec3{0.0, 1.0, 0.0});

@@ -67,7 +67,7 @@ TEST_CASE("the observer with the participants' confusions is found, and told fro
 
 TEST_CASE("five participants decide nothing, although the interval excludes 0") {
   std::vector<ParticipantAnswers> all;
-  for (int i = 0; i < kFewestForVerdict - 1; ++i) all.push_back(like_strength(i, 5, i % 3));
+  for (int i = 0; i < kMinForVerdict - 1; ++i) all.push_back(like_strength(i, 5, i % 3));
   const CueMatch match = cue_statistics(all, 0).match.value();
   CHECK(match.difference.interval.value().low > 0.0);
   CHECK_FALSE(match.told_apart);

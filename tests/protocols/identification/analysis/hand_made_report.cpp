@@ -117,6 +117,30 @@ CueReport cues_of(const std::vector<std::string>& classes) {
   return cues;
 }
 
+choices::AnswersByPlace places_of() {
+  choices::AnswersByPlace places;
+  for (const int named : {60, 45, 39}) {
+    places.places.push_back({named, {{6, (named - 48) / 144.0, {-0.1, 0.2}, 0.08}, 0.04}});
+  }
+  places.p = 0.012;
+  places.deals = 9999;
+  places.own.anybody = {0.0034, 9999, 6, 2, 0.3};
+  for (int i = 1; i <= 6; ++i) {
+    choices::Preference one;
+    one.participant = "P0" + std::to_string(i);
+    one.choice = i % 3;
+    one.place = 0;
+    one.answers = 24;
+    one.named = 12;
+    one.right_there = {8, 7};
+    one.right_elsewhere = {16, 9};
+    one.p = i <= 2 ? 0.004 : 0.4;
+    one.p_holm = i <= 2 ? 0.024 : 1.0;
+    places.own.people.push_back(one);
+  }
+  return places;
+}
+
 analysis::PrimaryResult primary_of() {
   return {
       .estimand = study::Estimand::difference,
@@ -193,6 +217,7 @@ StudyReport hand_made_report(const std::string& label) {
   report.course.completed = 7;
   report.departures = {"7 of 20 participants.", kHostile};
   report.looks = {{std::chrono::seconds(1'769'860'800), 6, kHostile}};
+  report.places = places_of();
   report.cues = cues_of(report.classes);
   report.warnings = {"Intervals of a class pool all trials.", kHostile};
   return report;

@@ -164,6 +164,19 @@ TEST_CASE("report --json holds what was registered, the answer, looks and depart
   CHECK(json["prevalence"]["interval"].size() == 2);
 }
 
+TEST_CASE("people who are all alike are tested by sign flips, and the test is called so") {
+  FakeStudy study({.registration = R"({"participants": 4, "estimand": "mean-accuracy"})"});
+  add_people(study, 1, {8, 8, 8, 8});
+  const StudyReport report = final_report_of(study);
+  const analysis::PrimaryResult& primary = *report.primary;
+  CHECK(primary.p == 1.0 / 16.0);
+  CHECK_FALSE(primary.registered().interval);
+  CHECK(primary.test ==
+        "sign flips over participants, because these do not differ and there is no t, one-sided");
+  CHECK_THAT(primary.because, holds_text("there is no t interval"));
+  CHECK_FALSE(report.methods[0].mean.known_interval());
+}
+
 TEST_CASE("the primary result is the t test of participants' accuracies against chance") {
   FakeStudy study({.registration = R"({"participants": 6, "estimand": "mean-accuracy"})"});
   add_people(study, 1, {8, 7, 6, 9, 5, 4});
@@ -249,7 +262,8 @@ TEST_CASE("an interval without width, or cut where possible values end, is said 
                         "test, 48.0%, does not."));
   CHECK_THAT(because(0.9, {0.7, 1.0}, 0.01), holds_text("cut where possible values end"));
   CHECK_THAT(because(0.6, {0.5, 0.7}, 0.01), !holds_text("possible values"));
-  CHECK_THAT(because(1.0, {1.0, 1.0}, 0.25), holds_text("no width is no certainty"));
+  CHECK_THAT(because(1.0, {1.0, 1.0}, 0.25),
+             holds_text("do not differ, so that there is no t interval; that is no certainty"));
   CHECK_THAT(result.because, !holds_text("worth having"));
   CHECK(result.verdict == Verdict::undecided);
 }
@@ -470,6 +484,36 @@ TEST_CASE("as good by a margin is judged by the interval above minus the margin"
   CHECK_THAT(result.because, holds_text("contains −7.0 points"));
   CHECK(verdict({-0.2, -0.1}, 0.99) == Verdict::not_supported);
   CHECK_THAT(result.because, holds_text("worse by more than that"));
+}
+
+TEST_CASE("methods that are not above chance are not as good as each other") {
+  Judged judged(-0.07);
+  analysis::PrimaryResult& result = judged.result;
+  result.estimand = study::Estimand::difference;
+  result.margin = 0.07;
+  result.above_chance = {{"adaptive", 0.5, 0.001}, {"edge", 0.4, 0.04}};
+  CHECK(judged.verdict(0.0, {-0.05, 0.05}, 0.02) == Verdict::supported);
+  result.above_chance = {{"adaptive", 0.21, 0.3}, {"edge", 0.4, 0.04}};
+  CHECK(judged.verdict(0.0, {-0.05, 0.05}, 0.02) == Verdict::undecided);
+  CHECK_THAT(result.because, holds_text("Answers with adaptive (21.0%, p = 0.3) are not shown to "
+                                        "be above chance: equally bad is not as good"));
+  CHECK(judged.verdict(-0.2, {-0.25, -0.15}, 0.99) == Verdict::not_supported);
+}
+
+TEST_CASE("people who guess with both methods support nothing") {
+  FakeStudy study(study::identification::comparison(),
+                  {.registration = R"({"participants": 8, "estimand": "difference",
+                                       "methods": ["tv-gabor", "adaptive"], "margin": 0.3})"});
+  for (int enrolment = 1; enrolment <= 8; ++enrolment) {
+    study.add({.participant = "P" + std::to_string(enrolment),
+               .enrolment = enrolment,
+               .answers = right_by_block(3 + enrolment % 3, 3 + (enrolment + 1) % 3)});
+  }
+  const StudyReport report = final_report_of(study);
+  CHECK(report.primary->p.value() <= 0.05);
+  CHECK(report.primary->verdict == Verdict::undecided);
+  CHECK(contains(report.primary->because, "nothing follows"));
+  CHECK(json_of(report)["primary"]["above_chance"].size() == 2);
 }
 
 TEST_CASE("a registered margin has the one-sided test and the 90 % interval") {

@@ -127,7 +127,8 @@ TEST_CASE("report_json has the published keys in their order") {
   CHECK(keys_of(json) ==
         "study protocol simulated stamp simulated_on unverified_device state interim "
         "question_alone pilot participants trials classes methods comparison warnings pairs "
-        "accuracy_intervals reaction_times registration collection references registered primary "
+        "accuracy_intervals reaction_times registration collection places references registered "
+        "primary "
         "prevalence looks departures public demographics said exploration ");
   CHECK(keys_of(json["methods"][1]) ==
         "method confusion no_response accuracy overall information_transfer per_participant "
@@ -200,7 +201,8 @@ TEST_CASE(
     if (line.starts_with("---")) titles += before.substr(0, before.find(" [")) + "; ";
   }
   CHECK(titles ==
-        "Result; Participants; Exploration; What to bear in mind; Accuracy; Confusions; Comparison "
+        "Result; Participants; Exploration; What to bear in mind; Accuracy; Confusions; Answers by "
+        "place; Comparison "
         "of methods; Reaction times; Which cue was it?; Servo and validity; This report; ");
   std::string ids;
   std::string headline;
@@ -217,7 +219,8 @@ TEST_CASE(
         "accuracy-by-class-adaptive accuracy-by-participant-adaptive accuracy-by-class-tv-gabor "
         "accuracy-by-participant-tv-gabor confusions-adaptive unbiased-hits-adaptive "
         "choice-model-adaptive confusions-tv-gabor unbiased-hits-tv-gabor choice-model-tv-gabor "
-        "information methods methods-by-class-1 order-adaptive accuracy-by-order-group-adaptive "
+        "information answers-by-place preferences-of-participants methods methods-by-class-1 "
+        "order-adaptive accuracy-by-order-group-adaptive "
         "order-tv-gabor accuracy-by-order-group-tv-gabor reaction-times-adaptive "
         "reaction-times-tv-gabor with-and-without-adaptive with-and-without-tv-gabor ");
 }

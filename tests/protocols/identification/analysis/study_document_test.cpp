@@ -40,7 +40,7 @@ TEST_CASE("document: sections come in the order of a results section") {
   for (const Section& section : hand_made().sections) ids += section.id + ' ';
   CHECK(ids ==
         "result participants exploration to-bear-in-mind registration accuracy confusions "
-        "methods-compared order confidence reaction-times cues servo-and-validity methods ");
+        "places methods-compared order confidence reaction-times cues servo-and-validity methods ");
 }
 
 TEST_CASE("document: every table has a unique name and as many cells as columns") {
@@ -55,6 +55,16 @@ TEST_CASE("document: every table has a unique name and as many cells as columns"
           std::string::npos);
     for (const std::vector<Cell>& row : table->rows) CHECK(row.size() == table->columns.size());
   }
+}
+
+TEST_CASE("document: answers by place, and who prefers a picture") {
+  const Table places = table_named(hand_made(), "answers-by-place");
+  CHECK(places.rows.size() == 3);
+  CHECK(texts_of(places.rows[0]) == "1 | 60 | +8.3 | [−10.0, 20.0] | 0.040");
+  const Table people = table_named(hand_made(), "preferences-of-participants");
+  CHECK(people.rows.size() == 6);
+  CHECK(texts_of(people.rows[0]) ==
+        "P01 | 24 | cloth (place 1) | 50.0% | 7 of 8 | 9 of 16 | 0.004 | 0.024");
 }
 
 TEST_CASE("document: confusions hold counts, row percentages, marginals and missing responses") {
@@ -270,15 +280,15 @@ TEST_CASE("document: a choice model that does not fit, or cannot be tested, says
   CHECK_THAT(notes(), !holds_text("G²"));
 }
 
-TEST_CASE("document: an interval without width is marked") {
+TEST_CASE("document: where all differences are equal, that there is no interval is marked") {
   StudyReport report = hand_made_report();
   report.pairs[0].classes[1].paired.interval = {-0.08, -0.08};
   const Document document = study_document(report, hand_made_provenance());
   const Table table = table_named(document, "methods-by-class-1");
-  CHECK(table.rows[1][6].text == "[−8.0, −8.0] *");
+  CHECK(table.rows[1][6].text == "– *");
   CHECK_THAT(table.notes.back().text, holds_text("* Every participant has the same difference"));
   CHECK_THAT(table_named(hand_made(), "methods-by-class-1").notes.back().text,
-             !holds_text("no width"));
+             !holds_text("there is no t interval"));
 }
 
 TEST_CASE("document: every cited source is in the list of references, once") {

@@ -121,7 +121,8 @@ TEST_CASE("means of ratings exist for one person without an interval, and for no
   CHECK_FALSE(none.items[0].mean.mean);
   CHECK(own::rating_means(people(), {}, kLine).methods.empty());
   const own::RatingMeans constant = own::rating_means(people_who_say(0.3, 4), kItems, kLine);
-  check_mean(constant.methods[1].mean, 4, 0.3, 0.3, 0.3);
+  check_near(constant.methods[1].mean.mean.value(), 0.3);
+  CHECK_FALSE(constant.methods[1].mean.known_interval());
 }
 
 TEST_CASE("ratings beyond the ends of their scale, and scales without ends are refused") {
@@ -284,7 +285,7 @@ TEST_CASE("somebody who repeats every answer counts as far as the cut, who says 
   check_near(found.mean.value(), own::kFurthestCorrelation);
   CHECK_FALSE(found.interval);
   mixed.push_back(participant_of({{.1, .1}, {.8, .8}}, {}));
-  check_near(own::retest_reliability(mixed, kItems).interval.value(), 0.99, 0.99);
+  CHECK_FALSE(own::retest_reliability(mixed, kItems).interval);
   RatedParticipant once;
   for (const Item& item : kItems) once.scored.push_back({item, 0.1 * item.method});
   const own::RetestReliability single = own::retest_reliability(std::vector{once}, kItems);
@@ -386,7 +387,8 @@ TEST_CASE("methods compared by one person have no test of t, and alike methods n
       own::method_differences(people_who_say(0.3, 4), kItems, kLine).front();
   CHECK(alike.difference.mean == 0.0);
   CHECK_FALSE(alike.t);
-  CHECK(alike.t_test->p == 1.0);
+  CHECK_FALSE(alike.difference.known_interval());
+  CHECK_FALSE(alike.t_test);
   CHECK(alike.sign_flip->holm == 1.0);
   CHECK_FALSE(alike.standardised);
   CHECK(own::method_differences(people(), std::vector{kItems.front()}, kLine).empty());

@@ -172,11 +172,11 @@ TEST_CASE("with random signs the test rejects as often as its patterns of signs 
   }
 }
 
-TEST_CASE("a huge difference is always found, and its interval has no width if all agree") {
+TEST_CASE("a huge difference is always found, and has no interval if all agree") {
   const DifferencePower power = power_of(pool_of(std::vector<double>(12, 0.8)), 6, 500);
   CHECK(power.significant.correct == 500);
   CHECK(power.power.high == 1.0);
-  CHECK(*power.width == Approx(0.0).margin(1e-9));
+  CHECK_FALSE(power.width);
   const DifferencePower varied = power_of(normal_pool(0.6, 0.05), 6, 500);
   CHECK(varied.significant.correct == 500);
 }

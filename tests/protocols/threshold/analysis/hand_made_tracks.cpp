@@ -139,6 +139,29 @@ void HandMadeTracks::track(int session, int number, const procedures::Observer& 
   }
 }
 
+void HandMadeTracks::attended_track(int session, int number, const procedures::Observer& observer,
+                                    RandomStream& random) {
+  track(session, number, observer, random);
+  const auto tracks = study::threshold::block_settings(outcomes.design).tracks;
+  const double highest = tracks.at(static_cast<std::size_t>(number - 1)).levels.back();
+  constexpr int kCatches = 6;
+  int right = 0;
+  for (int i = 0; i < kCatches; ++i) {
+    right += random.uniform() < procedures::shares_at(observer, highest).correct ? 1 : 0;
+  }
+  caught(session, number, right, kCatches - right);
+}
+
+void HandMadeTracks::caught(int session, int track, int right, int wrong) {
+  const auto tracks = study::threshold::block_settings(outcomes.design).tracks;
+  const std::size_t levels = tracks.at(static_cast<std::size_t>(track - 1)).levels.size();
+  for (int i = 0; i < right + wrong; ++i) {
+    const int target = i % 2;
+    answer({session, track, static_cast<int>(levels) - 1, target, i < right ? target : 1 - target,
+            study::Role::catch_trial});
+  }
+}
+
 void HandMadeTracks::outside(int session, study::Role role, int right, int wrong) {
   const auto top = static_cast<int>(options().track.levels.size()) - 1;
   for (int i = 0; i < right + wrong; ++i) {

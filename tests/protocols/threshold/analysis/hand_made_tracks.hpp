@@ -45,6 +45,11 @@ class HandMadeTracks {
   void missed(int session, int track, int level);
   /// The whole track of an observer, whose answers `random` draws.
   void track(int session, int number, const procedures::Observer& observer, RandomStream& random);
+  /// The same with six catch trials.
+  void attended_track(int session, int number, const procedures::Observer& observer,
+                      RandomStream& random);
+  /// Catch trials of a track; targets alternate.
+  void caught(int session, int track, int right, int wrong);
   /// Trials outside the tracks, at the highest level; targets alternate.
   void outside(int session, study::Role role, int right, int wrong);
 

@@ -31,7 +31,7 @@ HandMadeTracks small_study(const study::threshold::ThresholdOptions& options) {
       made.track(person, track,
                  {procedures::Shape::weibull, thresholds[person - 1], 3.0, 0.5, 0.02}, random);
     }
-    made.outside(person, study::Role::catch_trial, 3, 1);
+    made.caught(person, 1, 3, 1);
     made.outside(person, study::Role::control, 6, 4);
   }
   return made;
@@ -107,6 +107,14 @@ TEST_CASE("thresholds and their intervals read as text, censored ones without a 
   CHECK(own::threshold_text({-21.0, {}, {}}, levels) == "−21.0");
   CHECK(own::threshold_text({{}, {}, {}, procedures::Censored::below}, levels) == "below −40.0");
   CHECK(own::threshold_text({{}, {}, {}, procedures::Censored::above}, levels) == "above 0.0");
+  using enum procedures::Censored;
+  CHECK(own::threshold_text({{}, {}, {}, undetermined}, levels) == "not determined");
+  CHECK(own::threshold_text({{}, -20.0, {}, undetermined}, levels) ==
+        "not determined, above −20.0");
+  CHECK(own::threshold_text({{}, {}, -12.5, undetermined}, levels) ==
+        "not determined, below −12.5");
+  CHECK(own::threshold_text({{}, -20.0, -3.0, undetermined}, levels) ==
+        "not determined, between −20.0 and −3.0");
   study::threshold::ThresholdOptions order = constant_options({0.5});
   CHECK(own::quantity_text({0.1, 0.05, {}}, order) == "10.0% [5.0, open]");
   order.along = study::threshold::Along::order;
@@ -121,6 +129,10 @@ TEST_CASE("thresholds.csv has a row for each track, and tracks.csv one for each 
   REQUIRE(tables.size() == 2);
   CHECK(tables[0].file == "thresholds.csv");
   CHECK(tables[0].table.rows.size() == 12);
+  const auto& first = tables[0].table.rows.front();
+  CHECK(first[column_of(tables[0].table, "trials")] == analysis::DataCell(std::int64_t{140}));
+  CHECK(first[column_of(tables[0].table, "catch_trials")] == analysis::DataCell(std::int64_t{4}));
+  CHECK(first[column_of(tables[0].table, "catch_right")] == analysis::DataCell(std::int64_t{3}));
   CHECK(tables[1].file == "tracks.csv");
   CHECK(tables[1].table.rows.size() == made.outcomes.trials.size());
   for (const analysis::ResultTable& one : tables) CHECK_NOTHROW(analysis::csv_text(one.table));
@@ -135,6 +147,36 @@ TEST_CASE("thresholds.csv has a row for each track, and tracks.csv one for each 
   CHECK(std::get<std::string>(last[column_of(trials, "kind")]) == "control");
   CHECK(std::holds_alternative<std::monostate>(last[column_of(trials, "track")]));
   CHECK(std::get<double>(last[column_of(trials, "level_db")]) == -2.0);
+  const std::size_t kind = column_of(trials, "kind");
+  for (const auto& of : trials.rows) {
+    if (std::get<std::string>(of[kind]) != "catch") continue;
+    CHECK(of[column_of(trials, "track")] == analysis::DataCell(std::int64_t{1}));
+    CHECK(std::get<std::string>(of[column_of(trials, "standard")]) == "bark, standard -12 dB");
+    CHECK(std::get<double>(of[column_of(trials, "level_db")]) == -2.0);
+  }
+}
+
+TEST_CASE("thresholds.csv says where each threshold lies, as the group's mean takes it") {
+  HandMadeTracks made(detection_options());
+  const auto observer = [](double threshold) {
+    return procedures::Observer{procedures::Shape::weibull, threshold, 3.5, 0.5, 0.0};
+  };
+  RandomStream random(5, "threshold page test");
+  for (const double threshold : {-20.0, 40.0}) {
+    made.session();
+    made.track(static_cast<int>(made.outcomes.sessions.size()), 1, observer(threshold), random);
+  }
+  const own::ThresholdReport report = own::make_report(made.outcomes);
+  const analysis::DataTable table = own::thresholds_table(report, false);
+  REQUIRE(table.rows.size() == 2);
+  const auto cell = [&](std::size_t row, const char* column) {
+    return table.rows[row][column_of(table, column)];
+  };
+  CHECK(cell(0, "at_least_db") == cell(0, "threshold_db"));
+  CHECK(cell(0, "at_most_db") == cell(0, "threshold_db"));
+  CHECK(std::holds_alternative<double>(cell(0, "at_least_db")));
+  CHECK(std::holds_alternative<std::monostate>(cell(1, "threshold_db")));
+  CHECK(std::holds_alternative<std::monostate>(cell(1, "at_most_db")));
 }
 
 TEST_CASE("a standard near the pack's gain has fewer levels, and is censored at its own highest") {
@@ -146,14 +188,16 @@ TEST_CASE("a standard near the pack's gain has fewer levels, and is censored at 
   for (int i = 0; i < 60; ++i) {
     made.answer({1, 2, i % static_cast<int>(levels), i % 2, i / 2 % 2});
   }
+  made.caught(1, 2, 10, 10);
   const own::ThresholdReport report = own::make_report(made.outcomes);
   REQUIRE(report.tracks.size() == 1);
   CHECK(report.tracks[0].answers.n == 60);
-  CHECK(report.tracks[0].posterior->threshold.censored == procedures::Censored::above);
+  CHECK_FALSE(report.tracks[0].threshold());
   CHECK(report.standards.at(1).levels.size() == levels);
   const std::string text = analysis::document_text(
       own::threshold_analysis().results(made.outcomes, {})->document({}, {}));
-  CHECK_THAT(text, holds_text("above −12.0") || holds_text("above −7.0"));
+  // A guesser may be above the levels, or lapse at all of them.
+  CHECK_THAT(text, holds_text("above −12.0") || holds_text("not determined"));
 }
 
 TEST_CASE("wishes that a report of thresholds cannot fulfil are refused by their names") {
@@ -186,9 +230,9 @@ TEST_CASE("tables of trials have the track and the level where an order chose th
 
 TEST_CASE("the model's script has the study's guess rate, its criterion and all functions") {
   const std::string script = own::threshold_model_script(small_study(detection_options()).outcomes);
-  CHECK_THAT(script, holds_text("guess <- 0.5\n") && holds_text("lapse <- 0.025") &&
-                         holds_text("share_at_threshold <- 0.632"));
-  CHECK_THAT(script, holds_text("centre_db <- -20\n"));
+  CHECK_THAT(script, holds_text("guess <- 0.5\n") && holds_text("scale_db <- 5\n") &&
+                         holds_text("shape <- \"weibull\"\n"));
+  CHECK_THAT(script, holds_text("(1 + x | participant) + (1 + x | participant:standard)"));
   CHECK(script.ends_with(std::string(own::threshold_model_functions())));
 }
 

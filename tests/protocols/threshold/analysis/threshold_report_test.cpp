@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <nlohmann/json.hpp>
 
@@ -24,13 +25,18 @@ Observer observer_at(double threshold) {
 
 /// Participants with these thresholds, each with every track of the study.
 HandMadeTracks tracks_of(const study::threshold::ThresholdOptions& options, int tracks,
-                         const std::vector<double>& thresholds) {
+                         const std::vector<double>& thresholds, bool with_catches = false) {
   HandMadeTracks made(options);
   for (std::size_t i = 0; i < thresholds.size(); ++i) {
     made.session();
     for (int track = 1; track <= tracks; ++track) {
-      RandomStream random(7, "threshold report test", 10 * i + static_cast<std::size_t>(track));
-      made.track(static_cast<int>(i) + 1, track, observer_at(thresholds[i]), random);
+      RandomStream random(8, "threshold report test", 10 * i + static_cast<std::size_t>(track));
+      const int session = static_cast<int>(i) + 1;
+      if (with_catches) {
+        made.attended_track(session, track, observer_at(thresholds[i]), random);
+      } else {
+        made.track(session, track, observer_at(thresholds[i]), random);
+      }
     }
   }
   return made;
@@ -39,6 +45,16 @@ HandMadeTracks tracks_of(const study::threshold::ThresholdOptions& options, int 
 nlohmann::json json_of(const HandMadeTracks& made) {
   return nlohmann::json::parse(
       analysis::threshold::threshold_analysis().results(made.outcomes, {})->json());
+}
+
+bool has_table(const analysis::Document& page, const std::string& section, const std::string& id) {
+  for (const analysis::Section& one : page.sections) {
+    for (const analysis::Block& block : one.blocks) {
+      const auto* table = std::get_if<analysis::Table>(&block);
+      if (one.id == section && table != nullptr && table->id == id) return true;
+    }
+  }
+  return false;
 }
 
 void check_holds(const procedures::Threshold& threshold, double truth) {
@@ -52,38 +68,36 @@ void check_holds(const procedures::Threshold& threshold, double truth) {
 
 TEST_CASE("the intervals of an adaptive track hold the known threshold") {
   const own::ThresholdReport report =
-      own::make_report(tracks_of(detection_options(), 1, {-25.0, -15.0}).outcomes);
+      own::make_report(tracks_of(detection_options(), 1, {-25.0, -15.0}, true).outcomes);
   REQUIRE(report.tracks.size() == 2);
-  CHECK(report.by_posterior);
   CHECK(report.criterion.value() == Approx(1.0 - 0.5 * std::exp(-1.0)));
-  check_holds(report.tracks[0].posterior->threshold, -25.0);
-  check_holds(report.tracks[0].likelihood->threshold, -25.0);
-  check_holds(report.tracks[1].posterior->threshold, -15.0);
+  check_holds(report.tracks[0].estimate->threshold, -25.0);
+  check_holds(report.tracks[1].estimate->threshold, -15.0);
   CHECK(report.tracks[0].answers.n == 60);
-  CHECK(report.tracks[0].posterior->slope.value() > 1.0);
+  CHECK(report.tracks[0].estimate->observer.slope > 1.0);
   CHECK_FALSE(report.tracks[0].reversals);
   CHECK_FALSE(report.tracks[0].fit);
   const own::StandardReport& bark = report.standards.at(0);
   CHECK(bark.words == "bark");
-  CHECK(bark.mean.mean.value() == Approx(0.5 * (*report.tracks[0].posterior->threshold.level +
-                                                *report.tracks[1].posterior->threshold.level)));
-  CHECK(bark.mean.sd.value() == Approx(std::abs(*report.tracks[0].posterior->threshold.level -
-                                                *report.tracks[1].posterior->threshold.level) /
-                                       std::sqrt(2.0)));
+  CHECK(bark.mean.mean.value() ==
+        Approx(0.5 * (*report.tracks[0].threshold() + *report.tracks[1].threshold())));
+  CHECK(bark.mean.sd.value() ==
+        Approx(std::abs(*report.tracks[0].threshold() - *report.tracks[1].threshold()) /
+               std::sqrt(2.0)));
 }
 
-TEST_CASE("constant stimuli quote the likelihood, and say how well the function fits") {
+TEST_CASE("constant stimuli have the same estimate, and say how well the function fits") {
   const own::ThresholdReport report =
       own::make_report(tracks_of(constant_options({-12.0}), 1, {-14.0, -16.0, -15.0}).outcomes);
-  CHECK_FALSE(report.by_posterior);
   for (const own::TrackReport& track : report.tracks) {
     REQUIRE(track.fit);
     CHECK(track.fit->p > 0.001);
-    CHECK(track.observer->threshold == Approx(*track.likelihood->threshold.level).margin(1e-6));
+    CHECK(track.estimate->observer.threshold == Approx(*track.threshold()).margin(1e-6));
   }
   const double mean = report.standards.at(0).mean.mean.value();
   const auto json = json_of(tracks_of(constant_options({-12.0}), 1, {-14.0, -16.0, -15.0}));
-  CHECK(json.at("quoted") == "likelihood");
+  CHECK(json.at("tracks").at(0).at("estimate").at("threshold") ==
+        Approx(*report.tracks[0].threshold()));
   CHECK(json.at("standards").at(0).at("mean") == Approx(mean));
   CHECK(json.at("standards").at(0).at("weber").at("fraction") ==
         Approx(std::pow(10.0, mean / 20.0)));
@@ -103,23 +117,56 @@ TEST_CASE("a staircase also has the mean of its reversals") {
   CHECK_THAT(text, holds_text("70.7%") && holds_text("81.6%"));
 }
 
-TEST_CASE("a censored track has no number anywhere, and its mean says how many there are") {
-  const auto json = json_of(tracks_of(detection_options(), 1, {-20.0, 30.0, -90.0}));
+TEST_CASE("a censored track has no number, and no mean of people leaves it out") {
+  const auto json = json_of(tracks_of(detection_options(), 1, {-20.0, 30.0, -90.0}, true));
   const auto& above = json.at("tracks").at(1);
-  CHECK(above.at("posterior").at("censored") == "above");
-  CHECK(json.at("tracks").at(2).at("posterior").at("censored") == "below");
-  for (const char* number : {"threshold", "low", "high", "slope", "lapse"}) {
-    CHECK(above.at("posterior").at(number).is_null());
-  }
+  CHECK(above.at("estimate").at("censored") != "below");
+  CHECK(json.at("tracks").at(2).at("estimate").at("censored") != "above");
+  CHECK(json.at("tracks").at(2).at("estimate").at("threshold").is_null());
+  CHECK(above.at("estimate").at("threshold").is_null());
+  CHECK(above.at("estimate").at("high").is_null());
+  // By-products, which no track has as results.
+  CHECK_FALSE(above.at("estimate").contains("slope"));
+  CHECK_FALSE(above.at("estimate").contains("lapse"));
   CHECK(above.at("weber").is_null());
   CHECK(above.at("learning_db").is_null());
   const auto& bark = json.at("standards").at(0);
-  CHECK(bark.at("n") == 1);
+  CHECK(bark.at("n") == 3);
   CHECK(bark.at("tracks") == 3);
-  CHECK(bark.at("censored_above") == 1);
-  CHECK(bark.at("censored_below") == 1);
+  CHECK(bark.at("known") == 1);
+  CHECK(bark.at("above") == 1);
+  CHECK(bark.at("below") == 1);
+  CHECK(bark.at("undetermined") == 0);
   CHECK(bark.at("interval").is_null());
-  CHECK(bark.at("mean") == Approx(json.at("tracks").at(0).at("posterior").at("threshold")));
+  CHECK(bark.at("mean").is_null());
+  CHECK(bark.at("lack") == "most censored");
+  CHECK(bark.at("median") == json.at("tracks").at(0).at("in_mean").at(0));
+  CHECK(above.at("in_mean") == nlohmann::json::parse("[0.0, null]"));
+  CHECK_THAT(json.at("warnings").dump(),
+             holds_text("bark: of 3 participants 1 has a threshold inside the levels"));
+}
+
+TEST_CASE("the mean of thresholds counts people beyond the levels on their side") {
+  const HandMadeTracks made =
+      tracks_of(detection_options(), 1, {-12.0, -9.0, -15.0, -6.0, 30.0, 40.0}, true);
+  const own::ThresholdReport report = own::make_report(made.outcomes);
+  const own::StandardReport& bark = report.standards.at(0);
+  REQUIRE(bark.mean.exact == 4);
+  std::vector<analysis::Bounds> people;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    people.push_back({*report.tracks[i].threshold(), *report.tracks[i].threshold()});
+    sum += people.back().low;
+  }
+  people.resize(6, {0.0, std::numeric_limits<double>::infinity()});
+  const analysis::CensoredMean expected = analysis::censored_mean(people);
+  CHECK(bark.mean.mean == expected.mean);
+  CHECK(bark.mean.interval == expected.interval);
+  CHECK(*bark.mean.mean > sum / 4.0 + 1.0);
+  const std::string text = analysis::document_text(
+      own::threshold_analysis().results(made.outcomes, {})->document({}, {}));
+  CHECK_THAT(text, holds_text("mean of 6 participants") && holds_text("likelihood interval"));
+  CHECK_THAT(text, holds_text("2 above the"));
 }
 
 TEST_CASE("if every track is censored there is no threshold, and no comparison fails") {
@@ -128,7 +175,9 @@ TEST_CASE("if every track is censored there is no threshold, and no comparison f
   const HandMadeTracks made = tracks_of(options, 2, {40.0, 40.0});
   const auto json = json_of(made);
   CHECK(json.at("standards").at(0).at("mean").is_null());
-  CHECK(json.at("standards").at(0).at("n") == 0);
+  CHECK(json.at("standards").at(0).at("n") == 2);
+  CHECK(json.at("standards").at(0).at("above") == 2);
+  CHECK(json.at("standards").at(0).at("median_within") == nlohmann::json::parse("[0.0, null]"));
   CHECK_NOTHROW(analysis::document_text(
       own::threshold_analysis().results(made.outcomes, {})->document({}, {})));
 }
@@ -145,16 +194,63 @@ TEST_CASE("differences of standards are paired and adjusted by Holm") {
   const own::ThresholdReport report = own::make_report(made.outcomes);
   REQUIRE(report.differences.size() == 3);
   const own::DifferenceReport& first = report.differences[0];
-  CHECK(first.difference.mean.mean.value() ==
+  CHECK(first.difference.mean.value() ==
         Approx(*report.standards[0].mean.mean - *report.standards[1].mean.mean));
   std::vector<double> p;
-  for (const auto& one : report.differences) p.push_back(*one.difference.p);
+  for (const auto& one : report.differences) p.push_back(*one.p);
   const double least = *std::min_element(p.begin(), p.end());
   for (const auto& one : report.differences) {
-    CHECK(*one.p_holm >= *one.difference.p);
-    if (*one.difference.p == least) CHECK(*one.p_holm == Approx(std::min(1.0, 3.0 * least)));
+    CHECK(*one.p_holm >= *one.p);
+    if (*one.p == least) CHECK(*one.p_holm == Approx(std::min(1.0, 3.0 * least)));
   }
   CHECK(report.standards[2].words == "bark, standard -6 dB");
+}
+
+TEST_CASE("a difference from a threshold beyond the levels is a bound, and people count in it") {
+  HandMadeTracks made(constant_options({-18.0, -12.0}));
+  for (int person = 1; person <= 5; ++person) {
+    made.session();
+    for (int track = 1; track <= 2; ++track) {
+      RandomStream random(4, "bounds", static_cast<std::uint64_t>(10 * person + track));
+      const bool feels_nothing = person == 5 && track == 2;
+      made.track(person, track, observer_at(feels_nothing ? 60.0 : -20.0 + person), random);
+    }
+  }
+  const own::ThresholdReport report = own::make_report(made.outcomes);
+  const own::DifferenceReport& one = report.differences.at(0);
+  CHECK(one.difference.participants == 5);
+  CHECK(one.difference.exact == 4);
+  CHECK(report.standards[1].number_of(Censored::above) == 1);
+  CHECK(one.difference.mean.has_value());
+  CHECK(one.p.has_value());
+}
+
+TEST_CASE("a person's threshold is the mean of tracks, and of bounds where one is beyond") {
+  constexpr double kOpen = std::numeric_limits<double>::infinity();
+  const std::vector<double> levels = {-40.0, -20.0, 0.0};
+  const auto track = [](procedures::Threshold threshold, double median) {
+    return procedures::ThresholdEstimate{threshold, observer_at(median), threshold};
+  };
+  const auto inside = track({-10.0, -12.0, -8.0}, -10.0);
+  const auto other = track({-14.0, -16.0, -12.0}, -14.0);
+  const auto above = track({{}, 0.0, {}, Censored::above}, 9.0);
+  const auto below = track({{}, {}, -40.0, Censored::below}, -47.0);
+  const auto near_end = track({{}, -5.0, {}, Censored::undetermined}, -1.5);
+  const auto just_beyond = track({{}, -5.0, {}, Censored::undetermined}, 1.5);
+  const auto guesser = track({{}, {}, {}, Censored::undetermined}, -3.0);
+  const auto hardly_feels = track({{}, {}, {}, Censored::undetermined}, 18.0);
+  const auto person = [&](const std::vector<procedures::ThresholdEstimate>& tracks) {
+    return own::person_threshold(tracks, levels);
+  };
+  CHECK(person({inside, other}) == own::PersonThreshold{{-12.0, -12.0}, Censored::no});
+  CHECK(person({above}) == own::PersonThreshold{{0.0, kOpen}, Censored::above});
+  CHECK(person({below, below}) == own::PersonThreshold{{-kOpen, -40.0}, Censored::below});
+  CHECK(person({near_end}) == own::PersonThreshold{{-1.5, -1.5}, Censored::no});
+  CHECK(person({just_beyond}) == own::PersonThreshold{{0.0, kOpen}, Censored::above});
+  CHECK(person({guesser}) == own::PersonThreshold{});
+  CHECK(person({hardly_feels}) == own::PersonThreshold{{0.0, kOpen}, Censored::above});
+  CHECK(person({inside, above}) == own::PersonThreshold{{-5.0, kOpen}, Censored::undetermined});
+  CHECK(person({above, below}) == own::PersonThreshold{});
 }
 
 TEST_CASE("the control block's p is the exact tail of guessing") {
@@ -171,8 +267,51 @@ TEST_CASE("the control block's p is the exact tail of guessing") {
   CHECK(report.control->people[1].p.value() == Approx(638.0 / 1024.0).epsilon(1e-12));
   CHECK(report.control->pooled.p.value() == Approx(60460.0 / 1048576.0).epsilon(1e-12));
   CHECK_FALSE(report.catches);
-  CHECK(json_of(made).at("control").at("participants").at(0).at("right") == 9);
-  CHECK(json_of(made).at("catch").is_null());
+  const auto json = json_of(made);
+  CHECK(json.at("control").at("participants").at(0).at("right") == 9);
+  CHECK(json.at("catch").is_null());
+  CHECK(json.at("control").at("anybody").at("people") == 2);
+  CHECK(json.at("control").at("anybody").at("found") == report.control->anybody.found());
+}
+
+TEST_CASE("one who hears among eleven who do not is named, and the means without one are beside") {
+  std::vector<double> thresholds(12, -20.0);
+  HandMadeTracks made = tracks_of(detection_options(), 1, thresholds);
+  for (int person = 1; person <= 11; ++person) made.outside(person, Role::control, 10, 10);
+  made.outside(12, Role::control, 20, 0);
+  const own::ThresholdReport report = own::make_report(made.outcomes);
+  REQUIRE(report.control);
+  CHECK(report.control->pooled.p.value() > 0.1);
+  CHECK(report.control->anybody.found());
+  CHECK(report.control->hearers == std::vector<std::string>{"P12"});
+  REQUIRE(report.control->without.size() == 1);
+  CHECK(report.control->without[0].participants == 11);
+  CHECK(report.standards[0].mean.participants == 12);
+  const auto json = json_of(made);
+  const auto& control = json.at("control");
+  CHECK(control.at("hearers") == nlohmann::json{"P12"});
+  CHECK(control.at("without_hearers").at(0).at("standard") == "bark");
+  CHECK(control.at("without_hearers").at(0).at("participants") == 11);
+  CHECK(control.at("without_hearers").at(0).at("mean") ==
+        Approx(report.control->without[0].mean.value()));
+  const analysis::Document page =
+      own::threshold_analysis().results(made.outcomes, {})->document({}, {});
+  CHECK(has_table(page, "control", "thresholds-without-hearers"));
+}
+
+TEST_CASE("a control block in which nobody stands out says what it could have found") {
+  HandMadeTracks made = tracks_of(detection_options(), 1, std::vector<double>(12, -20.0));
+  for (int person = 1; person <= 12; ++person) made.outside(person, Role::control, 10, 10);
+  const auto json = json_of(made);
+  const auto& control = json.at("control");
+  CHECK(control.at("anybody").at("found") == false);
+  CHECK(control.at("detectable").at("right") == 17);
+  CHECK(control.at("detectable").at("share") == Approx(0.882953171453178));
+  CHECK(control.at("hearers").empty());
+  CHECK(control.at("without_hearers").empty());
+  const analysis::Document page =
+      own::threshold_analysis().results(made.outcomes, {})->document({}, {});
+  CHECK_FALSE(has_table(page, "control", "thresholds-without-hearers"));
 }
 
 TEST_CASE("sound that is heard stands beside the thresholds, in the result") {
@@ -190,13 +329,95 @@ TEST_CASE("sound that is heard stands beside the thresholds, in the result") {
 
 TEST_CASE("catch trials are counted by participant, and poor ones are warned of") {
   HandMadeTracks made = tracks_of(detection_options(), 1, {-20.0, -20.0});
-  made.outside(1, Role::catch_trial, 4, 0);
-  made.outside(2, Role::catch_trial, 2, 2);
+  made.caught(1, 1, 4, 0);
+  made.caught(2, 1, 2, 2);
   const own::ThresholdReport report = own::make_report(made.outcomes);
   REQUIRE(report.catches);
   CHECK(report.catches->pooled.answers == analysis::Proportion{8, 6});
+  REQUIRE(report.attention.size() == 2);
+  CHECK_FALSE(report.attention[0].is_doubtful());
+  CHECK(report.attention[1].p_holm == Approx(2 * 0.01401875));
+  CHECK(report.attention[1].is_doubtful());
+  const auto json = json_of(made);
+  CHECK(json.at("catch").at("attentive") == 0.95);
+  CHECK(json.at("catch").at("participants").at(1).at("attending").at("doubtful") == true);
+  CHECK_THAT(json.at("warnings").dump(), holds_text("P2 (2 of 4)"));
+}
+
+TEST_CASE("nobody who attends but for one slip is said not to") {
+  HandMadeTracks made = tracks_of(detection_options(), 1, std::vector<double>(12, -20.0));
+  for (int person = 1; person <= 12; ++person)
+    made.caught(person, 1, person % 2 == 0 ? 3 : 4, person % 2 == 0 ? 1 : 0);
+  const own::ThresholdReport report = own::make_report(made.outcomes);
+  CHECK(std::none_of(report.attention.begin(), report.attention.end(),
+                     [](const choices::Attention& one) { return one.is_doubtful(); }));
   const std::string warnings = json_of(made).at("warnings").dump();
-  CHECK_THAT(warnings, holds_text("answered right by P2:"));
+  CHECK_THAT(warnings, !holds_text("not attending"));
+}
+
+TEST_CASE("preferences for different intervals are named, with what they do to right answers") {
+  HandMadeTracks made(detection_options());
+  for (int person = 1; person <= 8; ++person) {
+    made.session();
+    const int preferred = person % 2;  // odd: the second interval
+    for (int i = 0; i < 60; ++i) {
+      const int target = i % 2;
+      const bool right = i % 5 != 0 || person > 4 ? i % 5 != 0 : target == preferred;
+      made.answer({person, 1, 20, target, right ? target : 1 - target});
+    }
+  }
+  const own::ThresholdReport report = own::make_report(made.outcomes);
+  CHECK(report.choice_use[0].excess.p.value() > 0.5);
+  REQUIRE(report.preferences.people.size() == 8);
+  CHECK(report.preferences.people[0].choice == 1);
+  CHECK(report.preferences.people[1].choice == 0);
+  CHECK(report.preferences.people[0].right_there == analysis::Proportion{30, 30});
+  CHECK(report.preferences.people[0].right_elsewhere == analysis::Proportion{30, 24});
+  const auto json = json_of(made);
+  const auto& preferences = json.at("preferences");
+  CHECK(preferences.at("participants").at(0).at("preferred") == "second");
+  CHECK(preferences.at("anybody").at("found") == report.preferences.anybody.found());
+  const analysis::Document page =
+      own::threshold_analysis().results(made.outcomes, {})->document({}, {});
+  CHECK(has_table(page, "habits", "preferences-of-participants"));
+}
+
+TEST_CASE(
+    "a track's estimate has its catch trials among its counts, and its trials alone elsewhere") {
+  study::threshold::ThresholdOptions options = constant_options({-12.0, -6.0});
+  HandMadeTracks made = tracks_of(options, 2, {-16.0});
+  const own::ThresholdReport without = own::make_report(made.outcomes);
+  made.caught(1, 2, 5, 1);
+  const own::ThresholdReport with = own::make_report(made.outcomes);
+  const own::TrackReport& first = with.tracks.at(0);
+  const own::TrackReport& second = with.tracks.at(1);
+  CHECK(first.catches == analysis::Proportion{});
+  CHECK(second.catches == analysis::Proportion{6, 5});
+  CHECK(second.answers == without.tracks.at(1).answers);
+  CHECK(second.trials.size() == 140);
+  CHECK(first.threshold() == without.tracks.at(0).threshold());
+  const std::vector<double>& levels = with.standards.at(1).levels;
+  std::vector<procedures::LevelCounts> counts = procedures::counts_of(levels, second.trials);
+  REQUIRE(counts.back().level == levels.back());
+  counts.back().n += 6;
+  counts.back().correct += 5;
+  const auto direct = procedures::estimate_threshold(counts, levels, Shape::weibull, 0.5);
+  CHECK(second.threshold() == direct.threshold.level);
+  CHECK(second.estimate->observer.lapse == direct.observer.lapse);
+  CHECK(second.estimate->observer.lapse > without.tracks.at(1).estimate->observer.lapse);
+  const auto json = json_of(made).at("tracks").at(1);
+  CHECK(json.at("catch") == nlohmann::json{{"n", 6}, {"right", 5}});
+  CHECK(json.at("trials") == 140);
+}
+
+TEST_CASE("too few trials at the highest level are warned of") {
+  study::threshold::ThresholdOptions options = detection_options();
+  const auto warnings = [&options] {
+    return json_of(tracks_of(options, 1, {-20.0})).at("warnings").dump();
+  };
+  CHECK_THAT(warnings(), holds_text("thresholds of people who lapse are biased"));
+  options.catch_trials = 6;
+  CHECK(warnings().find("people who lapse") == std::string::npos);
 }
 
 TEST_CASE("a preferred interval is its share named less its share of targets") {
@@ -254,7 +475,7 @@ TEST_CASE("an adaptive track of an observer who does not change looks like no le
     study::threshold::ThresholdOptions options = detection_options();
     options.track.procedure = procedure;
     const own::ThresholdReport report =
-        own::make_report(tracks_of(options, 1, std::vector<double>(30, -20.0)).outcomes);
+        own::make_report(tracks_of(options, 1, std::vector<double>(30, -20.0), true).outcomes);
     INFO(procedure);
     CHECK(report.learning_db.mean.participants > 25);
     CHECK(*report.learning_db.p > 0.01);
@@ -289,10 +510,35 @@ TEST_CASE("d' of same or different takes hits of a level and false alarms of all
   CHECK(report.same_different[3].participant.empty());
   const auto json = json_of(made);
   CHECK(json.at("criterion").is_null());
-  CHECK(json.at("tracks").at(0).at("posterior").is_null());
+  CHECK(json.at("tracks").at(0).at("estimate").is_null());
   CHECK(json.at("same_different").at("levels").size() == 6);
-  CHECK(json.at("same_different").at("groups").at(1).at("differencing").at("mean") ==
-        Approx(*middle.d_differencing));
+  const auto& group = json.at("same_different").at("groups").at(1);
+  CHECK(group.at("participants") == 1);
+  CHECK(group.at("differencing").at("d_prime") == Approx(*middle.d_differencing));
+  CHECK(group.at("differencing").at("interval").is_null());
+}
+
+TEST_CASE("d' of a group is that of all answers pooled, with an interval over people") {
+  HandMadeTracks made(same_different_options(), {"bark", "cloth"});
+  int hits = 0;
+  for (int person = 0; person < 8; ++person) {
+    made.session();
+    const int own = 4 + person % 4;
+    for (int i = 0; i < 10; ++i) {
+      made.answer({person + 1, 1, 1, 0, i < 2 ? 1 : 0});
+      made.answer({person + 1, 1, 1, 1, i < own ? 1 : 0});
+    }
+    hits += own;
+  }
+  const own::ThresholdReport report = own::make_report(made.outcomes);
+  REQUIRE(report.same_different_groups.size() == 1);
+  const own::SameDifferentGroup& group = report.same_different_groups[0];
+  CHECK(group.participants == 8);
+  const double pooled = analysis::differencing_d_prime({hits / 80.0, 0.2})->d_prime;
+  CHECK(*group.differencing.d_prime == Approx(pooled).epsilon(1e-12));
+  CHECK(group.differencing.interval->low < pooled);
+  CHECK(group.differencing.interval->high > pooled);
+  CHECK(*group.independent.d_prime < pooled);
 }
 
 TEST_CASE("trials without an answer belong to no track") {
@@ -309,7 +555,7 @@ TEST_CASE("sessions that do not count are left out of everything") {
   made.session(false);
   made.answer({1, 1, 20, 0, 0});
   made.outside(1, Role::control, 3, 3);
-  made.outside(1, Role::catch_trial, 3, 3);
+  made.caught(1, 1, 3, 3);
   const auto json = json_of(made);
   CHECK(json.at("tracks").empty());
   CHECK(json.at("control").is_null());

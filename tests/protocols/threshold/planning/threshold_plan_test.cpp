@@ -7,6 +7,7 @@
 #include "support/catch.hpp"
 
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include <boost/math/distributions/chi_squared.hpp>
@@ -21,6 +22,7 @@ using namespace touchtrial::planning::threshold;
 namespace {
 
 constexpr int kPoolPeople = 4000;
+constexpr double kOpen = std::numeric_limits<double>::infinity();
 
 /// Two thresholds whose difference is normal: its quantiles, in an order that matters to nobody.
 ThresholdPool normal_pool(double mean_difference, double sd) {
@@ -28,7 +30,8 @@ ThresholdPool normal_pool(double mean_difference, double sd) {
   const boost::math::normal normal;
   for (int i = 0; i < kPoolPeople; ++i) {
     const double z = boost::math::quantile(normal, (i + 0.5) / kPoolPeople);
-    pool.people.push_back({-20.0, -20.0 - mean_difference - sd * z});
+    const double other = -20.0 - mean_difference - sd * z;
+    pool.people.push_back({{-20.0, -20.0}, {other, other}});
   }
   return pool;
 }
@@ -67,8 +70,10 @@ TEST_CASE("half-widths of samples from a normal pool are those of the chi-square
     const double expected =
         boost::math::cdf(boost::math::chi_squared(row.participants - 1.0), of_variance);
     CHECK(*width.narrow.share() == Approx(expected).margin(0.03));
-    // Everybody has the same first threshold.
-    CHECK(*row.standards.at(0).upper == 0.0);
+    CHECK(width.without == analysis::Proportion{4000, 0});
+    // Everybody has the same first threshold, which tells nothing of how people differ.
+    CHECK_FALSE(row.standards.at(0).upper.has_value());
+    CHECK(row.standards.at(0).without == analysis::Proportion{4000, 4000});
     CHECK_FALSE(row.difference.has_value());
   }
 }
@@ -105,22 +110,59 @@ TEST_CASE("rows of a pool do not depend on the number of threads") {
              Catch::Matchers::StartsWith("SIMULATED") && holds_text("Difference: other less one"));
 }
 
-TEST_CASE("participants without a threshold are missing in samples") {
-  ThresholdPool pool{.trials = 60, .standards = {"one"}, .people = {}};
-  for (int i = 0; i < 10; ++i) pool.people.push_back({std::nullopt});
-  pool.people.push_back({-20.0});
+TEST_CASE("most samples of people beyond the levels have no interval, and the plan says so") {
+  ThresholdPool pool{.trials = 60, .standards = {"one"}, .people = {}, .above = 10};
+  for (int i = 0; i < 10; ++i) pool.people.push_back({{0.0, kOpen}});
+  pool.people.push_back({{-20.0, -20.0}});
   const ThresholdPlan plan{.participants = {2}, .runs = 400, .seed = 1, .width_db = 100.0};
   const HalfWidths width = rows_of(pool, plan, 1).front().standards.front();
-  // Both must be the one with a threshold: a sample in 121.
-  CHECK(width.without > 385);
+  CHECK(width.without == analysis::Proportion{400, 400});
   CHECK_FALSE(width.median.has_value());
   CHECK_FALSE(width.upper.has_value());
-  CHECK(width.narrow.correct == 400 - width.without);
+  CHECK(width.narrow.correct == 400 - width.without.correct);
   ThresholdPlanReport report{{"study", "people", "dB"}, plan, {}};
   report.pools.emplace_back(pool, rows_of(pool, plan, 1));
   const auto document = nlohmann::json::parse(threshold_plan_json(report));
   const auto& size = document.at("trials").at(0).at("sizes").at(0);
   CHECK(size.at("thresholds").at(0).at("half_width_median").is_null());
+  CHECK(document.at("trials").at(0).at("thresholds").at(0).at("mean").is_null());
+  CHECK_THAT(threshold_plan_text(report),
+             holds_text("10 of 11 thresholds not known") && holds_text("there is no mean"));
+}
+
+TEST_CASE("people beyond the levels count in a plan, so the mean is not that of the others") {
+  // Normal people of -2 dB on average and an SD of 5 dB; the highest level is 0.
+  ThresholdPool pool{.trials = 60, .standards = {"one"}, .people = {}};
+  for (int i = 0; i < kPoolPeople; ++i) {
+    const double value =
+        boost::math::quantile(boost::math::normal(-2.0, 5.0), (i + 0.5) / kPoolPeople);
+    pool.people.push_back(
+        {value > 0.0 ? analysis::Bounds{0.0, kOpen} : analysis::Bounds{value, value}});
+  }
+  const analysis::CensoredMean mean = analysis::censored_mean(thresholds_in(pool, 0));
+  CHECK(mean.mean.value() == Approx(-2.0).margin(0.05));
+  CHECK(mean.sd.value() == Approx(5.0).epsilon(0.01));
+  const ThresholdPlan plan{.participants = {20}, .runs = 400, .seed = 2};
+  const HalfWidths width = rows_of(pool, plan, 1).front().standards.front();
+  // A sample of 20 loses its mean if eleven or more are beyond: in 5 of 100.
+  CHECK(width.without.share().value() == Approx(0.05).margin(0.03));
+  CHECK(*width.median > half_width_quantile(20, 5.0, 0.5));
+}
+
+TEST_CASE("a pool that has no mean difference has no type-I error") {
+  ThresholdPool pool{.trials = 60, .standards = {"one", "other"}, .people = {}};
+  for (int i = 0; i < 9; ++i) pool.people.push_back({{0.0, kOpen}, {-20.0 - i, -20.0 - i}});
+  const ThresholdPlan plan{.participants = {6},
+                           .runs = 50,
+                           .seed = 1,
+                           .difference = std::pair<std::size_t, std::size_t>{0, 1}};
+  const ThresholdRow row = rows_of(pool, plan, 1).front();
+  CHECK(row.difference->significant == analysis::Proportion{50, 0});
+  CHECK(row.difference->false_alarms.n == 0);
+  ThresholdPlanReport report{{"study", "people", "dB"}, plan, {}};
+  report.pools.emplace_back(pool, rows_of(pool, plan, 1));
+  CHECK_NOTHROW(threshold_plan_text(report));
+  CHECK(nlohmann::json::parse(threshold_plan_json(report)).at("samples") == 50);
 }
 
 TEST_CASE("a pool has the tracks of simulated sessions, with the trials that are asked for") {
@@ -136,14 +178,15 @@ TEST_CASE("a pool has the tracks of simulated sessions, with the trials that are
   CHECK(pool.people.size() == 3);
   CHECK(pool.standards.size() == 5);
   CHECK(pool.tracks == 15);
-  std::size_t found = 0;
+  int found = 0;
   for (std::size_t standard = 0; standard < 5; ++standard) {
-    for (const double threshold : thresholds_in(pool, standard)) {
-      CHECK(std::abs(threshold + 20.0) < 20.0);
+    for (const analysis::Bounds& threshold : thresholds_in(pool, standard)) {
+      if (!threshold.exact()) continue;
+      CHECK(std::abs(threshold.low + 20.0) <= 20.0);
       ++found;
     }
   }
-  CHECK(static_cast<int>(found) == pool.tracks - pool.censored_below - pool.censored_above);
+  CHECK(found == pool.tracks - pool.below - pool.above - pool.undetermined);
   const ThresholdPool again =
       simulated_thresholds(tiny.key(), source, subject, 12, {.people = 3, .seed = 4, .jobs = 1});
   CHECK(again.people == pool.people);

@@ -37,7 +37,7 @@ BootLoader::Bytes BootLoader::load(std::span<const std::uint8_t> bytes) {
 
 BootLoader::Bytes BootLoader::echo(std::span<const std::uint8_t> block) {
   Bytes answer(block.begin(), block.end());
-  if (answer.size() > kMostBlock) answer.resize(kMostBlock);  // its buffer holds no more
+  if (answer.size() > kMaxBlock) answer.resize(kMaxBlock);  // its buffer holds no more
   if (loads_ <= options_.bad_loads && block_ == options_.bad_block) {
     answer.back() ^= 0x10U;
     if (options_.silent_block) answer.clear();

@@ -20,7 +20,7 @@ struct BootLoaderOptions {
 /// Not thread-safe.
 class BootLoader {
  public:
-  static constexpr std::size_t kMostBlock = 62;
+  static constexpr std::size_t kMaxBlock = 62;
   using Bytes = std::vector<std::uint8_t>;
 
   explicit BootLoader(BootLoaderOptions options) : options_(std::move(options)) {}

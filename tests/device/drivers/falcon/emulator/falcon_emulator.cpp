@@ -77,7 +77,7 @@ UsbStatus FalconEmulator::bulk_out(std::span<const std::uint8_t> bytes) {
 }
 
 void FalconEmulator::serve_boot_loader(std::span<const std::uint8_t> bytes) {
-  if (bytes.size() > BootLoader::kMostBlock) complain("a block of more than 62 bytes");
+  if (bytes.size() > BootLoader::kMaxBlock) complain("a block of more than 62 bytes");
   if (chip_.is_set_for_greeting()) chip_.to_host(boot_loader_.greet(bytes));
   if (chip_.is_set_for_loading()) chip_.to_host(boot_loader_.load(bytes));
 }

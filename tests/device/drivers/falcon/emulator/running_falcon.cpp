@@ -99,7 +99,7 @@ void RunningFalcon::take_command() {
     const auto value = motor_value(std::span(received_).subspan(1 + 4 * axis, 4));
     if (!value) complain("a motor value that is none");
     motors_[axis] = value.value_or(0);
-    if (std::abs(int{motors_[axis]}) > kMostMotorValue) complain("a motor value beyond 4,095");
+    if (std::abs(int{motors_[axis]}) > kMaxMotorValue) complain("a motor value beyond 4,095");
   }
   const int flags = nibble(received_[13]);
   if (flags < 0) complain("flags that are none");

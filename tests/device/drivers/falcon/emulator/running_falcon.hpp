@@ -51,7 +51,7 @@ class RunningFalcon {
  public:
   static constexpr std::size_t kPacketSize = 16;
   using Packet = std::array<std::uint8_t, kPacketSize>;
-  static constexpr int kMostMotorValue = 4'095;
+  static constexpr int kMaxMotorValue = 4'095;
   /// An axis is homed when it has moved over this many counts: 11 degrees.
   static constexpr int kHomingTravel = 300;
 

@@ -145,9 +145,9 @@ TEST_CASE("a device that takes no packets for 15 ms is a lost link, and closes")
   lockstep.step();
   falcon.usb.stick_out(true);
   const auto began = lockstep.now() + FalconDevice::kPeriod;
-  lockstep.steps(FtdiTransport::kMostStuck);
+  lockstep.steps(FtdiTransport::kMaxStuck);
   CHECK(device->fault() == device::DeviceFault::none);
-  CHECK(lockstep.now() - began == FtdiTransport::kMostStuck * FalconDevice::kReplyLimit);
+  CHECK(lockstep.now() - began == FtdiTransport::kMaxStuck * FalconDevice::kReplyLimit);
   lockstep.step();
   CHECK(device->fault() == device::DeviceFault::link_lost);
   device.reset();

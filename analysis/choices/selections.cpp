@@ -1,0 +1,73 @@
+#include "analysis/choices/selections.hpp"
+
+#include "analysis/outcomes/departures.hpp"
+#include "core/text.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <utility>
+
+namespace touchtrial::choices {
+namespace {
+
+std::set<int> joined(std::set<int> sessions, const std::set<int>& more) {
+  sessions.insert(more.begin(), more.end());
+  return sessions;
+}
+
+}  // namespace
+
+std::vector<Selection> selections(const Outcomes& outcomes) {
+  const std::set<int> taken = counted_sessions(outcomes);
+  const std::set<int> excluded = excluded_sessions(outcomes);
+  std::set<int> put_back = taken;
+  std::ranges::set_intersection(excluded, outcomes.looked.excluded_afterwards,
+                                std::inserter(put_back, put_back.end()));
+  std::set<int> registered = put_back;
+  for (const auto& [session, rule] : rules_met(outcomes)) registered.erase(session);
+  std::set<int> inattentive;
+  std::ranges::set_intersection(put_back, with_missed_catches(outcomes),
+                                std::inserter(inattentive, inattentive.end()));
+  const bool is_registered = outcomes.design.registration.analysis.has_value();
+  std::string words = is_registered ? "as registered" : "every session that counts";
+  if (put_back != taken) words += "; no exclusion that was made after outcomes were seen";
+  if (!inattentive.empty()) {
+    words += "; left out by the rule on missed catch trials: " +
+             counted(static_cast<int>(inattentive.size()), "session");
+  }
+  return {{"registered", std::move(words), std::move(registered)},
+          {"taken", "all exclusions as made", taken},
+          {"put_back", "exclusions made after outcomes were seen put back", std::move(put_back)},
+          {"all", "all excluded sessions put back", joined(taken, excluded)},
+          {"valid", "exclusions as made, valid trials alone", taken, true},
+          {"answered", "exclusions as made, trials with a response alone", taken, false, true}};
+}
+
+std::set<int> people_with_all_visits(const Outcomes& outcomes, const Selection& selection,
+                                     const FirstSessions& people) {
+  int deciding = 0;
+  for (int visit = 1; visit <= outcomes.design.visits.count; ++visit) {
+    deciding += outcomes.design.decides(visit) ? 1 : 0;
+  }
+  std::map<int, std::set<int>> visits;
+  for (const SessionOutcome& one : outcomes.sessions) {
+    if (!selection.sessions.contains(one.row.session)) continue;
+    if (outcomes.design.decides(one.row.visit)) {
+      visits[people.of(one.row.session)].insert(one.row.visit);
+    }
+  }
+  std::set<int> whole;
+  for (const auto& [person, own] : visits) {
+    if (static_cast<int>(own.size()) == deciding) whole.insert(person);
+  }
+  return whole;
+}
+
+std::string visit_words(const study::Study& study) {
+  if (study.visits.count == 1) return "";
+  if (study.decides(1) && study.decides(study.visits.count)) return ", over all visits";
+  return study.decides(1) ? ", at the first visit" : ", at the last visit";
+}
+
+}  // namespace touchtrial::choices

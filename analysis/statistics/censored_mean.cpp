@@ -1,0 +1,304 @@
+#include "analysis/statistics/censored_mean.hpp"
+
+#include "analysis/statistics/common.hpp"
+#include "analysis/statistics/descriptive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <boost/math/distributions/students_t.hpp>
+#include <boost/math/tools/fraction.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
+
+namespace touchtrial::analysis {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kLogRootTwoPi = 0.91893853320467274178;  // log sqrt(2 pi)
+
+/// The continued fraction whose reciprocal is Mills' ratio at z: z + 1 / (z + 2 / (z + 3 / ...)).
+class MillsFraction {
+ public:
+  using result_type = std::pair<double, double>;
+
+  explicit MillsFraction(double z) : z_(z) {}
+  result_type operator()() { return {place_++, z_}; }
+
+ private:
+  double z_;
+  double place_ = 0.0;
+};
+
+/// The logarithm of the standard normal's probability above z.
+double log_above(double z) {
+  constexpr double kTail = 10.0;
+  if (z < kTail) return std::log(0.5 * std::erfc(z / std::numbers::sqrt2));
+  if (z == kInfinity) return -kInfinity;
+  MillsFraction terms(z);
+  const double fraction =
+      boost::math::tools::continued_fraction_b(terms, std::numeric_limits<double>::epsilon());
+  return -0.5 * z * z - kLogRootTwoPi - std::log(fraction);
+}
+
+/// That of its probability between two ends.
+double log_between(double low, double high) {
+  if (low + high < 0.0) return log_between(-high, -low);
+  if (high == kInfinity) return log_above(low);
+  const double width = high - low;
+  const double middle = 0.5 * (low + high);
+  if (width * std::max(1.0, middle) < 1e-4) {
+    // The difference of two tails would have few digits left; the density is nearly even here.
+    const double bend = (middle * middle - 1.0) * width * width / 24.0;
+    return -0.5 * middle * middle - kLogRootTwoPi + std::log(width) + std::log1p(bend);
+  }
+  if (low <= 0.0) {
+    return std::log(0.5 *
+                    (std::erfc(low / std::numbers::sqrt2) - std::erfc(high / std::numbers::sqrt2)));
+  }
+  const double above_low = log_above(low);
+  return above_low + std::log(-std::expm1(log_above(high) - above_low));
+}
+
+/// Participants of whom the same is known.
+struct Alike {
+  Bounds bounds;
+  int people = 0;
+};
+
+/// What one participant's bounds add to the logarithm of the likelihood, and to its slopes.
+struct Share {
+  double value = 0.0;
+  double by_mean = 0.0;
+  double by_precision = 0.0;
+};
+
+Share share_of(const Bounds& bounds, double mean, double precision) {
+  const double low = precision * (bounds.low - mean);
+  const double high = precision * (bounds.high - mean);
+  Share share{.value = log_between(low, high)};
+  const auto density = [&](double z) {
+    return std::exp(-0.5 * z * z - kLogRootTwoPi - share.value);
+  };
+  if (std::isfinite(low)) {
+    share.by_mean += precision * density(low);
+    share.by_precision -= (bounds.low - mean) * density(low);
+  }
+  if (std::isfinite(high)) {
+    share.by_mean -= precision * density(high);
+    share.by_precision += (bounds.high - mean) * density(high);
+  }
+  return share;
+}
+
+/// The likelihood of a normal distribution by its mean and its precision, here 1 / SD. In 1 / SD
+/// and mean / SD it is concave (Olsen 1978), so with the mean held it has one most likely
+/// precision, and the likelihood of that precision rises up to one mean and falls after it.
+class NormalLikelihood {
+ public:
+  /// \pre there are two known values that differ
+  explicit NormalLikelihood(std::span<const Bounds> people);
+
+  [[nodiscard]] double known() const noexcept { return known_; }
+  [[nodiscard]] double most_likely_mean() const;
+  /// The logarithm of the likelihood of the most likely precision with this mean.
+  [[nodiscard]] double profile(double mean) const { return sum_at(mean, precision_at(mean)).value; }
+  /// The SD of a sample whose most likely mean this is.
+  [[nodiscard]] double sd_at(double mean) const {
+    return std::sqrt(known_ / (known_ - 1.0)) / precision_at(mean);
+  }
+  /// The mean at which a function becomes 0 that is >= 0 at `from` and falls along the step.
+  template <typename Function>
+  [[nodiscard]] double zero_beyond(const Function& function, double from, double step) const;
+
+ private:
+  [[nodiscard]] Share sum_at(double mean, double precision) const;
+  [[nodiscard]] double precision_at(double mean) const;
+
+  double known_ = 0.0;
+  double center_ = 0.0;   ///< mean of the known
+  double squares_ = 0.0;  ///< of their distances from it, summed
+  std::vector<Alike> others_;
+};
+
+constexpr std::uintmax_t kMaxRootSteps = 200;
+
+NormalLikelihood::NormalLikelihood(std::span<const Bounds> people) {
+  std::vector<double> values;
+  for (const Bounds& one : people) {
+    if (one.exact()) {
+      values.push_back(one.low);
+    } else if (one != Bounds{}) {
+      const auto same = std::ranges::find(others_, one, &Alike::bounds);
+      if (same == others_.end()) {
+        others_.push_back({one, 1});
+      } else {
+        ++same->people;
+      }
+    }
+  }
+  known_ = static_cast<double>(values.size());
+  center_ = mean_of(values);
+  for (const double value : values) squares_ += (value - center_) * (value - center_);
+}
+
+Share NormalLikelihood::sum_at(double mean, double precision) const {
+  const double distance = center_ - mean;
+  const double squares = squares_ + known_ * distance * distance;
+  Share sum{.value = known_ * std::log(precision) - 0.5 * precision * precision * squares,
+            .by_mean = precision * precision * known_ * distance,
+            .by_precision = known_ / precision - precision * squares};
+  for (const auto& [bounds, people] : others_) {
+    const Share one = share_of(bounds, mean, precision);
+    sum.value += people * one.value;
+    sum.by_mean += people * one.by_mean;
+    sum.by_precision += people * one.by_precision;
+  }
+  return sum;
+}
+
+double NormalLikelihood::precision_at(double mean) const {
+  const double distance = center_ - mean;
+  const double of_known = 1.0 / std::sqrt(squares_ / known_ + distance * distance);
+  std::uintmax_t steps = kMaxRootSteps;
+  const auto slope = [&](double precision) { return sum_at(mean, precision).by_precision; };
+  const auto [low, high] = boost::math::tools::bracket_and_solve_root(
+      slope, of_known, 2.0, false, boost::math::tools::eps_tolerance<double>(), steps);
+  return 0.5 * (low + high);
+}
+
+template <typename Function>
+double NormalLikelihood::zero_beyond(const Function& function, double from, double step) const {
+  double near = from;
+  while (function(from + step) > 0.0) {
+    near = from + step;
+    step *= 2.0;
+  }
+  const auto [low, high] = std::minmax({near, from + step});
+  const double scale = std::sqrt(squares_ / known_);
+  const auto close = [scale](double a, double b) {
+    constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
+    return std::abs(a - b) <= kRounding * (std::abs(a) + std::abs(b) + scale);
+  };
+  std::uintmax_t steps = kMaxRootSteps;
+  const auto found = boost::math::tools::toms748_solve(function, low, high, close, steps);
+  return 0.5 * (found.first + found.second);
+}
+
+double NormalLikelihood::most_likely_mean() const {
+  const auto rise = [&](double mean) { return sum_at(mean, precision_at(mean)).by_mean; };
+  const double step = std::sqrt(squares_ / known_);
+  if (rise(center_) >= 0.0) return zero_beyond(rise, center_, step);
+  return zero_beyond([&](double mean) { return -rise(mean); }, center_, -step);
+}
+
+void require_bounds(std::span<const Bounds> people) {
+  for (const Bounds& one : people) {
+    // Also refuses NaN.
+    if (!(one.low <= one.high) || (one.exact() && !std::isfinite(one.low))) {
+      throw std::invalid_argument("bounds need a low end that is not above the high one");
+    }
+  }
+}
+
+std::vector<double> known_values(std::span<const Bounds> people) {
+  std::vector<double> values;
+  for (const Bounds& one : people) {
+    if (one.exact()) values.push_back(one.low);
+  }
+  return values;
+}
+
+/// The middle of the sorted ends.
+double median_of(std::span<const Bounds> people, double Bounds::*end) {
+  std::vector<double> ends;
+  for (const Bounds& one : people) ends.push_back(one.*end);
+  std::ranges::sort(ends);
+  const std::size_t half = ends.size() / 2;
+  if (ends.size() % 2 == 1 || ends[half - 1] == ends[half]) return ends[half];
+  return 0.5 * (ends[half - 1] + ends[half]);
+}
+
+Lack lack_of(int participants, std::span<const double> values) {
+  if (2 * values.size() < static_cast<std::size_t>(participants)) return Lack::most;
+  if (values.size() < 2) return Lack::values;
+  const auto [least, most] = std::ranges::minmax(values);
+  return without_noise(most - least) == 0.0 ? Lack::spread : Lack::nothing;
+}
+
+bool all_hold(std::span<const Bounds> people, double value) {
+  return std::ranges::all_of(people, [value](const Bounds& one) {
+    return without_noise(std::max(one.low - value, 0.0)) == 0.0 &&
+           without_noise(std::max(value - one.high, 0.0)) == 0.0;
+  });
+}
+
+/// The distance, in twice the logarithm of the likelihood, within which the interval lies.
+double most_ratio(double known, double level) {
+  const boost::math::students_t_distribution<> distribution(known - 1.0);
+  const double t = boost::math::quantile(distribution, 0.5 + level / 2.0);
+  return known * std::log1p(t * t / (known - 1.0));
+}
+
+void put_likely(CensoredMean& result, std::span<const Bounds> people, double level) {
+  const NormalLikelihood likelihood(people);
+  const double mean = likelihood.most_likely_mean();
+  result.mean = without_noise(mean);
+  result.sd = likelihood.sd_at(mean);
+  const double least = likelihood.profile(mean) - 0.5 * most_ratio(likelihood.known(), level);
+  const auto inside = [&](double at) { return likelihood.profile(at) - least; };
+  result.interval = {without_noise(likelihood.zero_beyond(inside, mean, -*result.sd)),
+                     without_noise(likelihood.zero_beyond(inside, mean, *result.sd))};
+}
+
+}  // namespace
+
+Bounds difference_of(const Bounds& first, const Bounds& second) noexcept {
+  if (first.exact() && second.exact()) return {first.low - second.low, first.low - second.low};
+  return {first.low - second.high, first.high - second.low};
+}
+
+CensoredMean censored_mean(std::span<const Bounds> people, double level) {
+  require_level(level);
+  require_bounds(people);
+  CensoredMean result{.participants = static_cast<int>(people.size())};
+  if (people.empty()) return result;
+  const std::vector<double> values = known_values(people);
+  result.exact = static_cast<int>(values.size());
+  result.median_within = {median_of(people, &Bounds::low), median_of(people, &Bounds::high)};
+  if (result.median_within.exact()) result.median = result.median_within.low;
+  result.lack = lack_of(result.participants, values);
+  const bool all_known = values.size() == people.size();
+  if (result.lack == Lack::nothing && !all_known) {
+    put_likely(result, people, level);
+  } else if (all_known || (result.lack == Lack::spread && all_hold(people, values.front()))) {
+    constexpr Interval kAnywhere{-kInfinity, kInfinity};
+    const MeanEstimate known = participant_mean(values, kAnywhere, level);
+    result.mean = known.mean;
+    result.sd = known.sd;
+    if (result.lack == Lack::nothing) result.interval = known.interval;
+  }
+  return result;
+}
+
+std::optional<double> censored_p(std::span<const Bounds> people, double null, Sides sides) {
+  require_bounds(people);
+  require_finite(std::span(&null, 1), "a test of a mean");
+  const std::vector<double> values = known_values(people);
+  if (lack_of(static_cast<int>(people.size()), values) != Lack::nothing) return std::nullopt;
+  if (values.size() == people.size()) return t_test_p(values, null, sides);
+  const NormalLikelihood likelihood(people);
+  const double mean = likelihood.most_likely_mean();
+  const double ratio = 2.0 * (likelihood.profile(mean) - likelihood.profile(null));
+  const double degrees = likelihood.known() - 1.0;
+  const double t = std::sqrt(degrees * std::expm1(std::max(ratio, 0.0) / likelihood.known()));
+  const boost::math::students_t_distribution<> distribution(degrees);
+  if (sides == Sides::one) return cdf(complement(distribution, mean < null ? -t : t));
+  return 2.0 * cdf(complement(distribution, t));
+}
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,64 @@
+/// \file The mean over participants of whom some are known by bounds alone, as by a threshold beyond
+/// the levels that were tried: the normal distribution that is most likely for everybody. Who is
+/// left out because of a bound lies on its side, so the mean of the others is not that of all.
+/// Sources: docs/thresholds.md, "Groups"; Tobin 1958; Olsen 1978.
+#pragma once
+
+#include "analysis/statistics/mean_test.hpp"
+#include "analysis/statistics/proportion.hpp"
+
+#include <limits>
+#include <optional>
+#include <span>
+
+namespace touchtrial::analysis {
+
+/// Where one participant's value lies. Two equal ends: it is known. An infinite end is open.
+struct Bounds {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] bool exact() const noexcept { return low == high; }
+  friend bool operator==(const Bounds&, const Bounds&) = default;
+};
+
+/// Where first minus second lies.
+[[nodiscard]] Bounds difference_of(const Bounds& first, const Bounds& second) noexcept;
+
+/// What a sample lacks.
+enum class Lack {
+  nothing,
+  values,  ///< fewer than two are known: no interval, and no mean unless there is one participant
+  most,    ///< more than half are not known: no mean
+  spread,  ///< the known ones are all alike: no interval, and a mean only within everybody's bounds
+};
+
+/// In the unit of the values.
+struct CensoredMean {
+  int participants = 0;  ///< everybody, also those of whom nothing is known
+  int exact = 0;         ///< of them, those whose value is known
+  std::optional<double> mean{};
+  std::optional<Interval> interval{};
+  std::optional<double> sd{};      ///< between participants
+  Bounds median_within{};          ///< of everybody; open without participants
+  std::optional<double> median{};  ///< if the bounds leave one
+  Lack lack = Lack::values;
+};
+
+/// The mean and its interval by profile likelihood: all means whose likelihood ratio is at most
+/// m log(1 + t^2 / (m - 1)), of m known values, t being Student's quantile of m - 1 degrees. If all
+/// are known that is Student's interval.
+/// \param level  in (0, 1)
+/// \throws std::invalid_argument if the level is not in (0, 1), a bound is NaN, a low one lies above
+///   its high one, or both are the same infinity
+[[nodiscard]] CensoredMean censored_mean(std::span<const Bounds> people,
+                                         double level = kConfidenceLevel);
+
+/// The test of that mean by the same likelihood ratio. If all are known it is Student's.
+/// \param null  the mean under the null hypothesis
+/// \return nothing where censored_mean has no interval
+/// \throws std::invalid_argument as censored_mean does, or if `null` is not finite
+[[nodiscard]] std::optional<double> censored_p(std::span<const Bounds> people, double null,
+                                               Sides sides);
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,21 @@
+/// \file The registered question about thresholds: a mean, the difference of two standards, or their
+/// equality. Source: docs/statistics.md, "The registered question"; docs/thresholds.md, "The
+/// registered question".
+#pragma once
+
+#include "analysis/report/registered.hpp"
+#include "protocols/threshold/analysis/report.hpp"
+
+#include <optional>
+
+namespace touchtrial::analysis::threshold {
+
+/// The answer under every choice of sessions and trials, judged.
+/// \param report  its tracks and standards
+/// \param jobs  threads for tracks that the report does not have, 0: one for each core
+/// \return nothing if the study registers no question
+[[nodiscard]] std::optional<PrimaryResult> primary_result(const Outcomes& outcomes,
+                                                          const ThresholdReport& report,
+                                                          int jobs = 0);
+
+}  // namespace touchtrial::analysis::threshold

@@ -1,0 +1,101 @@
+#include "protocols/threshold/study/registered_standards.hpp"
+
+#include "protocols/threshold/study/threshold.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace touchtrial::study::threshold {
+namespace {
+
+constexpr const char* kPlace = "/registration/standards";
+
+std::string standards_in_words(const Study& study) {
+  std::vector<std::string> words;
+  for (const Standard& one : standards_of(study)) words.push_back(words_of(study, one));
+  return fmt::format("{}", fmt::join(words, "; "));
+}
+
+bool is_named(const Study& study, const Standard& standard, const RegisteredStandard& by) {
+  constexpr double kRounding = 1e-9;
+  const std::string& label = study.classes[static_cast<std::size_t>(standard.class_index)].label;
+  return (by.label.empty() || by.label == label) &&
+         (!by.value || std::abs(*by.value - standard.value) < kRounding);
+}
+
+/// Those that a name fits.
+std::vector<std::size_t> named_by(const Study& study, const RegisteredStandard& name) {
+  const std::vector<Standard> standards = standards_of(study);
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < standards.size(); ++i) {
+    if (is_named(study, standards[i], name)) found.push_back(i);
+  }
+  return found;
+}
+
+void check_names(const JsonValue& file, const Study& study) {
+  const std::vector<RegisteredStandard>& names = study.registration.analysis->standards;
+  std::vector<std::size_t> all;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string place = fmt::format("{}/{}", kPlace, i);
+    const std::vector<std::size_t> found = named_by(study, names[i]);
+    if (found.empty()) {
+      file.refuse_below(
+          place, "is no standard of the study; name one that it has: " + standards_in_words(study));
+    }
+    if (found.size() > 1) {
+      file.refuse_below(place, fmt::format("fits {} standards; give class and value of one of: {}",
+                                           found.size(), standards_in_words(study)));
+    }
+    if (std::ranges::find(all, found.front()) != all.end()) {
+      file.refuse_below(place, "is the same standard twice; name each once");
+    }
+    all.push_back(found.front());
+  }
+}
+
+void check_number(const JsonValue& file, const Study& study) {
+  const Estimand estimand = study.registration.analysis->estimand;
+  const std::size_t number = registered_standards(study).size();
+  const std::string which =
+      fmt::format("; name the standards in \"standards\", of: {}", standards_in_words(study));
+  const auto refuse = [&](const char* needs) {
+    const bool named = !study.registration.analysis->standards.empty();
+    file.refuse_below(named ? kPlace : "/registration/estimand",
+                      fmt::format("is of {}, but {} {}{}", needs,
+                                  named ? "it names" : "the study has", number, which));
+  };
+  if (estimand == Estimand::mean_threshold && number != 1) refuse("one standard");
+  if (estimand == Estimand::threshold_difference && number != 2) refuse("two standards");
+  if (estimand == Estimand::threshold_equality && number < 2) refuse("two standards or more");
+}
+
+}  // namespace
+
+void check_registered(const JsonValue& file, const Study& study) {
+  const auto& analysis = study.registration.analysis;
+  if (!analysis || !is_of_thresholds(analysis->estimand)) return;
+  if (options_of(study).question == Question::same_different) {
+    file.refuse_below("/registration/estimand",
+                      "is about thresholds, which \"same-different\" does not give; leave estimand "
+                      "and what belongs to it out, and state the test in primary_test");
+  }
+  check_names(file, study);
+  check_number(file, study);
+}
+
+std::vector<std::size_t> registered_standards(const Study& study) {
+  const std::vector<RegisteredStandard>& names = study.registration.analysis->standards;
+  std::vector<std::size_t> all;
+  for (const RegisteredStandard& name : names) all.push_back(named_by(study, name).front());
+  if (!all.empty()) return all;
+  all.resize(standards_of(study).size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
+
+}  // namespace touchtrial::study::threshold
