@@ -255,10 +255,21 @@ struct Ends {
 /// Where a likelihood has lost `loss` of its logarithm, from its largest value.
 Ends ends_of(const Profile& profile, Likelihood of, double loss) {
   constexpr double kOpen = std::numeric_limits<double>::infinity();
-  double largest = 0.0;
-  for (const Cell& cell : profile.cells) largest = std::max(largest, cell.found.*of);
-  const double least = std::exp(-loss) * largest;
   const std::vector<Cell>& cells = profile.cells;
+  const auto top = std::max_element(cells.begin(), cells.end(), [&](const Cell& a, const Cell& b) {
+    return a.found.*of < b.found.*of;
+  });
+  double log_largest = std::log((*top).found.*of);
+  if (top != cells.begin() && std::next(top) != cells.end()) {
+    // A parabola through three cells: a little of a flat top moves an end far.
+    const double before = log_largest - std::log((*std::prev(top)).found.*of);
+    const double after = log_largest - std::log((*std::next(top)).found.*of);
+    const double bend = before + after;
+    if (bend > 0.0 && std::isfinite(bend)) {
+      log_largest += (before - after) * (before - after) / (8.0 * bend);
+    }
+  }
+  const double least = std::exp(log_largest - loss);
   return {first_above(cells.begin(), cells.end(), of, least, -kOpen),
           first_above(cells.rbegin(), cells.rend(), of, least, kOpen)};
 }
