@@ -117,6 +117,8 @@ class Pilot {
     const std::size_t at = line.find("  trial ");
     const int presentation = at == std::string::npos ? 0 : std::atoi(line.c_str() + at + 8);
     if (presentation >= 3 && !was_paused_ && is_exploring()) return lose_keyboard();
+    // Another window's last request for the keyboard may have arrived after ours.
+    if (line.find("  paused  ") != std::string::npos) screen_.focus_window("Touchtrial");
     if (line.find("  answering  ") != std::string::npos && presentation > 0) {
       meant_[presentation] = presentation % 5;
       screen_.type(std::to_string(presentation % 5 + 1));
@@ -305,12 +307,17 @@ class Rater {
   void react() {
     const std::size_t last = program_.output().rfind("\nP01  ");
     const std::string line = last == std::string::npos ? "" : program_.output().substr(last + 1);
-    if (line.find("  answering") != std::string::npos) by_mouse_ ? click_around() : rate();
-    screen_.type("Return");
+    const bool is_answering = line.find("  answering") != std::string::npos;
+    if (is_answering) by_mouse_ ? click_around() : rate();
+    // On a busy machine the screen may have come in the middle of the keys: rate twice before the
+    // end.
+    const bool is_first_look = is_answering && line != rated_;
+    rated_ = is_answering ? line : "";
+    if (!is_first_look) screen_.type("Return");
     screen_.wait_until_heard("Touchtrial");
   }
   /// A digit counts as a point; on a line the arrow sets the mark in its middle.
-  void rate() { screen_.type("4 Right Down 2 Right"); }
+  void rate() { screen_.type("Up Up 4 Right Down 2 Right"); }
   void click_around() {
     for (int y = 200; y < 660; y += 12) {
       screen_.move_pointer(860, y);
@@ -322,6 +329,7 @@ class Rater {
   const VirtualScreen& screen_;
   bool by_mouse_;
   testing::ChildProcess program_;
+  std::string rated_;  ///< the line of the trial whose rating was typed already
 };
 
 /// The ratings of all trials, those of practice left out.
