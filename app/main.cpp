@@ -36,14 +36,14 @@ namespace {
 
 constexpr int kFailed = 1;
 constexpr int kBadInput = 2;
-constexpr int kClosedPipe = 128 + SIGPIPE;  // as a shell says it of a program that the signal ends
+constexpr int kClosedPipe = 128 + SIGPIPE;  // the exit code that shells report for this signal
 
-int complain(int code, const std::string& message) noexcept {
+int report_error(int code, const std::string& message) noexcept {
   std::fprintf(stderr, "touchtrial: %s\n", one_line(message).c_str());
   return code;
 }
 
-/// The message of a warning on one line, without what a terminal would obey.
+/// The message of a warning on one line, without control characters.
 class CleanMessage final : public spdlog::custom_flag_formatter {
  public:
   void format(const spdlog::details::log_msg& message, const std::tm& /*time*/,
@@ -65,15 +65,15 @@ void set_up_log() {
   spdlog::set_default_logger(logger);
 }
 
-/// The command that was parsed so far.
+/// The command parsed so far.
 const CLI::App& command_so_far(const CLI::App& program) {
   const CLI::App* command = &program;
   while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
   return *command;
 }
 
-/// What is wrong with the first option that the command does not have, if one of its own is near;
-/// else empty. A missing option is often a misspelt one.
+/// The message about the first unknown option if a known one is similar; else empty. A missing
+/// option is often a misspelt one.
 std::string misspelt_option(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : options_of(command)) {
@@ -90,8 +90,8 @@ std::string misspelt_option(const CLI::App& command) {
   return "";
 }
 
-/// A write past the limit of a file's size, or to a pipe that nobody reads, then fails like any
-/// other, and what was begun ends in order.
+/// Makes a write past the file size limit, or to a closed pipe, fail with an error instead of a
+/// signal, so that the program cleans up.
 void let_writes_fail() {
   static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
   static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
@@ -137,22 +137,22 @@ int parse_and_run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const CLI::App& command = command_so_far(program);
     const std::string misspelt = misspelt_option(command);
-    return complain(kBadInput, (misspelt.empty() ? error.what() : misspelt) + "; see " +
-                                   words_of(command) + " --help");
+    return report_error(kBadInput, (misspelt.empty() ? error.what() : misspelt) + "; see " +
+                                       words_of(command) + " --help");
   }
   return action();
 }
 
-/// Whether a thread could not be started, which needs memory for its stack. oneTBB says it in words
-/// alone.
+/// Whether a thread could not be started, which needs memory for its stack. oneTBB reports this
+/// only in the message.
 bool lacks_a_thread(const std::exception& error) {
   const auto* const of_system = dynamic_cast<const std::system_error*>(&error);
   return (of_system != nullptr && of_system->code() == std::errc::resource_unavailable_try_again) ||
          std::string_view(error.what()).starts_with("pthread_create has failed");
 }
 
-/// oneTBB lets an exception leave its own threads when memory or threads run out, which ends the
-/// program: with one line. The next run removes the drafts that are left.
+/// When memory or threads run out, an exception leaves oneTBB's own threads and terminates the
+/// program; this prints one line. The next run removes leftover drafts.
 [[noreturn]] void end_for_lack_of_memory() noexcept {
   bool is_lack = false;
   try {
@@ -174,7 +174,7 @@ bool lacks_a_thread(const std::exception& error) {
 
 /// Runs one command, and reports any error as one line on standard error.
 /// \return 0 done, 1 failed, 2 bad arguments or bad study file, 3 verification failed, kClosedPipe
-///   (without a line) if nobody reads the output any more
+///   (without a line) if the output's reader has exited
 int run_program(int argc, char** argv) noexcept {
   std::set_terminate(end_for_lack_of_memory);
   try {
@@ -182,21 +182,22 @@ int run_program(int argc, char** argv) noexcept {
   } catch (const ClosedPipe&) {
     return kClosedPipe;
   } catch (const UsageError& error) {
-    return complain(kBadInput, error.what());
+    return report_error(kBadInput, error.what());
   } catch (const StudyError& error) {
-    return complain(kBadInput, error.what());
+    return report_error(kBadInput, error.what());
   } catch (const record::DamagedStore& error) {
-    return complain(kNotVerified, error.what());
+    return report_error(kNotVerified, error.what());
   } catch (const VerificationError& error) {
-    return complain(kNotVerified, error.what());
+    return report_error(kNotVerified, error.what());
   } catch (const std::bad_alloc&) {
-    return complain(kFailed,
-                    "there is not enough memory; close other programs or use smaller images");
+    return report_error(kFailed,
+                        "there is not enough memory; close other programs or use smaller images");
   } catch (const std::exception& error) {
-    return complain(kFailed, lacks_a_thread(error)
-                                 ? "there is not enough memory for the program's threads, or too "
-                                   "many threads run; close other programs, or give fewer --jobs"
-                                 : error.what());
+    return report_error(kFailed,
+                        lacks_a_thread(error)
+                            ? "there is not enough memory for the program's threads, or too "
+                              "many threads run; close other programs, or give fewer --jobs"
+                            : error.what());
   }
 }
 

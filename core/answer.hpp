@@ -24,19 +24,19 @@ struct Rated {
 
 using Answer = std::variant<Chosen, Rated>;
 
-/// \return nothing without an answer, and if it is no choice
+/// \return nothing if there is no answer or it is not a choice
 [[nodiscard]] inline std::optional<int> position_of(const std::optional<Answer>& answer) {
   const auto* const chosen = answer ? std::get_if<Chosen>(&*answer) : nullptr;
   return chosen == nullptr ? std::nullopt : std::optional(chosen->position);
 }
 
-/// \return nothing without an answer, if it is no choice, and if it was not changed
+/// \return nothing if there is no answer, it is not a choice, or it was not changed
 [[nodiscard]] inline std::optional<int> first_position_of(const std::optional<Answer>& answer) {
   const auto* const chosen = answer ? std::get_if<Chosen>(&*answer) : nullptr;
   return chosen == nullptr ? std::nullopt : chosen->first_position;
 }
 
-/// \return nothing without an answer, and if it is no rating
+/// \return nothing if there is no answer or it is not a rating
 [[nodiscard]] inline std::vector<double> ratings_of(const std::optional<Answer>& answer) {
   const auto* const rated = answer ? std::get_if<Rated>(&*answer) : nullptr;
   return rated == nullptr ? std::vector<double>() : rated->values;

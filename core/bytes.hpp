@@ -27,8 +27,8 @@ using ByteView = std::span<const std::uint8_t>;
 /// Lower-case hexadecimal, two digits a byte.
 [[nodiscard]] std::string to_hex(ByteView bytes);
 
-/// \return the bytes, or nothing if `hex` has an odd length or a character that is no hexadecimal
-///   digit
+/// \return the bytes, or nothing if `hex` has an odd length or a character that is not a
+///   hexadecimal digit
 [[nodiscard]] std::optional<Bytes> from_hex(std::string_view hex);
 
 /// Base64 with the standard alphabet, padded (RFC 4648, section 4).

@@ -1,4 +1,4 @@
-/// \file The Cholesky factor of a symmetric matrix, L with L L^T = matrix, and what it solves.
+/// \file The Cholesky factor L of a symmetric matrix (L L^T = matrix), and solvers that use it.
 /// Matrices are n x n, row-major.
 #pragma once
 
@@ -8,9 +8,9 @@
 
 namespace touchtrial {
 
-/// Replaces the lower triangle of a matrix by its factor. The upper triangle stays.
-/// \param least_share  that must be left of a diagonal element, relative to the element
-/// \return whether the matrix is positive definite; if not, the factor means nothing
+/// Replaces the lower triangle of a matrix by its factor; the upper triangle is unchanged.
+/// \param least_share  the smallest share of a diagonal element that elimination may leave
+/// \return whether the matrix is positive definite; if not, the factor is meaningless
 inline bool factorise(std::span<double> matrix, std::size_t n, double least_share = 0.0) {
   bool definite = true;
   for (std::size_t j = 0; j < n; ++j) {

@@ -49,8 +49,8 @@ Bytes seal(const SecretKey& key, std::string_view context, ByteView plaintext,
   const SecretKey cipher_key = derive_key(key, "cipher");
   Bytes box(kNonceSize + size + kTagSize);
   std::copy(nonce.begin(), nonce.end(), box.begin());
-  // The text is encrypted in its place. One mark byte, then zeros (ISO/IEC 7816-4): the padding can
-  // then be removed without doubt.
+  // The text is encrypted in place. Padding is one mark byte, then zeros (ISO/IEC 7816-4), so that
+  // it can be removed unambiguously.
   std::uint8_t* const text = box.data() + kNonceSize;
   std::copy(plaintext.begin(), plaintext.end(), text);
   text[plaintext.size()] = 0x80;

@@ -16,7 +16,7 @@ using SecretKey = Digest;  ///< 32 secret bytes
 /// every message its own context (chain, sequence), so equal messages stay unlinkable.
 /// \param context  authenticated, not stored: `unseal` needs the same bytes
 /// \param padded_size  bytes, >= 1: the plaintext is padded to a multiple of it, so that the length
-///   reveals nothing finer
+///   reveals no more than that
 /// \return nonce, ciphertext and tag in one buffer
 /// \throws std::invalid_argument if padded_size is 0
 [[nodiscard]] Bytes seal(const SecretKey& key, std::string_view context, ByteView plaintext,
@@ -56,7 +56,7 @@ class SystemEntropy final : public Entropy {
   [[nodiscard]] SecretKey secret(std::string_view purpose) override;
 };
 
-/// Depends on a seed and the purpose alone. For simulated studies and tests.
+/// Depends only on a seed and the purpose; for simulated studies and tests.
 class SeededEntropy final : public Entropy {
  public:
   explicit SeededEntropy(std::uint64_t seed) : seed_(seed) {}

@@ -54,19 +54,19 @@ bool is_name_of_draft(std::string_view name) {
          number_in<unsigned>(name.substr(dash + 1));
 }
 
-/// \return false if another program has the lock; true as well where the disk knows no locks
+/// \return false if another program has the lock; also true on file systems without locks
 bool lock(int descriptor) {
   return ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
 }
 
-/// Removes a draft of this user that no living program holds.
+/// Removes a draft of this user whose process has ended.
 void remove_if_stale(const fs::path& draft) {
   const int descriptor = ::open(draft.c_str(), kToRead);
   if (descriptor < 0) return;
   struct stat status {};
   const bool is_own = ::fstat(descriptor, &status) == 0 && status.st_uid == ::geteuid();
   if (is_own && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
-    std::error_code ignored;  // what stays does no harm
+    std::error_code ignored;  // a leftover draft does no harm
     fs::remove_all(draft, ignored);
   }
   ::close(descriptor);
@@ -111,7 +111,7 @@ Draft::Draft(fs::path place, Kind kind, FileMode mode) : place_(std::move(place)
   }
 }
 
-/// \return false if the name was taken, or another program took the draft for one that nobody holds
+/// \return false if the name exists already, or another process removed the draft as stale
 bool Draft::make(Kind kind, FileMode mode) {
   path_ = new_name(place_);
   if (kind == Kind::folder) {
@@ -160,7 +160,7 @@ void Draft::replace() {
   sync_folder(place_.parent_path());
 }
 
-bool Draft::take_free_place() {
+bool Draft::rename_if_free() {
   if (!move_to_free_name(path_, place_)) return false;
   path_.clear();
   return true;

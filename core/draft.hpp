@@ -1,4 +1,4 @@
-/// \file Files and folders that are made beside their place, and get its name when they are whole.
+/// \file Files and folders that are written under a temporary name and renamed when complete.
 #pragma once
 
 #include "core/bytes.hpp"
@@ -8,25 +8,26 @@
 
 namespace touchtrial {
 
-/// Refuses a link in a file's place, which may lead to any other file. Links to folders above it
-/// are the user's own.
+/// Refuses a symbolic link in place of a file, because it may lead to any other file. Links among
+/// the parent folders are allowed.
 /// \throws FileError naming the link and where it leads
 void refuse_link(const std::filesystem::path& path);
 
 /// Makes the names in a folder survive a power cut.
 void sync_folder(const std::filesystem::path& folder) noexcept;
 
-/// Something new in the folder of its future place. It is locked as long as its maker lives, and
-/// named ".touchtrial-PROCESS-NUMBER.tmp": the first draft that a program makes in a folder removes
-/// those there whose makers were killed. One thread at a time may use an object.
+/// A temporary file or folder in the folder of its final path, named
+/// ".touchtrial-PROCESS-NUMBER.tmp". It is locked as long as its process lives: the first draft
+/// that a process makes in a folder removes the drafts of killed processes there. One thread at a
+/// time may use an object.
 class Draft {
  public:
   enum class Kind { file, folder };
 
-  /// Makes it, empty.
-  /// \throws FileError with the system's reason; nothing is left then
+  /// Creates it, empty.
+  /// \throws FileError with the system's reason; nothing is left behind
   Draft(std::filesystem::path place, Kind kind, FileMode mode = FileMode::everyone);
-  /// Removes it, and what is in a folder, unless it took its place.
+  /// Removes the draft, with the content of a folder, unless it was renamed.
   ~Draft();
   Draft(const Draft&) = delete;
   Draft& operator=(const Draft&) = delete;
@@ -38,12 +39,13 @@ class Draft {
   /// Writes the whole file and syncs it.
   /// \throws FileError with the system's reason
   void write(ByteView content) const;
-  /// Takes the place, also of a file that has it.
+  /// Renames the draft to its final path, replacing a file that exists there.
   /// \throws FileError with the system's reason
   void replace();
-  /// \return whether the place was free, and is taken now
+  /// Renames the draft to its final path unless something exists there.
+  /// \return whether it was renamed
   /// \throws FileError with the system's reason
-  [[nodiscard]] bool take_free_place();
+  [[nodiscard]] bool rename_if_free();
 
  private:
   [[nodiscard]] bool make(Kind kind, FileMode mode);

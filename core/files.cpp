@@ -39,7 +39,7 @@ class Descriptor {
   int number_;
 };
 
-/// For file systems that cannot rename to free names alone: something empty claims the name first.
+/// For file systems without an exclusive rename: an empty file or folder claims the name first.
 /// \return 0, or -1 with errno
 int claim_and_rename(const std::filesystem::path& file, const std::filesystem::path& name) {
   std::error_code ignored;

@@ -19,7 +19,7 @@ enum class FileMode { everyone, owner_only };
 [[nodiscard]] Bytes read_file(const std::filesystem::path& path,
                               std::uintmax_t limit_bytes = std::uintmax_t{1} << 32U);
 
-/// For files that are the program's own by name, as keys are; core/outputs.hpp writes the others.
+/// For files whose names belong to the program, such as keys; core/outputs.hpp writes the others.
 /// Writes a draft, syncs it, and renames it over the target: after a crash the file has its old or
 /// its new content, never half of it. Refuses links, devices and pipes.
 /// \throws FileError with the system's reason
@@ -46,10 +46,10 @@ void rename_file(const std::filesystem::path& file, const std::filesystem::path&
 [[nodiscard]] bool move_to_free_name(const std::filesystem::path& file,
                                      const std::filesystem::path& name);
 
-/// Whether the path exists; false as well if the system does not let the program look.
+/// Whether the path exists; also false if access is denied.
 [[nodiscard]] bool is_there(const std::filesystem::path& path) noexcept;
 
-/// A file mapped read-only: the system reads only those pages from disk that the program touches.
+/// A file mapped read-only: only pages that are accessed are read from disk.
 class MappedFile {
  public:
   MappedFile() = default;
@@ -66,7 +66,7 @@ class MappedFile {
   std::size_t size_ = 0;
 };
 
-/// The file of this name beside a database, beside the one that a link leads to if it is a link.
+/// The file of this name beside a database; links to the database are followed first.
 [[nodiscard]] std::filesystem::path beside_database(const std::filesystem::path& database,
                                                     const char* suffix);
 

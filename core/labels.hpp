@@ -1,4 +1,4 @@
-/// \file What names may be, so that tables, screens and other programs can show them.
+/// \file Which labels are allowed, so that tables, screens and other programs can show them.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@ namespace touchtrial {
 
 [[nodiscard]] bool is_utf8(std::string_view text);
 
-/// The letters of a text that other letters can look like: those with capitals.
+/// Which alphabets the letters of a text belong to; only alphabets with capitals have look-alikes.
 struct Alphabets {
   bool latin = false;
   bool other = false;              ///< Greek, Cyrillic, ...
-  bool one_word_has_both = false;  ///< so that nobody can tell which letters it has
+  bool one_word_has_both = false;  ///< so that readers cannot distinguish them
 };
 
 [[nodiscard]] Alphabets alphabets_of(std::string_view text);
@@ -25,11 +25,11 @@ struct Alphabets {
 /// of a sentence that starts with the label; empty if they can. A label has 1 to 64 bytes.
 [[nodiscard]] std::string fault_of_label(const std::string& label);
 
-/// What a person should look at if labels of one study have Latin letters, and others those of
-/// another alphabet, of which skeleton_of compares only some; else empty.
+/// A remark if some labels of a study have Latin letters and others those of another alphabet,
+/// because skeleton_of knows only some of the look-alikes; else empty.
 [[nodiscard]] std::string remark_on_alphabets(const std::vector<std::string>& labels);
 
-/// The text that one remark is about several of: the first by name, the others by number.
+/// Several texts in short: the first, and how many more there are.
 /// \param texts  at least one
 [[nodiscard]] std::string first_of(const std::vector<std::string>& texts);
 

@@ -26,7 +26,7 @@ template <typename Value, std::size_t size>
   return "unknown";
 }
 
-/// \return the value that a word stands for; nothing for a word that is not in the table
+/// \return the value of a word; nothing for a word that is not in the table
 template <typename Value, std::size_t size>
 [[nodiscard]] constexpr std::optional<Value> value_in(const std::array<Named<Value>, size>& table,
                                                       std::string_view name) noexcept {

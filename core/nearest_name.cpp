@@ -8,7 +8,7 @@
 namespace touchtrial {
 namespace {
 
-constexpr std::size_t kLongestName = 64;  // longer ones are no misspelling of any key
+constexpr std::size_t kLongestName = 64;  // longer texts are not misspelt keys
 
 char folded(char c) {
   if (c >= 'A' && c <= 'Z') return static_cast<char>(c - 'A' + 'a');

@@ -13,8 +13,7 @@
 namespace touchtrial {
 namespace {
 
-static_assert(std::endian::native == std::endian::little,
-              "the samples are written as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "samples are written in memory order");
 
 constexpr std::string_view kMagic("\x93NUMPY", 6);
 constexpr std::size_t kAlignment = 64;  // of the data, in bytes; the format prescribes it

@@ -21,7 +21,7 @@ constexpr const char* kMark = "user.touchtrial";
 
 struct FilesInTheWay {
   std::mutex mutex;
-  KeptNotice notice;
+  MovedAsideNotice notice;
 };
 
 FilesInTheWay& files_in_the_way() {
@@ -29,7 +29,7 @@ FilesInTheWay& files_in_the_way() {
   return files;
 }
 
-KeptNotice current_notice() {
+MovedAsideNotice current_notice() {
   const std::lock_guard lock(files_in_the_way().mutex);
   return files_in_the_way().notice;
 }
@@ -47,13 +47,13 @@ bool is_in_the_way(const fs::path& place) {
 }
 
 void move_out_of_the_way(const fs::path& place) {
-  const KeptNotice notice = current_notice();
+  const MovedAsideNotice notice = current_notice();
   if (!notice) refuse_place(place);
-  notice(place, keep_aside(place));
+  notice(place, move_aside(place));
 }
 
-/// Calls `replace` for an output of ours or a file with the same bytes, else `take_free` until the
-/// place was free: another program may fill it meanwhile.
+/// Calls `replace` for our own output or a file with the same bytes. Otherwise makes way and calls
+/// `take_free`, again if another process creates a file there in between.
 template <typename Replace, typename TakeFree>
 void take_place(const fs::path& place, const Digest& content, const Replace& replace,
                 const TakeFree& take_free) {
@@ -70,7 +70,7 @@ void take_place(const fs::path& place, const Digest& content, const Replace& rep
 
 }  // namespace
 
-void keep_files_in_the_way(KeptNotice notice) {
+void move_foreign_files_aside(MovedAsideNotice notice) {
   const std::lock_guard lock(files_in_the_way().mutex);
   files_in_the_way().notice = std::move(notice);
 }
@@ -96,11 +96,11 @@ void require_output_place(const fs::path& place) {
   if (is_in_the_way(place) && !current_notice()) refuse_place(place);
 }
 
-void make_way(const fs::path& place) {
+void clear_output_place(const fs::path& place) {
   if (is_in_the_way(place)) move_out_of_the_way(place);
 }
 
-fs::path keep_aside(const fs::path& place) {
+fs::path move_aside(const fs::path& place) {
   for (int number = 1;; ++number) {
     // A folder's name may end in a slash.
     fs::path kept = place.has_filename() ? place : place.parent_path();
@@ -112,11 +112,11 @@ fs::path keep_aside(const fs::path& place) {
 void write_output(const fs::path& place, ByteView content, FileMode mode) {
   Draft draft(place, Draft::Kind::file, mode);
   const Digest mark = sha256(content);
-  // Without a mark the file is not replaced without --force: nothing is lost.
+  // If marking fails, the file merely needs --force to be replaced later.
   static_cast<void>(::fsetxattr(draft.descriptor(), kMark, mark.data(), mark.size(), 0));
   draft.write(content);
   take_place(
-      place, mark, [&] { draft.replace(); }, [&] { return draft.take_free_place(); });
+      place, mark, [&] { draft.replace(); }, [&] { return draft.rename_if_free(); });
 }
 
 void write_output(const fs::path& place, std::string_view content, FileMode mode) {

@@ -17,7 +17,7 @@ void in_parallel(int jobs, std::size_t count, const std::function<void(std::size
   }
   const auto all = [&] { tbb::parallel_for(std::size_t{0}, count, work); };
   if (jobs == 0) return all();
-  // Those that the program may use: oneTBB prints a warning if it is asked for more.
+  // Limited to the cores available to this process: oneTBB warns if asked for more.
   tbb::task_arena arena(std::min(jobs, tbb::info::default_concurrency()));
   arena.execute(all);
 }

@@ -1,5 +1,5 @@
-/// \file Makes a key of a passphrase with Argon2id (RFC 9106) by libsodium. It takes time and
-/// memory on purpose: whoever tries passphrases needs both for each. All functions are thread-safe.
+/// \file Derives a key from a passphrase with Argon2id (RFC 9106) by libsodium. It takes time and
+///   memory on purpose: an attacker needs both for each guess. All functions are thread-safe.
 #pragma once
 
 #include "core/cipher.hpp"
@@ -22,7 +22,7 @@ struct PassphraseCost {
 };
 
 /// The range of a cost that key_of_passphrase accepts. Files of this program never cost more than
-/// the default: who forged one that does would have every command work for hours.
+/// the default, so a forged file cannot make every command run for hours.
 inline constexpr PassphraseCost kMinPassphraseCost{1, std::uint64_t{8} << 10U};
 inline constexpr PassphraseCost kMaxPassphraseCost{};
 [[nodiscard]] bool is_in_range(const PassphraseCost& cost) noexcept;

@@ -75,7 +75,7 @@ template <typename To, typename From>
   return to;
 }
 
-/// A temporary plane that has the wanted type already is passed on.
+/// A temporary plane of the wanted type is moved.
 template <typename Sample>
 [[nodiscard]] Plane<Sample> converted(Plane<Sample>&& plane) {
   return std::move(plane);

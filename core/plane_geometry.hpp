@@ -1,4 +1,4 @@
-/// \file The one place where pixels and millimetres meet.
+/// \file Conversion between pixels and millimetres.
 #pragma once
 
 #include "core/vec.hpp"

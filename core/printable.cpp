@@ -56,7 +56,7 @@ std::string escaped(unsigned byte) {
   return {'\\', 'x', kDigits[byte >> 4U], kDigits[byte & 0xfU]};
 }
 
-/// "\u202e": so JSON writes it too.
+/// "\u202e", as in JSON.
 std::string escaped_unit(unsigned code) {
   return {'\\',
           'u',
@@ -80,7 +80,7 @@ bool is_control(unsigned code) {
 
 /// A control of the second set (U+0080 to U+009F), which some terminals obey; a separator of lines;
 /// or a control of direction, which shows text in another order than it has (Unicode 15, 23.2).
-bool misleads(unsigned code) {
+bool is_misleading(unsigned code) {
   return (code >= 0x80 && code < 0xa0) || code == 0x61c || code == 0x200e || code == 0x200f ||
          (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
 }
@@ -104,7 +104,7 @@ std::string printable(std::string_view text, Controls controls) {
       clean += escaped(byte_at(text, 0));
     } else if (is_control(code)) {
       clean += shown_control(code, controls);
-    } else if (misleads(code)) {
+    } else if (is_misleading(code)) {
       clean += escaped_unit(code);
     } else {
       clean += text.substr(0, length);

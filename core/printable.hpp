@@ -1,5 +1,5 @@
 /// \file Makes texts of people and files safe for terminals, tables and pages: no text can move the
-/// cursor, colour the screen, or show itself in another order than it has.
+///   cursor, colour the screen, or change the order of its display.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace touchtrial {
 
-/// What becomes of ASCII's control characters (below U+0020, and U+007F).
+/// How ASCII's control characters (below U+0020, and U+007F) are shown.
 enum class Controls {
   shown,      ///< line feeds and tabs stay, all others become `\uNNNN`
   as_spaces,  ///< all of them become spaces

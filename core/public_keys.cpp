@@ -38,7 +38,7 @@ Bytes seal_box(const PublicKey& receiver, std::string_view context, ByteView pla
   const int failed =
       crypto_box_easy(box.data() + sender.public_half.size(), plaintext.data(), plaintext.size(),
                       nonce.data(), receiver.data(), sender.secret_half.data());
-  if (failed != 0) throw std::invalid_argument("seal_box: the receiver's key is not one");
+  if (failed != 0) throw std::invalid_argument("seal_box: invalid public key");
   return box;
 }
 

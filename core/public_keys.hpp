@@ -10,9 +10,9 @@
 
 namespace touchtrial {
 
-using PublicKey = Digest;  ///< 32 bytes that anybody may know
+using PublicKey = Digest;  ///< 32 bytes, not secret
 
-/// Opens what others sealed with the public half.
+/// Opens boxes that were sealed with the public half.
 struct BoxKeys {
   PublicKey public_half{};
   SecretKey secret_half{};
@@ -21,7 +21,7 @@ struct BoxKeys {
 /// The keys that follow from a seed.
 [[nodiscard]] BoxKeys box_keys(const SecretKey& seed);
 
-/// Seals for the holder of the other half alone; the sealer cannot open it again.
+/// Seals a text for the holder of the secret half; the sealer cannot open it again.
 /// \param context  `open_box` needs the same bytes
 /// \param ephemeral  fresh secret bytes, or a secret function of the plaintext; never used twice
 ///   for different plaintexts
@@ -47,7 +47,7 @@ class Signer {
   std::array<std::uint8_t, 64> secret_half_{};
 };
 
-/// What the investigator signs of a station: the study, the station's name, and its public half.
+/// The bytes that the investigator signs for a station: study, station name, and public key.
 [[nodiscard]] Bytes station_statement(std::string_view study_id, std::string_view name,
                                       const PublicKey& station);
 

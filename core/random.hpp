@@ -19,8 +19,8 @@ class RandomStream {
   /// Each (seed, purpose, index) gives a different stream. Streams of different purposes are
   /// unrelated, so an additional draw from one leaves the others unchanged.
   RandomStream(std::uint64_t seed, std::string_view purpose, std::uint64_t index = 0);
-  /// The same from 32 secret bytes in place of a seed, for draws that nobody else may repeat.
-  /// Seeded with 256 bits; draws of one stream reveal nothing about another.
+  /// The same from 32 secret bytes in place of a seed, for draws that must be unpredictable. Seeded
+  /// with 256 bits; draws of one stream reveal nothing about another.
   RandomStream(const Digest& secret, std::string_view purpose, std::uint64_t index = 0);
 
   /// The next 64 random bits.
@@ -30,7 +30,7 @@ class RandomStream {
   /// \param bound  >= 1
   [[nodiscard]] std::uint64_t below(std::uint64_t bound) {
     // The lowest 2^64 mod bound draws are rejected, so that every number is equally likely. They
-    // are less than bound, so that hardly any draw needs this division.
+    // are less than bound, so that few draws need this division.
     std::uint64_t draw = bits();
     if (draw < bound) {
       const std::uint64_t excess = (0 - bound) % bound;

@@ -3,9 +3,9 @@
 
 namespace touchtrial {
 
-/// Lets libsodium choose the fastest of its implementations that this processor has; until then it
-/// uses portable ones, which give the same bytes. Every function of this folder that calls
-/// libsodium calls it first. Costs nothing after the first time; thread-safe.
+/// Lets libsodium choose its fastest implementations for this processor; until then it uses
+/// portable ones, which give the same bytes. Every function of this folder that calls libsodium
+/// calls it first. Later calls cost nothing; thread-safe.
 /// \return whether libsodium works, its random generator included
 bool prepare_sodium() noexcept;
 

@@ -13,7 +13,7 @@ namespace touchtrial {
 namespace {
 
 /// Letters without a capital that look like Latin ones, or whose capitals do. The Greek m is also
-/// the sign of a millionth, and nobody reads um for mm.
+/// the prefix micro, and um must not read as mm.
 constexpr std::u32string_view kCyrillicAndGreek =
     U"\u0430\u0432\u0435\u043a\u043c\u043d\u043e\u0440\u0441\u0442\u0443\u0445\u0455\u0456\u0458"
     U"\u0501\u04bb\u051b\u051d\u03b1\u03b2\u03b5\u03b6\u03b7\u03b9\u03ba\u03bd\u03bf\u03c1\u03c4"
@@ -21,7 +21,7 @@ constexpr std::u32string_view kCyrillicAndGreek =
 constexpr std::string_view kLatinForThem = "abekmhopctyxsijdhqwabezhiknoptyx";
 static_assert(kCyrillicAndGreek.size() == kLatinForThem.size());
 
-/// Puts Latin letters in the place of others that look like them.
+/// Replaces look-alikes by their Latin letters.
 std::string in_latin(const std::string& text) {
   std::string latin;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -43,7 +43,7 @@ std::string in_latin(const std::string& text) {
 }  // namespace
 
 std::string skeleton_of(const std::string& name) {
-  // Taken apart, a letter is the same whatever its accents are.
+  // Decomposition separates a letter from its accents.
   constexpr int kFolded = UTF8PROC_STABLE | UTF8PROC_DECOMPOSE | UTF8PROC_COMPAT |
                           UTF8PROC_CASEFOLD | UTF8PROC_IGNORE | UTF8PROC_LUMP;
   utf8proc_uint8_t* bytes = nullptr;

@@ -13,7 +13,7 @@
 
 namespace touchtrial {
 
-/// The number that a whole text is, whatever the locale; nothing if it is anything else.
+/// Parses a whole text as a number, whatever the locale; nothing if it is not a number.
 template <typename Number>
 [[nodiscard]] std::optional<Number> number_in(std::string_view text) {
   Number number{};
@@ -23,16 +23,16 @@ template <typename Number>
   return number;
 }
 
-/// What is left of a name without what a reader does not see, or cannot say aloud: capitals, blanks
-/// and hyphens of any kind, the way in which accents are encoded, wide and other forms of a letter,
-/// Cyrillic and Greek letters that look like Latin ones, or whose capitals do.
-/// Names of equal skeletons look alike, and some file systems take them for one.
+/// A name reduced to what a reader distinguishes. Ignored are capitals, blanks and hyphens of any
+/// kind, the encoding of accents, wide and other forms of a letter, and Cyrillic and Greek letters
+/// that look like Latin ones, or whose capitals do. Names of equal skeletons look alike, and some
+/// file systems do not distinguish them.
 /// \return the text itself if it is not UTF-8
 /// Source: Unicode Standard Annex 15 and its case folding.
 [[nodiscard]] std::string skeleton_of(const std::string& name);
 
-/// Whether spreadsheets, pandas or R read a text as a missing value or a truth value, unless they
-/// are told otherwise: NA, NaN, NULL, None, TRUE and the like, in any capitals.
+/// Whether spreadsheets, pandas or R read a text as a missing value or a truth value, by default:
+/// NA, NaN, NULL, None, TRUE and the like, in any capitals.
 [[nodiscard]] bool is_read_as_missing(const std::string& text);
 
 /// Whether a spreadsheet takes a text for a formula, so that exports put an apostrophe before it:
@@ -55,7 +55,7 @@ template <typename Number>
 }
 
 /// Words with commas between them, for example "bark, brick and cork".
-/// \param last  stands before the last of several words, for example " and "
+/// \param last  the separator before the last of several words, for example " and "
 /// \param text_of  gives the text of an element: a function or a member
 template <typename Words, typename TextOf = std::identity>
 [[nodiscard]] std::string listed(const Words& words, std::string_view last = ", ",

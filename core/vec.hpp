@@ -1,4 +1,4 @@
-/// \file Small vectors of doubles. The names of variables tell the units.
+/// \file Small vectors of doubles. Variable names state the units.
 #pragma once
 
 #include <cmath>
@@ -30,8 +30,8 @@ struct Vec3 {
   friend constexpr bool operator==(Vec3, Vec3) noexcept = default;
 };
 
-/// A copy that is read from memory number by number. A processor waits where it reads in one piece
-/// what was just written in several, and compilers like to read two numbers at a time.
+/// A copy that is loaded number by number. Compilers like to load two numbers at once, and such a
+/// load stalls if the numbers were just stored separately (store forwarding).
 [[nodiscard]] inline Vec3 by_number(const Vec3& a) noexcept {
   const volatile Vec3& each = a;
   return {each.x, each.y, each.z};

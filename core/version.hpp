@@ -1,4 +1,4 @@
-/// \file The program's version, which every study records. It is that of CMakeLists.txt.
+/// \file The program's version, which every study records. CMakeLists.txt defines it.
 #pragma once
 
 #include <string_view>

@@ -17,30 +17,30 @@ namespace touchtrial::device {
 struct DeviceSample {
   Vec3 position_mm;
   Vec3 velocity_mm_s;
-  /// Counts the device's own readings: the same number again means that there is no newer one.
+  /// Counts the device's own readings; a repeated number means no newer reading.
   std::uint64_t sequence = 0;
   std::uint32_t buttons = 0;  ///< bit i is button i, set while it is down
   bool ready = true;          ///< homed and calibrated: the position is valid and force may be sent
-  /// The motors could not give all of the newest force: a limit of their own shortened it.
+  /// The motors could not exert the whole newest force because of their own limit.
   bool limited = false;
-  /// The force that the device says it exerted when it took this reading, N; nothing: it says none.
+  /// The exerted force that the device reports with this reading, N; nothing: not reported.
   std::optional<Vec3> delivered_n = std::nullopt;
 };
 
-/// The outcome of talking to a device inside the servo, where nothing may throw.
+/// The result of device calls inside the servo, where nothing may throw.
 enum class DeviceStatus { ok, stopped, fault };
 
-/// Why a device reported DeviceStatus::fault.
+/// The cause of DeviceStatus::fault.
 enum class DeviceFault {
   none,
   link_lost,     ///< unplugged, or no answer
-  bad_data,      ///< its answers make no sense
-  warm_motors,   ///< the vendor's library or the device says that its motors are too warm
+  bad_data,      ///< its answers are invalid
+  warm_motors,   ///< the vendor's library or the device reports that its motors are too warm
   limit_passed,  ///< the vendor's library stopped at a limit of force, velocity or impulse
   driver,        ///< any other failure of the vendor's library or the operating system
 };
 
-/// What a person still has to do before force may be sent.
+/// What a person must still do before force may be sent.
 enum class DeviceReadiness {
   ready,
   needs_homing,       ///< move the handle through its whole range until every axis is homed
@@ -51,8 +51,8 @@ enum class DeviceReadiness {
 };
 
 enum class WorkspaceShape {
-  box,        ///< everything between the two corners
-  ellipsoid,  ///< the one that touches the box from inside, for devices that reach a ball
+  box,        ///< the box between the two corners
+  ellipsoid,  ///< the ellipsoid inscribed in the box
 };
 
 /// Extent of the positions that a device can reach, in the device frame.
@@ -62,9 +62,8 @@ struct Workspace {
   WorkspaceShape shape = WorkspaceShape::box;
 };
 
-/// True newtons for one of the driver's, and true millimetres for one of the driver's, on each axis
-/// of the device frame; a lab's settings. A force is felt as `force` times what the driver was
-/// told.
+/// True newtons per driver's newton, and true millimetres per driver's millimetre, on each axis of
+/// the device frame; a lab's settings. The felt force is `force` times the commanded one.
 struct DeviceScale {
   Vec3 force = {1.0, 1.0, 1.0};
   Vec3 length = {1.0, 1.0, 1.0};
@@ -72,41 +71,41 @@ struct DeviceScale {
   friend bool operator==(const DeviceScale&, const DeviceScale&) = default;
 };
 
-/// What a session records of its device.
+/// The description of a device in a session's record.
 struct DeviceInfo {
   std::string name{};        ///< driver name, for instance "simulated"
   std::string serial{};      ///< empty if the device has none
   double max_force_n = 0.0;  ///< peak
   bool simulated = false;
-  double continuous_force_n = 0.0;  ///< which it can hold for ever; 0: no limit is known
-  double max_rate_hz = 1000.0;      ///< of servo ticks; a higher rate is of no use
-  std::string model{};              ///< as the device or its library gives it; may be empty
+  double continuous_force_n = 0.0;  ///< sustainable without time limit; 0: unknown
+  double max_rate_hz = 1000.0;      ///< of servo ticks; a higher rate has no benefit
+  std::string model{};              ///< as reported by the device or its library; may be empty
   std::string firmware{};           ///< version, likewise
-  /// Nothing: the device uses the plane frame and reaches all of any plane.
+  /// Nothing: the device uses the plane frame and reaches any plane completely.
   std::optional<Workspace> workspace = std::nullopt;
-  /// The texture is seen on a screen instead of felt: not blind, so only for pilot sessions and
+  /// The texture is shown on a screen instead of felt: not blind, so only for pilot sessions and
   /// demonstrations.
   bool visual = false;
-  /// The largest stiffness of a wall that it renders stably, as the maker states it; 0: not known.
+  /// The largest wall stiffness that it renders stably, as stated by the maker; 0: unknown.
   double max_stiffness_n_per_mm = 0.0;
   /// The largest damping that it renders stably, N s/mm, likewise.
   double max_damping_n_s_per_mm = 0.0;
-  /// The largest HapticDevice::support_force_n; a larger one is shortened to it.
+  /// The largest HapticDevice::support_force_n; larger ones are shortened.
   double max_support_n = 0.0;
-  /// Its positions come from encoders on an arm that a person holds, so they never stay the same to
-  /// the last bit while somebody presses (SafetyLimits::frozen_s). False for whatever a program or
-  /// a recording moves, and for the mouse, which a hand may hold still.
+  /// Positions come from encoders on a hand-held arm, so they always change slightly while a person
+  /// presses (SafetyLimits::frozen_s). False for motion from a program or a recording, and for the
+  /// mouse, which a hand may hold still.
   bool has_encoders = false;
-  DeviceScale scale{};    ///< that `open_device` applied; drivers leave it alone
-  std::string library{};  ///< version of the maker's library, as it gives it; may be empty
+  DeviceScale scale{};    ///< applied by `open_device`; not set by drivers
+  std::string library{};  ///< version of the maker's library, as reported; may be empty
 };
 
-/// A force-feedback device. The constructor opens it and throws DeviceError if it cannot; the
+/// A force-feedback device. The constructor opens it and throws DeviceError on failure; the
 /// destructor sends zero force and closes it.
 ///
-/// `read` and `write` belong to the servo thread alone and never block, allocate, lock, log or do
-/// I/O: a driver with a link talks to it on a thread of its own and exchanges data with the servo
-/// through a DeviceLink. All other functions may be called from any thread.
+/// `read` and `write` belong to the servo thread and never block, allocate, lock, log or do I/O: a
+/// driver with a link runs it on a separate thread and exchanges data with the servo through a
+/// DeviceLink. All other functions may be called from any thread.
 class HapticDevice {
  public:
   virtual ~HapticDevice() = default;
@@ -121,25 +120,25 @@ class HapticDevice {
   /// \param force_n  N, checked and limited by the servo
   [[nodiscard]] virtual DeviceStatus write(Vec3 force_n) noexcept = 0;
 
-  /// The force that carries what the hand would otherwise hold, the handle's and the arm's weight,
-  /// N, in the frame of the samples. The servo calls it after `read`, on its thread; the safety
-  /// chain limits it to DeviceInfo::max_support_n and adds it to the rendered force. A driver must
-  /// not add any force to what `write` is given. Where a maker's library does so by itself, the
-  /// driver checks that weight before force goes on, and `halt` and `fault` switch the motors off.
+  /// The force that compensates the weight of handle and arm, N, in the frame of the samples. The
+  /// servo calls it after `read`, on its thread; the safety chain limits it to
+  /// DeviceInfo::max_support_n and adds it to the rendered force. A driver must not add force to
+  /// the argument of `write`. If a maker's library does so itself, the driver checks that weight
+  /// before force is switched on, and `halt` and `fault` switch the motors off.
   [[nodiscard]] virtual Vec3 support_force_n(const DeviceSample& /*sample*/) noexcept { return {}; }
 
-  /// Zero force at once and until `rearm`, whatever `write` is given, and without the weight that a
+  /// Zero force at once and until `rearm`, regardless of `write`, and without the weight that a
   /// maker's library adds. Safe in a signal handler.
   virtual void halt() noexcept = 0;
-  /// Lets forces pass again after `halt`; a person decides it.
+  /// Enables forces again after `halt`; a person must decide this.
   virtual void rearm() noexcept = 0;
 
   [[nodiscard]] virtual DeviceFault fault() const noexcept { return DeviceFault::none; }
   [[nodiscard]] virtual DeviceReadiness readiness() const noexcept {
     return DeviceReadiness::ready;
   }
-  /// A person says that the arm is at its reset position (DeviceReadiness::needs_reset): wherever
-  /// it is now becomes that place. Does nothing while the device needs anything else, or nothing.
+  /// A person confirms that the arm is at its reset position (DeviceReadiness::needs_reset): its
+  /// current position becomes the reference. No effect in any other state.
   virtual void calibrate() noexcept {}
 };
 

@@ -31,7 +31,7 @@ template <typename Real>
 template <typename Real>
 [[nodiscard]] Plane<Real> edge_texture(const GreyImage& image, double divisor);
 
-/// T = I - 128: the participant feels the picture itself.
+/// T = I - 128: the picture itself is felt.
 /// \param image  not empty
 template <typename Real>
 [[nodiscard]] Plane<Real> luminance_texture(const GreyImage& image);

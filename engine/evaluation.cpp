@@ -15,8 +15,8 @@ namespace touchtrial::engine {
 namespace {
 
 constexpr int kGlcmSmallestSide = 2;
-/// Orders of larger images are evaluated one after the other, each by all cores: several at a time
-/// would take too much memory.
+/// Orders of larger images are evaluated one after the other, each on all cores, because several at
+/// a time would need too much memory.
 constexpr std::size_t kOneOrderFromPixels = std::size_t{4} << 20;
 
 void refuse_smaller(const GreyImage& image, int side, const std::string& purpose) {

@@ -32,7 +32,7 @@ Plane<double> normed_texture(const GreyImage& image, const ExtractionOptions& op
 }
 
 std::vector<SubBands> sub_band_levels(const GreyImage& image, int levels) {
-  std::vector<SubBands> bands;  // a list in braces would be copied
+  std::vector<SubBands> bands;  // an initializer list would be copied
   bands.push_back(daub4_sub_bands(image));
   while (static_cast<int>(bands.size()) < levels) {
     bands.push_back(daub4_sub_bands(bands.back().ll));
@@ -125,7 +125,7 @@ Extraction<Real> by_method(const GreyImage& image, const ExtractionOptions& opti
 }
 
 /// The default adaptive and fixed methods have kernels in float. In double the plain code below is
-/// the truth that the kernels are tested against.
+/// the reference for tests of the kernels.
 bool extracted_by_kernel(const GreyImage&, const ExtractionOptions&, const WantedPlanes&,
                          Extraction<double>&) {
   return false;
@@ -156,7 +156,7 @@ void add_by_products(const GreyImage& image, const WantedPlanes& wanted, Extract
   }
 }
 
-/// What to ask the method for: not the planes that have to be those of the control.
+/// The planes wanted from the method itself, without those that are made from the control.
 WantedPlanes wanted_of_method(const ExtractionOptions& options, WantedPlanes wanted) {
   if (options.control != Control::none) wanted.picture = wanted.force = false;
   return wanted;

@@ -51,7 +51,7 @@ struct Extraction {
 /// \param image  8-bit grey, at least 1 x 1
 /// \throws std::invalid_argument if the image is empty, if a parameter is out of range or NaN, or
 ///   if tv-gabor chooses its component automatically and a side of the image is below 3 pixels
-/// Thread-safe. It is no error if tv-gabor stops at max_steps: see Extraction::converged.
+///   Thread-safe. tv-gabor stopping at max_steps is not an error: see Extraction::converged.
 template <typename Real>
 [[nodiscard]] Extraction<Real> extract_texture(const GreyImage& image,
                                                const ExtractionOptions& options,

@@ -44,7 +44,7 @@ enum class Parameter {
 /// The methods that have a parameter, in the order of the enumeration.
 [[nodiscard]] std::vector<Method> methods_with(Parameter parameter);
 
-/// The normalisation of the fractional mask. It decides how strong a texture is.
+/// The normalisation of the fractional mask. It determines the strength of a texture.
 enum class Norm {
   additive,  ///< T itself
   sum,  ///< T / S_K: the classical mask divided by its sum; up to (1 - S_K) / S_K times the image
@@ -98,7 +98,7 @@ struct GaborComponent {
 };
 
 struct TvGaborOptions {
-  /// Beyond these limits the texture takes up the whole image, or is too weak to be felt.
+  /// Beyond these limits the texture contains the whole image, or is too weak to be felt.
   static constexpr double kMinLambda = 1e-6;
   static constexpr double kMaxLambda = 1e6;
 
@@ -138,7 +138,7 @@ struct ExtractionOptions {
   friend bool operator==(const ExtractionOptions&, const ExtractionOptions&) = default;
 };
 
-/// Refuses without an image what extract_texture() would refuse. Ignores the parameters that the
+/// Checks, without an image, what extract_texture() would check. Ignores the parameters that the
 /// method does not have.
 /// \throws std::invalid_argument "<parameter>: must be <range>, not <value>"
 void check_options(const ExtractionOptions& options);

@@ -1,8 +1,8 @@
 /// \file Texture by the Gruenwald-Letnikov fractional difference in eight directions, and its
 /// normalisations. Source: docs/method.md, "Extraction" and "Options".
 ///
-/// The weights are c_0 = 1, c_k = c_{k-1} (k - 1 - v) / k. Their sum
-/// S_K = c_0 + .. + c_K = (1 - v) (1 - v/2) .. (1 - v/K) is what the mask leaves of a constant.
+/// The weights are c_0 = 1, c_k = c_{k-1} (k - 1 - v) / k. Their sum S_K = c_0 + .. + c_K = (1 - v)
+/// (1 - v/2) .. (1 - v/K) is the response of the mask to a constant.
 #pragma once
 
 #include "core/plane.hpp"

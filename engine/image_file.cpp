@@ -14,9 +14,8 @@
 namespace touchtrial::engine {
 namespace {
 
-/// Up to this size a file is read as a whole, which turns a failing disk into an error. A larger
-/// file is mapped: if it is no picture, or contains only a small one, only the few pages that are
-/// checked are read.
+/// Up to this size a file is read as a whole, so that a failing disk is an error. A larger file is
+/// mapped: if it is not a picture, or contains only a small one, only a few pages are read.
 constexpr std::uintmax_t kMaxReadWhole = std::uintmax_t{1} << 26U;
 
 GreyImage read_kind(ByteView file, GreyScale& scale, ImageNotes& notes) {
@@ -37,8 +36,8 @@ GreyImage read_kind(ByteView file, GreyScale& scale, ImageNotes& notes) {
   throw std::logic_error("an image kind without a reader");
 }
 
-/// Refuses 16-bit samples that leave most of their range empty: nobody notices how few grey levels
-/// are left. A picture alone does not tell how many bits its camera has.
+/// Refuses 16-bit samples that use little of their range, because few grey levels would remain
+/// unnoticed. The camera's number of bits cannot be read from the picture.
 void check_range(const GreyScale& scale) {
   const WideSamples& samples = scale.wide();
   const int used = samples.bits();
@@ -69,7 +68,7 @@ Picture decode_file(ByteView file, const SampleScale& samples) {
   GreyScale scale(samples);
   picture.grey = read_kind(file, scale, picture.notes);
   check_range(scale);
-  // Of a picture that could be read: what follows a damaged one's start may be long.
+  // Only of a readable picture, because the notes of a damaged one may be unbounded.
   const ImageNotes stated = notes_of_image(file);
   picture.notes.orientation = stated.orientation;
   picture.notes.pixels_per_mm = stated.pixels_per_mm;
@@ -87,7 +86,7 @@ FileError error_about(const std::string& name, const std::string& what, const st
   return FileError(one_line(name + ": " + what + "; " + remedy));
 }
 
-/// What `decode` returns; its faults get the file's name.
+/// Calls `decode`, and adds the file's name to its faults.
 template <typename Decode>
 auto named(const std::string& name, const Decode& decode) {
   try {
@@ -135,7 +134,7 @@ std::pair<int, int> size_of_image(const std::filesystem::path& path) {
     const MappedFile file(path);
     if (kind_of_image(file.bytes()) == ImageKind::png) return size_of_png(file.bytes());
   } catch (const ImageFault&) {
-    // Reading it says what is wrong.
+    // Reading it reports the fault.
   }
   const GreyImage image = read_grey_image(path);
   return {image.width(), image.height()};

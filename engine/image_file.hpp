@@ -17,18 +17,18 @@ namespace touchtrial::engine {
 /// Larger images are refused by their header, before memory is allocated.
 inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 28;
 
-/// A picture as it was read.
+/// A decoded picture.
 struct Picture {
   GreyImage grey;
   ImageNotes notes;
 };
 
-/// Below this, samples of 16 bits are those of a camera or a scanner of 8 to 14 bits, and few grey
-/// levels would be left of them.
+/// Below this maximum, 16-bit samples are from a camera or scanner of 8 to 14 bits, and few grey
+/// levels would remain.
 inline constexpr std::uint32_t kMinMaxWideSample = 1U << 14U;
 
-/// How the samples of a picture of more than 8 bits become grey levels. All pictures of a set take
-/// the same.
+/// The conversion of samples of more than 8 bits to grey levels, the same for all pictures of a
+/// set.
 struct SampleScale {
   /// 9 to 16: 16-bit samples lie in that many of their lowest bits; 0: in all of them.
   int bits = 0;
@@ -40,37 +40,37 @@ struct SampleScale {
 /// Reads a picture as 8-bit grey: 16-bit samples become floor(v / 257 + 0.5), alpha is composited
 /// on black, colour becomes floor((299 R + 587 G + 114 B + 500) / 1000). PGM and PPM samples of any
 /// other maximum become floor(v * 255 / maximum + 0.5), and so do 16-bit samples in fewer bits. The
-/// floating-point samples of a TIFF are heights h of the range [a, b], and become
-/// floor(255 (h - a) / (b - a) + 0.5), from 0 to 255. If a file has several pictures, the first
-/// is read that is no reduced copy. Orientation tags (Exif, TIFF), colour profiles and gamma are
-/// ignored: the samples count as they are stored.
+/// floating-point samples of a TIFF are heights h of the range [a, b], and become floor(255 (h - a)
+/// / (b - a) + 0.5), from 0 to 255. If a file has several pictures, the first that is not a reduced
+/// copy is read. Orientation tags (Exif, TIFF), colour profiles and gamma are ignored: the samples
+/// count as they are stored.
 /// \throws FileError if the file is missing, truncated, not an image of a known kind, zero-sized or
 ///   of an unsupported sample type, if it has more than kMaxImagePixels pixels or a side of more
 ///   than a million, if the decoder finds its data damaged, if its 16-bit samples are below
-///   kMinMaxWideSample but not 0 and `scale.bits` is 0, or do not fit into `scale.bits` (but for
-///   one in a thousand), or if a height is a gap
-/// Prints nothing, even if the decoder complains. Thread-safe. A file over 64 MiB is mapped, and
-/// must not become shorter meanwhile; its cost depends on the picture, not on the size of the file.
+///   kMinMaxWideSample but not 0 and `scale.bits` is 0, or do not fit into `scale.bits` (except one
+///   in a thousand), or if a height is a gap Prints nothing, even if the decoder does. Thread-safe.
+///   A file over 64 MiB is mapped, and must not become shorter meanwhile; its cost depends on the
+///   picture, not on the size of the file.
 [[nodiscard]] Picture read_picture(const std::filesystem::path& path,
                                    const SampleScale& scale = {});
 /// Its grey levels.
 [[nodiscard]] GreyImage read_grey_image(const std::filesystem::path& path);
 
-/// Whether a file begins like a PNG, JPEG, TIFF or GIF; two bytes, as of the other kinds, prove
-/// nothing. A file that cannot be read begins like none.
+/// Whether a file begins like a PNG, JPEG, TIFF or GIF; the two-byte signatures of other kinds are
+/// too short to count. False for an unreadable file.
 [[nodiscard]] bool begins_like_image(const std::filesystem::path& path);
 
-/// Width and height of a picture, pixels. Takes a moment for a PNG, whose header alone is read, and
-/// as long as read_grey_image for other kinds.
+/// Width and height of a picture, pixels. Fast for a PNG, of which only the header is read; as slow
+/// as read_grey_image for other kinds.
 /// \throws as read_grey_image
 [[nodiscard]] std::pair<int, int> size_of_image(const std::filesystem::path& path);
 
 /// The same as read_picture from a file's bytes.
-/// \param name  stands for the path in messages
+/// \param name  used as the path in messages
 [[nodiscard]] Picture decode_picture(ByteView file, const std::string& name,
                                      const SampleScale& scale = {});
 
-/// Where a picture that has transparent pixels is opaque: 255 there, and 0 elsewhere.
+/// The opaque part of a picture with transparent pixels: 255 there, and 0 elsewhere.
 /// \throws as decode_picture
 [[nodiscard]] GreyImage opacity_of(ByteView file, const std::string& name);
 

@@ -22,14 +22,14 @@ bool is_near(double pixels_per_mm, double dots_per_inch) {
 
 std::optional<double> resolution(double x, double y, double unit_mm) {
   const bool is_square = std::abs(x - y) <= 0.01 * std::max(x, y);
-  // A pixel below 1 um or above 100 mm is no measurement.
+  // Pixel sizes below 1 um or above 100 mm are implausible.
   if (!is_square || !(x / unit_mm >= 0.01) || !(x / unit_mm <= 1000.0)) return std::nullopt;
-  // Programs write these when they do not know.
+  // Defaults of programs for an unknown resolution.
   if (is_near(x / unit_mm, 72.0) || is_near(x / unit_mm, 96.0)) return std::nullopt;
   return x / unit_mm;
 }
 
-/// Whether Exif notes have what only a camera knows.
+/// Whether Exif data contain an exposure, which only a camera writes.
 bool has_exposure(ByteView file, const TiffDirectory& directory) {
   const std::uint32_t at = directory.value(TiffTag::exif_directory, 0);
   if (at == 0) return false;
@@ -40,7 +40,7 @@ bool has_exposure(ByteView file, const TiffDirectory& directory) {
       [&](TiffTag tag) { return exif.has(tag); });
 }
 
-/// Who made a picture file, as far as it decides what its resolution means.
+/// The maker of a picture file, which determines the meaning of its resolution.
 enum class Maker {
   unknown,
   named,  ///< a camera or a scanner
@@ -53,8 +53,8 @@ Maker maker_of(ByteView file, const TiffDirectory& directory) {
   return is_named ? Maker::named : Maker::unknown;
 }
 
-/// A camera's resolution says nothing about the object. Cameras, and programs that develop their
-/// pictures, write 180, 240 or 350 whatever it is, to which scanners are hardly ever set; and 300.
+/// A camera's resolution is unrelated to the object. Cameras and their software always write 180,
+/// 240 or 350, which scanners hardly ever use, or 300.
 void weigh_resolution(Maker maker, ImageNotes& notes) {
   if (!notes.pixels_per_mm) return;
   const auto is = [&](double dots) { return is_near(*notes.pixels_per_mm, dots); };
@@ -89,7 +89,7 @@ void take_exif(ByteView exif, ImageNotes& notes, Maker& maker) {
     notes.has_one_bit |= said.has_one_bit;
     if (said.pixels_per_mm) notes.pixels_per_mm = said.pixels_per_mm;
   } catch (const ImageFault&) {
-    // Damaged notes count as absent; the rest of the file may still have some.
+    // Damaged metadata count as absent; other parts of the file may still have some.
   }
 }
 
@@ -149,7 +149,7 @@ void take_notes(ByteView file, ImageNotes& notes, Maker& maker) {
       return take_bmp(file, notes);
     case ImageKind::gif:
     case ImageKind::pnm:
-      return;  // these files have no place for notes
+      return;  // these formats have no metadata
   }
 }
 
@@ -161,7 +161,7 @@ ImageNotes notes_of_image(ByteView file) {
   try {
     take_notes(file, notes, maker);
   } catch (const ImageFault&) {
-    // Notes before the damage stay valid.
+    // Metadata before the damage stay valid.
   }
   weigh_resolution(maker, notes);
   if (notes.orientation < 1 || notes.orientation > 8) notes.orientation = 1;
@@ -178,17 +178,16 @@ std::vector<std::string> remarks_on(const ImageNotes& notes) {
   std::vector<std::string> remarks;
   if (notes.orientation != 1) {
     remarks.emplace_back(
-        "is used as it is stored, turned or mirrored; turn it upright and save it again, or import "
-        "it, which does that");
+        "is stored rotated or mirrored, and used as stored; turn it upright and save it again, or "
+        "import it");
   }
   if (notes.has_one_bit) {
     remarks.emplace_back(
         "has 1 bit a pixel, black or white; scan or export it in grey if it is a photograph");
   }
   if (notes.pictures > 1) {
-    remarks.push_back(
-        "holds " + std::to_string(notes.pictures) +
-        " pictures, and the first is used; save the one you want in a file of its own");
+    remarks.push_back("holds " + std::to_string(notes.pictures) +
+                      " pictures, and the first is used; save the one you want as a separate file");
   }
   if (notes.transparent_share > 0.0) {
     remarks.push_back(

@@ -1,5 +1,5 @@
-/// \file What a picture file says of itself, and what its readers find besides grey levels.
-/// Source: Exif 2.32, TIFF 6.0, PNG (pHYs, eXIf), JFIF 1.02.
+/// \file A picture file's metadata, and findings of its readers besides grey levels. Source: Exif
+/// 2.32, TIFF 6.0, PNG (pHYs, eXIf), JFIF 1.02.
 #pragma once
 
 #include "core/bytes.hpp"
@@ -17,14 +17,14 @@ struct ImageNotes {
   /// anticlockwise; 2, 4, 5 and 7 are mirrored as well.
   int orientation = 1;
   /// Of the photographed object. Nothing if the file states no resolution, different ones for the
-  /// two axes, or 72 or 96 dots per inch, which programs write when they do not know it; and
-  /// nothing if a camera took the picture, which cannot know it, or for 180, 240 or 350.
+  /// two axes, or 72 or 96 dots per inch, which are defaults for an unknown resolution; also
+  /// nothing for a camera's picture, or for 180, 240 or 350.
   std::optional<double> pixels_per_mm;
-  /// The dots per inch that a camera wrote; nothing if it is no camera's, or it wrote none.
+  /// The dots per inch that a camera wrote; nothing if it is not from a camera, or it wrote none.
   std::optional<double> camera_dpi;
   bool has_one_bit = false;  ///< a pixel: black or white, with no grey between
 
-  // What follows is known only once the picture is decoded.
+  // The members below are set only when the picture is decoded.
   int pictures = 1;                ///< in the file, without reduced copies; the first one is read
   double transparent_share = 0.0;  ///< of the pixels; they are composited on black
   bool lacks_end = false;          ///< no end marker follows the last pixel
@@ -42,8 +42,8 @@ struct ImageNotes {
 /// A number with three digits, which are enough for advice.
 [[nodiscard]] std::string rounded(double number);
 
-/// What a person should know before the picture is used, each the rest of a sentence that starts
-/// with the file's name, with the remedy. Nothing about its resolution.
+/// Remarks to read before using the picture, each the rest of a sentence that starts with the
+/// file's name, with the remedy. Not about its resolution.
 [[nodiscard]] std::vector<std::string> remarks_on(const ImageNotes& notes);
 
 /// Turns and mirrors a picture so that it is upright.

@@ -25,8 +25,8 @@ std::string trace_of(const TrialId& id) {
   return "trace of trial " + std::to_string(id.second);
 }
 
-/// The signatures of one file chain. Where not everything is checked, those of the last event,
-/// which vouches for the events before it, and of unblindings.
+/// Checks the signatures of one file chain. A partial check covers the last event, which vouches
+/// for the events before it, and unblindings.
 class SignatureCheck {
  public:
   explicit SignatureCheck(TraceCheck depth) : every_(depth == TraceCheck::full) {}
@@ -52,8 +52,8 @@ class SignatureCheck {
 /// How many sessions are in memory at once, for as many threads as there are.
 constexpr std::size_t kSessionsAtOnce = 16;
 
-/// One session on its way through the check, by itself: what it comes to, or what is wrong with it.
-struct SessionOnItsWay {
+/// One session in the pipeline of the check: its result or its fault.
+struct SessionInFlight {
   int session = 0;
   const SessionOnFile* on_file = nullptr;
   std::vector<Event> events;
@@ -77,7 +77,7 @@ struct SessionOnItsWay {
   }
 };
 
-/// Walks through everything once, and throws EventFault at the first thing that does not hold.
+/// Checks everything once, and throws EventFault at the first fault.
 class Inspection {
  public:
   Inspection(const Database& database, const SessionReader& reader)
@@ -104,14 +104,14 @@ class Inspection {
 
  private:
   void inspect_structure() const {
-    // Not quick_check, which takes indices on trust.
+    // Not quick_check, which does not check indices.
     Query query = database_.query("PRAGMA integrity_check(1)");
     if (!query.step()) return;
     const std::string finding = query.text(0);
     if (finding != "ok") throw EventFault(0, kNoEvent, "the file is damaged: " + finding);
   }
 
-  /// Holds every event of a chain against the one before it.
+  /// Checks every event of a chain against the one before it.
   void walk(int session, const EventVisitor& visit) const {
     ChainLink chain(session);
     for_each_event(database_, session, [&](const Event& event) {
@@ -120,7 +120,7 @@ class Inspection {
     });
   }
 
-  /// \return the chain that the stations' chains come to; empty if there are no stations
+  /// \return the chain collected from the stations' chains; empty if there are no stations
   [[nodiscard]] std::vector<Event> inspect_stations(TraceCheck traces) {
     std::vector<StationChain> stations;
     std::int64_t lowest = 0;
@@ -158,7 +158,7 @@ class Inspection {
     return found;
   }
 
-  /// A collected study's chain begins with what its stations' chains come to; later decisions
+  /// A collected study's chain begins with the chain collected from its stations; later decisions
   /// follow.
   void inspect_collected(const Event& event, const std::vector<Event>& collected) const {
     if (event.sequence < static_cast<std::int64_t>(collected.size())) {
@@ -168,7 +168,7 @@ class Inspection {
     if (event.kind == EventKind::session_opened || event.kind == EventKind::session_closed ||
         event.kind == EventKind::participant_replaced) {
       throw EventFault(0, event.sequence,
-                       "stands at no station; a collected study has no sessions of its own");
+                       "belongs to no station; a collected study has no sessions of its own");
     }
   }
 
@@ -179,11 +179,11 @@ class Inspection {
     }
   }
 
-  /// One thread reads sessions, others check them, and what they come to is added in order: the
-  /// first fault by session is named, whichever thread finds one first. No exception leaves a
-  /// filter: oneTBB would leak the sessions in flight.
+  /// One thread reads sessions, others check them, and results are added in order: the first fault
+  /// by session is reported, whichever thread finds one first. No exception leaves a filter,
+  /// because oneTBB would leak the sessions in flight.
   void inspect_sessions() {
-    using OnItsWay = std::shared_ptr<SessionOnItsWay>;
+    using OnItsWay = std::shared_ptr<SessionInFlight>;
     auto next = file_.sessions().begin();
     std::exception_ptr fault;
     std::atomic<bool> has_fault = false;
@@ -214,13 +214,13 @@ class Inspection {
       if (session < 0) continue;
       const bool known = session <= std::numeric_limits<int>::max() &&
                          file_.sessions().count(static_cast<int>(session)) > 0;
-      if (!known) throw EventFault(session, kNoEvent, "the file's chain knows no such session");
+      if (!known) throw EventFault(session, kNoEvent, "the file's chain has no such session");
     }
   }
 
-  [[nodiscard]] std::shared_ptr<SessionOnItsWay> read_session(
+  [[nodiscard]] std::shared_ptr<SessionInFlight> read_session(
       const std::pair<const int, SessionOnFile>& known) const {
-    auto one = std::make_shared<SessionOnItsWay>();
+    auto one = std::make_shared<SessionInFlight>();
     one->session = known.first;
     one->on_file = &known.second;
     if (known.second.opened.station > 0 && !is_collected_) {
@@ -232,7 +232,7 @@ class Inspection {
     return one;
   }
 
-  void add_session(SessionOnItsWay& one) {
+  void add_session(SessionInFlight& one) {
     for (const auto& [trial, claim] : one.claims) {
       claims_.emplace(TrialId(one.session, trial), claim);
     }
@@ -253,7 +253,7 @@ class Inspection {
     inspect_station_keys();
   }
 
-  /// A station keeps the keys of open sessions that began with a copy, and of no others.
+  /// A station has key copies of exactly those open sessions that began with a copy.
   void inspect_station_keys() const {
     std::map<std::int64_t, Digest> copies;
     Query query = database_.query("SELECT session, kept FROM station_keys");
@@ -295,7 +295,7 @@ class Inspection {
     if (claim != claims_.end()) missing();
   }
 
-  /// Runs last: a fault of stored data is named before the missing trigger that allowed it.
+  /// Runs last: a fault of stored data is reported before the missing trigger that allowed it.
   void inspect_schema() const {
     const auto differs = schema_fault(database_);
     if (!differs) return;

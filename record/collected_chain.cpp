@@ -20,7 +20,7 @@ std::string named(const StationChain& station, int own_session) {
   return "session " + std::to_string(own_session) + " of " + station.name;
 }
 
-/// One station's chain on its way into the collected one.
+/// One station's chain, as a source of the collected one.
 class Feed {
  public:
   Feed(const StationChain& station, int number, bool simulated)
@@ -69,7 +69,7 @@ StudyCommitment commitment_of(const StationChain& station) {
   return body_of(station.events.front(), commitment_from_json);
 }
 
-/// A station's commitment without what stations may differ in.
+/// A station's commitment without the parts that may differ between stations.
 StudyCommitment common_commitment(const StationChain& station) {
   StudyCommitment commitment = commitment_of(station);
   commitment.program_version.clear();
@@ -77,7 +77,7 @@ StudyCommitment common_commitment(const StationChain& station) {
   return commitment;
 }
 
-/// Why two stations cannot be of one study, in words.
+/// Why two stations do not belong to one study, as a text.
 std::string difference(const StudyCommitment& a, const StudyCommitment& b) {
   if (a.study_id != b.study_id) return "they are of different studies";
   if (a.simulated != b.simulated) return "one is of simulated participants, the other is not";
@@ -122,7 +122,7 @@ class Places {
   std::multiset<std::pair<int, int>> enrolments_;
 };
 
-/// Makes the collected chain, event by event.
+/// Builds the collected chain, event by event.
 class Collection {
  public:
   explicit Collection(std::span<const StationChain> stations) : stations_(stations) {
@@ -160,21 +160,21 @@ class Collection {
     chain_.events.push_back(next_on_file(last, kind, at, std::move(body), std::move(sealed)));
   }
 
-  /// Whether a feed opens a session whose place another session has at this point of the chain.
+  /// Whether a feed opens a session whose place is occupied at this point of the chain.
   [[nodiscard]] bool is_taken(const Feed& feed) const {
     return feed.head().kind == EventKind::session_opened && taken_.has(feed.session().opened);
   }
 
-  /// Whether a feed opens a session that stays, in a place whose former holder's replacement is
-  /// still to come: stations' clocks may differ by more than the time until somebody was replaced.
-  [[nodiscard]] bool comes_later(const Feed& feed) const {
+  /// Whether a feed opens a session that stays, in a place whose former holder's replacement is not
+  /// yet in the chain: stations' clocks may differ by more than the time until the replacement.
+  [[nodiscard]] bool must_wait(const Feed& feed) const {
     return feed.head().kind == EventKind::session_opened && !feed.session().replaced_at &&
            former_.has(feed.session().opened);
   }
 
   /// The feed whose head comes next; null when all are done. A session waits for the replacement of
-  /// its place's former holder while any other event is left. Two sessions that wait for each other
-  /// do not clash if both places are free in the end; time then decides.
+  /// its place's former holder while any other event remains. Two sessions that wait for each other
+  /// do not clash if both places are free in the end; the earlier one is then first.
   Feed* next_feed() {
     Feed* best = nullptr;
     Feed* later = nullptr;
@@ -187,7 +187,7 @@ class Collection {
       if (is_taken(feed)) {
         prefer(waits, feed);
       } else {
-        prefer(comes_later(feed) ? later : best, feed);
+        prefer(must_wait(feed) ? later : best, feed);
       }
     }
     if (best != nullptr) return best;
@@ -201,8 +201,8 @@ class Collection {
     return feed_of(place).sessions().at(place.own_session);
   }
 
-  /// A participant id and an enrolment number belong to one session of a visit that nobody
-  /// replaced. Replaced sessions take no place, whenever they were replaced.
+  /// A participant id and an enrolment number belong to at most one session of a visit that was not
+  /// replaced. Replaced sessions occupy no place, whenever they were replaced.
   void refuse_taken_twice() const {
     std::map<std::pair<std::string, int>, SessionPlace> participants;
     std::map<std::pair<int, int>, SessionPlace> enrolments;
@@ -230,7 +230,7 @@ class Collection {
         named(feed_of(second).station(), second.own_session) +
         "; exclude and replace one of them at its station" +
         (taken.enrolment == opened.enrolment
-             ? ", and run nobody under the successor's id, who would inherit the number"
+             ? ", and do not run the successor, who would inherit the number"
              : "") +
         ", or leave that station's file out"));
   }
@@ -258,7 +258,7 @@ class Collection {
     feed.advance();
   }
 
-  /// Whether an event is a look at one participant's outcomes.
+  /// Whether an event records a look at one participant's outcomes.
   static bool is_personal(const Event& event) {
     return event.kind == EventKind::study_unblinded &&
            !body_of(event, unblinding_from_json).participant.empty();
@@ -308,8 +308,8 @@ class Collection {
   }
 
   /// The study is unblinded if all stations with sessions unblinded it. If one of them did so only
-  /// for an interim look, or a station still collects, this is an interim look at the sessions that
-  /// the stations' looks show.
+  /// for an interim look, or a station still collects data, it becomes an interim look at the
+  /// sessions of the stations' looks.
   void unblind() {
     nanoseconds at = nanoseconds::min();
     const auto ended = [](const auto& entry) { return entry.second.closed.has_value(); };
@@ -345,8 +345,8 @@ class Collection {
   std::vector<Feed> feeds_;
   CollectedChain chain_;
   std::map<SessionPlace, int> numbers_;
-  Places taken_;   ///< of sessions that nobody has replaced so far
-  Places former_;  ///< of sessions that will be replaced, until their replacement has come
+  Places taken_;   ///< of sessions that have not been replaced so far
+  Places former_;  ///< of sessions that will be replaced, until the event of their replacement
   bool closed_ = false;
 };
 

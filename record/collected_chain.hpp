@@ -1,5 +1,5 @@
-/// \file Makes one file chain of several stations' file chains. The result depends on their content
-/// alone, so that anybody who has the stations' chains can make it again and compare. Source:
+/// \file Builds one file chain from several stations' file chains. The result depends only on their
+/// content, so that anybody who has the stations' chains can rebuild it and compare. Source:
 /// docs/data-dictionary.md, "Collected studies"; docs/decisions/0041.
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace touchtrial::record {
 
-/// A station's file chain as it stands in its own file, and the station's name for messages.
+/// A station's file chain as in its own file, and the station's name for messages.
 struct StationChain {
   std::string name;
   std::vector<Event> events;
@@ -27,37 +27,36 @@ struct SessionPlace {
   friend auto operator<=>(const SessionPlace&, const SessionPlace&) = default;
 };
 
-/// The chain that stations' chains come to.
+/// The chain collected from stations' chains.
 struct CollectedChain {
   std::vector<Event> events;           ///< of session 0, hashed
   std::vector<SessionPlace> sessions;  ///< by number, from 1: sessions that have ended
   std::vector<SessionPlace> left_out;  ///< sessions that have not ended
 };
 
-/// What tells stations apart: the hash of the event with which the first session was opened.
-/// Nothing if no session was ever opened there.
+/// A station's identity: the hash of the event that opened its first session. Nothing if no session
+/// was ever opened there.
 [[nodiscard]] std::optional<Digest> station_identity(std::span<const Event> chain);
 
 /// The order of stations: by the time at which their first sessions were opened (by those sessions'
-/// enrolment numbers in simulated studies, whose times mean nothing), and by identity where that is
-/// the same.
+/// enrolment numbers in simulated studies, whose times are meaningless), then by identity.
 /// \pre both have an identity
 [[nodiscard]] bool comes_before(const StationChain& a, const StationChain& b);
 
-/// Makes the collected chain:
+/// Builds the collected chain:
 /// - First comes the commitment of the first station, without the station.
 /// - Then come the stations' events about sessions that have ended. Each station's events keep
 ///   their order. Of the stations' next events, the earliest comes first; in simulated studies,
-///   whose times mean nothing, the one about the smallest enrolment number. While any other event
-///   can come, the opening of a session waits until the former holder of its participant id or
-///   enrolment number has been replaced. Sessions are numbered in the order in which they are
+///   whose times are meaningless, the one about the smallest enrolment number. As long as another
+///   event is possible, the opening of a session waits until the former holder of its participant
+///   id or enrolment number has been replaced. Sessions are numbered in the order in which they are
 ///   opened here.
 /// - Then come the stations' looks at single participants, with the sessions that they show.
-/// - At the end stands that the study is closed, if it is at all stations, and that it is
-///   unblinded, if it is at all stations with sessions.
+/// - Last come the closing of the study, if it is closed at all stations, and its unblinding, if it
+///   is unblinded at all stations with sessions.
 /// \param stations  in the order of comes_before, each chain valid by itself (checked_file_chain)
-/// \throws StoreError if they are not of one study, or two of them used one participant id or
-///   enrolment number for sessions that nobody ever replaced
+/// \throws StoreError if they do not belong to one study, or two of them used one participant id or
+///   enrolment number for sessions that were never replaced
 /// \throws EventFault if an event's body cannot be read
 [[nodiscard]] CollectedChain collected_chain(std::span<const StationChain> stations);
 

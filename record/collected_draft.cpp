@@ -26,7 +26,7 @@ struct CollectedDraft::Impl {
   Impl(std::unique_ptr<Draft> folder, Database made, std::filesystem::path name)
       : draft(std::move(folder)), database(std::move(made)), target(std::move(name)) {
     make_tables(database);
-    database.run([&] { database.write_carelessly(); });
+    database.run([&] { database.write_unsynced(); });
   }
 
   void keep_chain(int number, const StationChain& station) {
@@ -37,7 +37,7 @@ struct CollectedDraft::Impl {
     }
   }
 
-  /// Sessions that are seen and sessions that are felt are never pooled.
+  /// Sessions on a screen and sessions with a haptic device are never pooled.
   void check_kind(const Event& opened) {
     const SessionOpening opening = body_of(opened, opening_from_json);
     const bool seen = opening.is_visual();
@@ -57,7 +57,7 @@ struct CollectedDraft::Impl {
     return here;
   }
 
-  /// Calls `work`; faults of the session that is being added name it by its own number.
+  /// Calls `work`; faults of the session that is being added name its own number.
   template <typename Work>
   void named_as_at_its_station(Work&& work) const {
     try {
@@ -95,7 +95,7 @@ const CollectedChain& CollectedDraft::begin(std::span<const StationChain> statio
   impl_->chain = collected_chain(stations);
   for (const Event& event : impl_->chain.events) impl_->on_file.add(event);
   impl_->database.change([&] {
-    // In the order of the table's key, so that the table grows only at its end.
+    // In key order, so that the table grows only at its end.
     for (int number = static_cast<int>(stations.size()); number > 0; --number) {
       impl_->keep_chain(number, stations[static_cast<std::size_t>(number) - 1]);
     }
@@ -157,7 +157,7 @@ void CollectedDraft::finish() && {
   impl_->database.run([&] { impl_->database.write_safely(); });
   const std::filesystem::path target = impl_->target;
   const std::unique_ptr<Draft> draft = std::move(impl_->draft);
-  impl_.reset();  // closes it, so that nothing lies beside it
+  impl_.reset();  // closes it, so that no journal is left beside it
   if (!move_to_free_name(draft->path() / target.filename(), target)) refuse_taken_place(target);
 }
 

@@ -1,6 +1,6 @@
-/// \file A collected study while it is being made: the stations' chains as they are, the chain that
-/// they come to, and their sessions, each checked as it comes in. Source: docs/data-dictionary.md,
-/// "Collected studies".
+/// \file A collected study under construction: the stations' chains, the chain collected from them,
+/// and their sessions, each checked when it is added. Source: docs/data-dictionary.md, "Collected
+/// studies".
 #pragma once
 
 #include "core/bytes.hpp"
@@ -16,11 +16,11 @@
 
 namespace touchtrial::record {
 
-/// Not to be shared between threads. A draft that is not finished leaves nothing behind.
+/// Not to be shared between threads. An unfinished draft leaves no file behind.
 class CollectedDraft {
  public:
-  /// A file beside `target`, which gets that name when it is finished.
-  /// \throws StoreError if the target exists or nothing can be made there
+  /// A file beside `target`, renamed to it when finished.
+  /// \throws StoreError if the target exists or no file can be created there
   [[nodiscard]] static CollectedDraft in_file(const std::filesystem::path& target);
 
   ~CollectedDraft();
@@ -34,20 +34,20 @@ class CollectedDraft {
 
   /// Must be called for each session, in the order of their numbers.
   /// \param session  from 1
-  /// \param events  as the station has them: own numbers, not renumbered
-  /// \throws EventFault, with the session's own number, if anything does not hold
-  /// \throws StoreError if the session is seen on a screen and others are felt, or the other way
-  ///   round, or it cannot be written
+  /// \param events  as the station has them: with own numbers, not renumbered
+  /// \throws EventFault, with the session's own number, at any fault
+  /// \throws StoreError if it cannot be written, or some sessions are on a screen and others with a
+  ///   haptic device
   void add_session(int session, std::span<const Event> events, const WrappedKeys& keys);
-  /// A trace of the session that was added last; traces may come in any order.
+  /// Adds a trace of the last added session, in any order.
   /// \throws the same
   void add_trace(int trial, const Bytes& box);
   /// After a session's traces: checks that none is missing.
   /// \throws the same
   void end_traces() const;
 
-  /// After all sessions: gives the file its name.
-  /// \throws StoreError if it cannot be written, or another file has taken the name meanwhile
+  /// After all sessions: renames the file to its target.
+  /// \throws StoreError if it cannot be written, or another file has that name by now
   void finish() &&;
 
  private:

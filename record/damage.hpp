@@ -1,5 +1,4 @@
-/// \file What is wrong with a database: an event or row that cannot be true, a file that is not
-/// whole.
+/// \file Faults of a database: an impossible event or row, an incomplete file.
 #pragma once
 
 #include "core/errors.hpp"
@@ -12,7 +11,7 @@
 namespace touchtrial::record {
 
 /// A Touchtrial database that is truncated, lacks tables, has pages that cannot be read, or holds
-/// evidence that was altered. A mistyped name is no DamagedStore.
+/// evidence that was altered. A mistyped name is not a DamagedStore.
 class DamagedStore : public StoreError {
  public:
   using StoreError::StoreError;
@@ -34,8 +33,8 @@ inline constexpr std::int64_t kNoEvent = -1;
   return "session " + std::to_string(session);
 }
 
-/// An event or row that cannot be true, and its place. Thrown where events and rows are read;
-/// Database::run adds file and remedy, StudyStore::first_fault turns it into a ChainFault.
+/// An impossible event or row, and its place. Thrown where events and rows are read; Database::run
+/// adds file and remedy, StudyStore::first_fault turns it into a ChainFault.
 class EventFault : public StoreError {
  public:
   EventFault(std::int64_t session, std::int64_t sequence, const std::string& what)
@@ -50,7 +49,7 @@ class EventFault : public StoreError {
 
   [[nodiscard]] std::int64_t session() const noexcept { return session_; }
   [[nodiscard]] std::int64_t sequence() const noexcept { return sequence_; }
-  /// What does not hold, without the place.
+  /// The fault, without the place.
   [[nodiscard]] const std::string& bare() const noexcept { return what_; }
 
  private:

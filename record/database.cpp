@@ -18,7 +18,7 @@ namespace {
 constexpr int kBusyTimeoutMs = 2000;
 /// A connection is used by one thread at a time.
 constexpr int kNoMutex = SQLITE_OPEN_NOMUTEX;
-/// What tells our databases from other SQLite files: "TTRL" in SQLite's application_id.
+/// Marks our databases among SQLite files: "TTRL" in SQLite's application_id.
 constexpr std::int32_t kApplicationId = 0x5454524c;
 
 // The first hundred bytes of an SQLite file, read without SQLite.
@@ -50,7 +50,7 @@ Header read_header(const std::filesystem::path& path) {
   file.read(reinterpret_cast<char*>(header.data()), header.size());
   const bool whole = file.gcount() == static_cast<std::streamsize>(header.size());
   if (!whole || std::memcmp(header.data(), kSqliteMagic, sizeof kSqliteMagic) != 0) {
-    refuse_file(path, "is no Touchtrial database; check the name");
+    refuse_file(path, "is not a Touchtrial database; check the name");
   }
   return header;
 }
@@ -67,14 +67,14 @@ std::uintmax_t size_in_header(const Header& header) {
   return page_size * big_endian_32(header, 28);
 }
 
-/// Whether a write-ahead log lies beside the database, with anything in it.
+/// Whether there is a non-empty write-ahead log beside the database.
 bool has_log(const std::filesystem::path& path) {
   std::error_code error;
   const auto size = std::filesystem::file_size(path.string() + "-wal", error);
   return !error && size > 0;
 }
 
-/// Looks at a file before SQLite does, so that a foreign or truncated file, or one of another
+/// Checks a file before SQLite opens it, so that a foreign or truncated file, or one of another
 /// version, is refused untouched.
 void check_header(const std::filesystem::path& path) {
   const Header header = read_header(path);
@@ -89,13 +89,13 @@ void check_header(const std::filesystem::path& path) {
   }
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
-  // A log may hold pages that the file still lacks.
+  // A log may hold pages that are not in the file yet.
   if (!error && size < size_in_header(header) && !has_log(path)) {
     refuse_damaged(path, "is truncated");
   }
 }
 
-/// Absolute, because SQLite gives names such as ":memory:" a meaning of their own.
+/// Absolute, because names such as ":memory:" are special in SQLite.
 std::string absolute_name(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::path absolute = std::filesystem::absolute(path, error);
@@ -108,7 +108,7 @@ bool may_write(const std::filesystem::path& path) {
          ::access(file.parent_path().c_str(), W_OK | X_OK) == 0;
 }
 
-/// For a file that nobody writes to: SQLite then needs neither locks nor files beside it.
+/// For a file without writers: SQLite then needs neither locks nor files beside it.
 std::string immutable_uri(const std::filesystem::path& path) {
   std::string uri = "file:";
   for (const char c : absolute_name(path)) {
@@ -121,9 +121,9 @@ std::string immutable_uri(const std::filesystem::path& path) {
   return uri + "?immutable=1";
 }
 
-/// To read a database in WAL mode, SQLite needs a log and its index beside it. Where we may write,
-/// it makes and removes them, and we see what other programs add. Where we may not, a file without
-/// a log is complete and can be read as it is.
+/// To read a database in WAL mode, SQLite needs a log and its index beside it. In a writable folder
+/// it creates and removes them, and we see what other programs add. In a read-only folder, a file
+/// without a log is complete and can be read as it is.
 SQLite::Database connected(const std::filesystem::path& path, Database::Mode mode) {
   if (mode == Database::Mode::read_write || may_write(path)) {
     return {absolute_name(path), SQLite::OPEN_READWRITE | kNoMutex, kBusyTimeoutMs};
@@ -135,7 +135,7 @@ SQLite::Database connected(const std::filesystem::path& path, Database::Mode mod
   return {absolute_name(path), SQLite::OPEN_READONLY | kNoMutex, kBusyTimeoutMs};
 }
 
-/// SQLite does not refuse a setting that it cannot have: it reports the one in force.
+/// SQLite does not refuse an unsupported setting: it reports the one in force.
 void require_setting(const Database& database, const std::string& name, const std::string& wanted,
                      const std::string& remedy) {
   const std::string had = database.connection().execAndGet("PRAGMA " + name).getString();
@@ -206,7 +206,7 @@ std::string explanation(int code, const std::string& message) {
   throw StoreError(line);
 }
 
-/// Made exclusively: of two programs that create it at once, one is refused.
+/// Exclusive: of two programs that create it at once, one is refused.
 void make_empty_file(const std::filesystem::path& path) {
   std::FILE* file = std::fopen(path.c_str(), "wbx");
   if (file == nullptr) {
@@ -219,8 +219,8 @@ void make_empty_file(const std::filesystem::path& path) {
   std::fclose(file);
 }
 
-/// The log of a file that has two names lies beside one of them alone: under the other one, what
-/// was acknowledged would be missing.
+/// The log of a file with two names is beside only one of them: opened by the other name, the
+/// database would lack acknowledged events.
 void refuse_second_name(const std::filesystem::path& path) {
   std::error_code error;
   const auto names = std::filesystem::hard_link_count(path, error);
@@ -234,7 +234,7 @@ void refuse_second_name(const std::filesystem::path& path) {
 void refuse_address(const std::filesystem::path& path) {
   if (path.string().find("://") == std::string::npos) return;
   throw StoreError(
-      "an address is no file: make a file of what is there with `touchtrial merge ADDRESS -o "
+      "an address is not a file: make one with `touchtrial merge ADDRESS -o "
       "all.db`");
 }
 
@@ -244,7 +244,7 @@ Query& Query::bind(ByteView blob) {
   if (blob.size() > std::size_t{std::numeric_limits<int>::max()}) {
     throw StoreError("a trace is larger than a database can hold; shorten trials.explore_limit_s");
   }
-  // A null pointer would be stored as NULL, which none of our columns allows.
+  // A null pointer would be stored as NULL, which our columns do not allow.
   const void* data = blob.empty() ? static_cast<const void*>("") : blob.data();
   statement_->bindNoCopy(++bound_, data, static_cast<int>(blob.size()));
   return *this;
@@ -263,7 +263,7 @@ Database Database::create(const std::filesystem::path& path) {
   make_empty_file(path);
   try {
     Database database(path, connected(path, Mode::read_write));
-    // Large pages suit large traces. An empty file need not be safe yet: the first transaction's
+    // Large pages suit large traces. An empty file need not be durable yet: the first transaction's
     // sync covers it.
     database.connection_.exec("PRAGMA synchronous = OFF; PRAGMA page_size = 8192;");
     database.connection_.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
@@ -281,7 +281,7 @@ Database Database::temporary(const std::string& name) {
     Database database(name, SQLite::Database("", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE));
     database.connection_.exec("PRAGMA page_size = 8192;");
     set_up_for_all(database);
-    database.write_carelessly();
+    database.write_unsynced();
     return database;
   } catch (const SQLite::Exception& error) {
     rethrow(name, error);
@@ -320,12 +320,12 @@ Query Database::separate_query(const char* sql) const {
   return Query(std::make_unique<SQLite::Statement>(connection_, sql));
 }
 
-void Database::write_carelessly() const {
+void Database::write_unsynced() const {
   connection_.exec("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF;");
 }
 
 void Database::write_safely() const {
-  // With this setting the change of the journal's mode, below, syncs everything written before.
+  // With this setting, the change of journal mode below syncs everything written before.
   connection_.exec("PRAGMA synchronous = FULL;");
   set_up_for_writing(*this);
 }

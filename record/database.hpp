@@ -78,7 +78,7 @@ class Query {
   int bound_ = 0;
 };
 
-/// The version of databases. It counts every change of the tables and of what is in them.
+/// The version of databases, raised at every change of the tables or their content.
 inline constexpr int kSchemaVersion = 8;
 
 /// Not to be shared between threads.
@@ -90,15 +90,15 @@ class Database {
   /// \throws StoreError if the file exists
   [[nodiscard]] static Database create(const std::filesystem::path& path);
 
-  /// An empty database that SQLite keeps to itself, in memory and in a file without a name. It is
-  /// gone with the connection or the program.
+  /// An empty private database in memory and in an unnamed file, which disappears with the
+  /// connection or the program.
   /// \param name  for messages
   [[nodiscard]] static Database temporary(const std::string& name);
 
   /// An existing database. If it is opened for reading and no log lies beside it, no files are left
   /// behind and its folder need not be writable.
   /// \throws DamagedStore if it is truncated, has no version or cannot be read by SQLite
-  /// \throws StoreError if it is missing, no Touchtrial database, or of another version than
+  /// \throws StoreError if it is missing, not a Touchtrial database, or of another version than
   ///   kSchemaVersion; it is then untouched
   [[nodiscard]] static Database open(const std::filesystem::path& path, Mode mode);
 
@@ -110,24 +110,24 @@ class Database {
   /// A prepared statement, compiled once.
   /// \param sql  lives as long as the program
   [[nodiscard]] Query query(const char* sql) const;
-  /// A statement of its own, for loops whose body may ask anything else of this database.
+  /// A separate statement, for loops whose body may run other queries on this database.
   [[nodiscard]] Query separate_query(const char* sql) const;
 
-  /// For filling a file under a name that nobody knows yet, and that is thrown away if anything
-  /// fails: without a log, and without waiting for the disk.
-  void write_carelessly() const;
-  /// After write_carelessly: syncs everything, and writes from now on like any other database.
+  /// For filling a draft, which is discarded if anything fails: without a log, and without waiting
+  /// for the disk.
+  void write_unsynced() const;
+  /// After write_unsynced: syncs everything, and writes durably from now on.
   void write_safely() const;
 
   /// Moves the content of the write-ahead log into the file and empties the log.
-  /// \return whether no other program prevented it
+  /// \return false if another program prevented it
   bool checkpoint() const;
 
-  /// Lays a copy at a path.
-  /// \throws StoreError if another program keeps this one from being read
+  /// Writes a copy to a path.
+  /// \throws StoreError if another program blocks reading
   void copy_to(const std::filesystem::path& path) const;
 
-  /// Calls `work`; errors of SQLite and of events come out as StoreError with file and remedy.
+  /// Calls `work`; errors of SQLite and of events are rethrown as StoreError with file and remedy.
   template <typename Work>
   decltype(auto) run(Work&& work) const {
     try {
@@ -160,7 +160,7 @@ class Database {
   [[noreturn]] void refuse(const SQLite::Exception& error) const;
 
   std::filesystem::path path_;
-  // Reading changes a connection's state, but not the database that it stands for.
+  // mutable: reading changes the connection's state, but not the database.
   mutable SQLite::Database connection_;
   mutable std::map<std::string_view, SQLite::Statement> statements_;
 };

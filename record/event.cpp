@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kSignedAs = "touchtrial event 1";
 
-/// What is signed of an event, whose hash stands for the chain up to it.
+/// The signed text of an event; its hash covers the chain up to it.
 auto statement_of(const Event& event) {
   std::array<std::uint8_t, kSignedAs.size() + Digest{}.size()> statement{};
   std::ranges::copy(event.hash, std::ranges::copy(kSignedAs, statement.begin()).out);
@@ -117,8 +117,8 @@ std::optional<std::string> ChainLink::broken_by(const Event& next) const {
   if (next.session != session_ || next.own_session() != own_session_) {
     return "the event belongs to another chain";
   }
-  // So that one content has one form.
-  if (next.renumbered_from == next.session) return "the event says its own number twice";
+  // Makes the representation of an event unique.
+  if (next.renumbered_from == next.session) return "the event repeats its own number";
   if (next.sequence > length_) {
     return "sequence gap: event " + std::to_string(length_) + " is missing";
   }

@@ -1,4 +1,4 @@
-/// \file The append-only events of a study, and how each commits to the one before. Source:
+/// \file The append-only events of a study, each of which commits to the one before. Source:
 /// docs/data-dictionary.md, "Events".
 #pragma once
 
@@ -15,7 +15,7 @@
 
 namespace touchtrial::record {
 
-/// What happened. The first group belongs to the file's chain, the second to a session's.
+/// The kind of an event. The first group belongs to the file's chain, the second to a session's.
 enum class EventKind {
   study_committed,
   session_opened,
@@ -24,10 +24,10 @@ enum class EventKind {
   participant_withdrawn,
   study_closed,
   study_unblinded,
-  participant_replaced,  ///< another participant takes this one's place in the order of enrolment
+  participant_replaced,  ///< another participant inherits this one's enrolment number
   participant_noted,     ///< a remark or deviation that is recorded after or outside a session
-  heads_kept,            ///< which head files the database has from now on
-  loss_accepted,         ///< the database lacks what its head file knows, and goes on without it
+  heads_kept,            ///< the head files that the database has from now on
+  loss_accepted,         ///< the loss of something that the head file records was accepted
 
   opened,
   calibrated,
@@ -44,25 +44,25 @@ enum class EventKind {
   stopped,
   noted,
   ticked,           ///< an item of the day sheet is done
-  deviated,         ///< something differs from what the study asks for
+  deviated,         ///< something deviates from the study's protocol
   questioned,       ///< a questionnaire was filled in
-  explored_again,   ///< the participant went back to the plane before answering
-  block_restarted,  ///< a block's trials are void and are presented anew, in another order
+  explored_again,   ///< the participant returned to the plane before answering
+  block_restarted,  ///< a block's trials are void and are presented again, in another order
   resumed,          ///< after a pause, or after the program ended
-  marked,           ///< what other instruments were told of, and when
+  marked,           ///< the marks sent to other instruments, and their times
   closed,
 };
 
 /// The name stored in the database: the enumerator with hyphens, for instance "first-contact".
 [[nodiscard]] std::string_view name_of(EventKind kind);
 [[nodiscard]] std::optional<EventKind> event_kind_from_name(std::string_view name);
-/// Whether events of this kind stand on the file's chain; all others stand on a session's.
+/// Whether events of this kind belong to the file's chain; all others belong to a session's.
 [[nodiscard]] bool belongs_to_file_chain(EventKind kind);
 
-/// One event. Anybody can read `body`, which says nothing about stimuli and answers. `sealed` is
-/// ciphertext: a session's event has there its time and the rest of its body (sealing.hpp), an
-/// event of the file's chain the texts about a person (person_texts.hpp). Opened, it is the event
-/// as it was recorded.
+/// One event. `body` is in clear and reveals nothing about stimuli and answers. `sealed` is
+/// ciphertext: of a session's event its time and the rest of its body (sealing.hpp), of an event of
+/// the file's chain the texts about a person (person_texts.hpp). An opened event is as it was
+/// recorded.
 struct Event {
   int session = 0;            ///< 0: the file's chain; from 1: a session;
                               ///< -1, -2, ...: the file chain of a collected station
@@ -71,7 +71,7 @@ struct Event {
   /// File's chain: UTC since 1970. Session: 0 as stored; opened, the time since its opening.
   std::chrono::nanoseconds at{};
   std::string body;   ///< compact JSON object with sorted keys
-  Bytes sealed;       ///< empty in an event that was opened, or says nothing about a person
+  Bytes sealed;       ///< empty in an opened event, and in one that is not about a person
   Digest previous{};  ///< hash of the event before; zeros for the first
   Digest hash{};      ///< event_hash of this one
   /// File's chain: the station's or the investigator's Ed25519 signature, see signed_event. Empty
@@ -83,7 +83,7 @@ struct Event {
   /// The session's number in the file that it was recorded in. Hash and sealed part are bound to
   /// it.
   [[nodiscard]] int own_session() const noexcept { return renumbered_from.value_or(session); }
-  /// When it happened, if that can be read: not in a session's event as it is stored.
+  /// The event's time if it is readable: that of a stored session event is sealed.
   [[nodiscard]] std::optional<std::chrono::nanoseconds> time() const {
     return session <= 0 || sealed.empty() ? std::optional(at) : std::nullopt;
   }
@@ -109,7 +109,7 @@ struct ChainHead {
   friend bool operator==(const ChainHead&, const ChainHead&) = default;
 };
 
-/// The growing end of one chain. It checks how events are linked; `fold` checks what they mean.
+/// The growing end of one chain. It checks the links of events; `fold` checks their meaning.
 class ChainLink {
  public:
   /// \param session  as Event::session
@@ -117,7 +117,7 @@ class ChainLink {
   /// \param own_session  Event::own_session of its events
   ChainLink(int session, int own_session) : session_(session), own_session_(own_session) {}
 
-  /// The end of a chain that is stored already.
+  /// The end of a stored chain.
   /// \param last  its last event
   [[nodiscard]] static ChainLink after(const Event& last);
 

@@ -59,7 +59,7 @@ StudyState state_of_chain(std::span<const Event> chain) {
 
 void FileChain::add(const Event& event) {
   if (event.kind == EventKind::session_closed || event.kind == EventKind::study_unblinded) {
-    seen_by_.push_back(event);
+    ends_and_looks_.push_back(event);
   }
   if ((event.kind == EventKind::study_committed) != !commitment_) {
     throw EventFault(event, commitment_ ? "the study is committed twice"
@@ -147,11 +147,11 @@ void FileChain::close_session(const Event& event) {
   session.closed_at = event.sequence;
 }
 
-/// Nobody can pass an exclusion off as one from before a look.
+/// An exclusion cannot be presented as one from before a look.
 void FileChain::exclude(const Event& event) {
   const ParticipantBody body = body_of(event, participant_from_json);
   known(event).excluded_at = event.sequence;
-  if (body.after_outcomes || !state_of_chain(seen_by_).shows(body.session)) return;
+  if (body.after_outcomes || !state_of_chain(ends_and_looks_).shows(body.session)) return;
   throw EventFault(event, "hides that the outcomes of session " + std::to_string(body.session) +
                               " had been seen before it was excluded");
 }
@@ -162,24 +162,25 @@ void FileChain::withdraw(const Event& event) {
   const auto refuse = [&](const std::string& why) {
     throw EventFault(event, "session " + std::to_string(body.session) + " " + why);
   };
-  if (body.kept == Kept::data && session.erased_at) refuse("keeps data that were erased before");
-  if (body.kept == Kept::safety_record && session.erased_at) refuse("is erased twice");
-  if (body.kept == Kept::nothing && !session.erased_at) {
+  if (body.kept == Retention::data && session.erased_at)
+    refuse("keeps data that were erased before");
+  if (body.kept == Retention::safety_record && session.erased_at) refuse("is erased twice");
+  if (body.kept == Retention::nothing && !session.erased_at) {
     refuse("loses its safety record before its outcomes");
   }
-  if (body.kept == Kept::nothing && session.safety_erased_at)
+  if (body.kept == Retention::nothing && session.safety_erased_at)
     refuse("loses its safety record twice");
   session.withdrawn_at = event.sequence;
-  if (body.kept == Kept::nothing && !commitment_->simulated &&
+  if (body.kept == Retention::nothing && !commitment_->simulated &&
       event.at < session.erased_time + std::chrono::hours(24) * 365 *
                                            std::int64_t{commitment_->safety_record_years}) {
     refuse("loses its safety record before its time");
   }
-  if (body.kept == Kept::safety_record) {
+  if (body.kept == Retention::safety_record) {
     session.erased_at = event.sequence;
     session.erased_time = event.at;
   }
-  if (body.kept == Kept::nothing) session.safety_erased_at = event.sequence;
+  if (body.kept == Retention::nothing) session.safety_erased_at = event.sequence;
 }
 
 void FileChain::replace(const Event& event) {
@@ -288,8 +289,8 @@ void SessionCheck::finish(const DerivedRows& rows) const {
   const SessionClosedBody& closed = *on_file_.closed;
   if (closed.length != chain_.length()) {
     throw EventFault(session_, last,
-                     name + " ends at event " + std::to_string(last) + ", the file's chain says " +
-                         std::to_string(closed.length - 1));
+                     name + " ends at event " + std::to_string(last) +
+                         ", the file's chain states " + std::to_string(closed.length - 1));
   }
   if (closed.head != chain_.head()) {
     throw EventFault(session_, last, "the session's last event is not the one on the file's chain");

@@ -1,5 +1,5 @@
-/// \file What the file's chain says of the study and its sessions, and whether a session agrees
-/// with it.
+/// \file The state of the study and its sessions by the file's chain, and the check of sessions
+///   against it.
 #pragma once
 
 #include "record/fold.hpp"
@@ -35,19 +35,19 @@ struct StudyState {
   /// If the last unblinding was an interim look: the sessions that had ended before it.
   std::optional<std::set<int>> interim;
   /// If the last unblinding showed the registered question alone: the sessions that had ended
-  /// before it. The study then counts as blind, but for the report of that question.
+  /// before it. The study then still counts as blind, except for the report of that question.
   std::optional<std::set<int>> question;
 
-  std::vector<PersonLook> looks;  ///< at one participant each, in order
-  std::set<int> looked_at;        ///< the sessions that they show
+  std::vector<PersonLook> looks;  ///< each at one participant, in order
+  std::set<int> looked_at;        ///< the sessions that the looks show
 
-  /// Whether the study's results, or the answer to its registered question, have a session. An
+  /// Whether the study's results, or the answer to its registered question, include a session. An
   /// interim look shows nothing of sessions that end after it.
   [[nodiscard]] bool reports(int session) const {
     if (question) return question->contains(session);
     return unblinded && (!interim || interim->contains(session));
   }
-  /// Whether a session's outcomes may be shown, if only to look at that participant.
+  /// Whether a session's outcomes may be shown, at least in a look at that participant.
   [[nodiscard]] bool shows(int session) const {
     return reports(session) || looked_at.contains(session);
   }
@@ -57,11 +57,11 @@ struct StudyState {
 /// \throws EventFault if a body cannot be read
 [[nodiscard]] StudyState state_of_chain(std::span<const Event> chain);
 
-/// One session as the file's chain knows it.
+/// One session by the file's chain.
 struct SessionOnFile {
   SessionOpenedBody opened;
   std::optional<SessionClosedBody> closed;
-  std::string replaced_by;  ///< empty: nobody
+  std::string replaced_by;  ///< empty: not replaced
 
   // Sequences on the file's chain; of several exclusions or withdrawals the last.
   std::int64_t opened_at = 0;
@@ -77,7 +77,7 @@ struct SessionOnFile {
   [[nodiscard]] int own_session() const noexcept {
     return opened.own_session > 0 ? opened.own_session : opened.session;
   }
-  /// Whether it was replaced or withdrawn before it ended, and so cannot go on.
+  /// Whether it was replaced or withdrawn before it ended, so that it cannot continue.
   [[nodiscard]] bool is_cut_short() const noexcept {
     return !closed && (replaced_at || withdrawn_at);
   }
@@ -86,10 +86,10 @@ struct SessionOnFile {
 /// When participant ids and enrolment numbers must be unique, each with its visit.
 enum class UniquePlaces {
   always,     ///< at every moment, among sessions not yet replaced: a station's own file
-  in_the_end  ///< among sessions that nobody ever replaced, which collected_chain ensures
+  in_the_end  ///< among sessions that were never replaced, which collected_chain ensures
 };
 
-/// The events of the file's chain in order, held against each other. Links and hashes are not
+/// The events of the file's chain in order, checked against each other. Links and hashes are not
 /// checked here.
 class FileChain {
  public:
@@ -116,19 +116,19 @@ class FileChain {
   UniquePlaces unique_;
   std::optional<StudyCommitment> commitment_;
   std::map<int, SessionOnFile> sessions_;
-  /// With the visit; only of sessions that nobody has replaced.
+  /// With the visit; only of sessions that were not replaced.
   std::set<std::pair<std::string, int>> participants_;
   std::set<std::pair<int, int>> enrolments_;
-  std::vector<Event> seen_by_;  ///< what decides whose outcomes were seen: ends and looks
+  std::vector<Event> ends_and_looks_;  ///< they decide whose outcomes were seen
   bool closed_ = false;
 };
 
-/// Whose signatures count on a file's chain: the station's that the file belongs to, and the
-/// investigator's. Unblinding is the investigator's alone.
+/// The valid signers of a file's chain: the file's station, and the investigator. Only the
+/// investigator signs unblindings.
 class Signatories {
  public:
   /// \param committed  the chain's first event
-  /// \throws EventFault if it cannot be read, or the investigator did not sign for the station
+  /// \throws EventFault if it cannot be read, or the station lacks the investigator's signature
   explicit Signatories(const Event& committed);
 
   /// \throws EventFault if none of them signed the event
@@ -139,8 +139,7 @@ class Signatories {
   std::optional<PublicKey> station_;
 };
 
-/// A station's file chain, checked by itself: links, hashes, signatures, and what the events say of
-/// each other.
+/// A station's file chain with checked links, hashes, signatures, and consistency of its events.
 /// \throws EventFault at the first fault
 [[nodiscard]] FileChain checked_file_chain(std::span<const Event> chain);
 
@@ -150,20 +149,20 @@ struct TraceClaim {
   Digest digest{};
 };
 
-/// Holds one session against its file's chain. It takes the session's events one by one. Every
-/// function throws EventFault, naming the event, at the first thing that does not hold.
+/// Checks one session against its file's chain, event by event. Every function throws EventFault,
+/// naming the event, at the first fault.
 class SessionCheck {
  public:
   /// \param session  its number here
   /// \param on_file, commitment  outlive this
   SessionCheck(int session, const SessionOnFile& on_file, const StudyCommitment& commitment);
 
-  /// The next event: checks its link, and whether the opening is the one on the file's chain.
-  /// \param rows  is brought up to date
+  /// Adds the next event: checks its link, and whether the opening matches the file's chain.
+  /// \param rows  updated
   void add(const Event& event, DerivedRows& rows);
-  /// After the last event: whether the session ends as the file's chain says.
+  /// After the last event: checks the session's end against the file's chain.
   void finish(const DerivedRows& rows) const;
-  /// Whether the stored keys are those that the session began with, less those destroyed since.
+  /// Checks that the stored keys are those of the session's opening, except those destroyed since.
   void check_keys(const WrappedKeys& stored) const;
 
   /// All traces that the events name, by trial.

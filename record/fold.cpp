@@ -53,7 +53,7 @@ void present_trial(DerivedRows& rows, const Event& event) {
   const TrialId id(event.session, body.trial);
   const auto before = rows.trials.find(id);
   if (before != rows.trials.end()) {
-    // After an interruption a trial may be presented anew; a response or a trace settles it.
+    // After an interruption a trial may be presented again; a response or a trace makes it final.
     const TrialRow& row = before->second;
     refuse_if_voided(row, event);
     if (row.state == TrialState::answered) {
@@ -77,7 +77,7 @@ TrialRow& presented_row(DerivedRows& rows, const Event& event, int trial) {
   return found->second;
 }
 
-/// A trial that still waits for its answer, which may also come after a timeout.
+/// A trial without an answer yet; the answer may also follow a timeout.
 TrialRow& waiting_row(DerivedRows& rows, const Event& event, int trial) {
   TrialRow& row = presented_row(rows, event, trial);
   if (row.state == TrialState::answered) refuse_trial(event, trial, "is already answered");
@@ -127,8 +127,8 @@ void explore_again(DerivedRows& rows, const Event& event) {
   ++waiting_row(rows, event, trial).explorations;
 }
 
-/// Every presented trial of the block becomes void. Its new trials have numbers of their own, so
-/// that nothing links them to the old ones.
+/// Every presented trial of the block becomes void. Its new trials have new numbers, so that
+/// nothing links them to the old ones.
 void restart_block(DerivedRows& rows, const Event& event) {
   const BlockBody body = body_of(event, block_from_json);
   std::vector<TrialRow*> block;
@@ -172,10 +172,10 @@ void withdraw_participant(DerivedRows& rows, const Event& event) {
   const WithdrawalBody body = body_of(event, withdrawal_from_json);
   SessionRow& row = named_row(rows, event);
   row.withdrawn = true;
-  row.erased = row.erased || body.kept != Kept::data;
+  row.erased = row.erased || body.kept != Retention::data;
 }
 
-/// In a collected study the file's chain says which station a session comes from.
+/// In a collected study the file's chain states the station of a session.
 void place_session(DerivedRows& rows, const Event& event) {
   const SessionOpenedBody body = body_of(event, session_opened_from_json);
   if (body.station > 0) named_row(rows, event).station = body.station;

@@ -1,6 +1,6 @@
-/// \file What events come to: the rows of sessions and trials. One function makes them, as events
-/// arrive, when a session is added whole, when the tables are verified, and, with answers and
-/// times, from events that were opened (OpenedEvent).
+/// \file The rows of sessions and trials that follow from events. One function derives them as
+///   events arrive, when a whole session is added, when tables are verified, and, with answers and
+///   times, from opened events (OpenedEvent).
 #pragma once
 
 #include "record/event.hpp"
@@ -19,7 +19,7 @@
 namespace touchtrial::record {
 
 enum class SessionState { open, completed, stopped };
-/// As they are written, in the order of the enumerators.
+/// Their names in files, in the order of the enumerators.
 inline constexpr std::array<std::string_view, 3> kSessionStates = {"open", "completed", "stopped"};
 [[nodiscard]] constexpr std::string_view name_of(SessionState state) {
   return kSessionStates[static_cast<std::size_t>(state)];
@@ -33,11 +33,11 @@ struct SessionRow {
   bool simulated = false;
   bool pilot = false;
   bool excluded = false;
-  bool withdrawn = false;  ///< the participant takes no further part
+  bool withdrawn = false;  ///< the participant has withdrawn
   bool erased = false;     ///< and the participant's key is destroyed
   std::string device;
-  /// The participant who took this one's place in the order of enrolment; the same participant if
-  /// the session was restarted; empty if nobody did.
+  /// The participant who inherited the enrolment number; the same participant if the session was
+  /// restarted; empty: not replaced.
   std::string replaced_by{};
   /// The number in the file that it was recorded in (Event::own_session): participant keys and
   /// sealed boxes are bound to it.
@@ -45,7 +45,7 @@ struct SessionRow {
   int station = 0;  ///< the station that it was collected from, from 1; 0: recorded in this file
   int visit = 1;    ///< of the participant, from 1
 
-  /// Whether it may still go on, as far as the session itself is concerned.
+  /// Whether it may still continue, as far as the session itself is concerned.
   [[nodiscard]] bool may_go_on() const noexcept {
     return state == SessionState::open && !withdrawn && replaced_by.empty();
   }
@@ -72,7 +72,7 @@ struct TrialRow {
   double rate_hz = 0.0;  ///< of the trace; 0: there is none
   int explorations = 1;  ///< of the last presentation
 
-  // From opened events alone; else 0 and empty, as in the tables.
+  // Only from opened events; else 0 and empty, as in the tables.
   std::chrono::nanoseconds presented_at{};
   std::optional<std::chrono::nanoseconds> contact_at;
   std::optional<std::chrono::nanoseconds> answered_at;
@@ -105,15 +105,14 @@ struct DerivedRows {
 };
 
 /// The session that an event is about: its own, or the one that an event of a file's chain names.
-/// \return 0 if the event is about none
+/// \return 0 if the event is not about a session
 /// \throws EventFault if the event's body names none, and must
 [[nodiscard]] int session_about(const Event& event);
 
-/// Brings `rows` up to date with one more event, stored or opened. Sessions may be folded in any
-/// order, the events of each session in theirs, and the file's chain after the sessions that it
-/// names.
+/// Updates `rows` with one more event, stored or opened. Sessions may be folded in any order, the
+/// events of each session in order, and the file's chain after the sessions that it names.
 /// \throws EventFault if the event's body cannot be read, or the event cannot follow those before;
-///   `rows` are then as they were
+///   `rows` are then unchanged
 void fold(DerivedRows& rows, const Event& event);
 /// The same for a trace-stored event whose body was read already.
 void fold(DerivedRows& rows, const Event& event, const TraceBody& body);

@@ -17,7 +17,7 @@ constexpr std::size_t kSignatureDigits = 128;
 constexpr std::int64_t kHeadVersion = 1;
 constexpr std::int64_t kMaxEvents = std::numeric_limits<std::int64_t>::max() - 1;
 
-/// What is signed: nobody can pass another signed text off as a head.
+/// The signed text, with a prefix so that no other signed text can pass for a head.
 std::string head_statement(std::string_view text) {
   return "touchtrial head file 1\n" + std::string(text);
 }
@@ -106,8 +106,8 @@ std::string head_copy_of(const HeadRecord& record, const Signer& signer,
 
 namespace {
 
-/// \return the record's text and its signature; nothing if one byte is not as head_copy_of writes
-/// it
+/// \return the record's text and its signature; nothing if any byte differs from the format of
+///   head_copy_of
 std::optional<std::pair<std::string_view, Bytes>> parts_of_copy(std::string_view slot) {
   const std::size_t end = slot.find('\n');
   if (slot.size() != kHeadCopyBytes || end > kHeadCopyBytes - kSignatureDigits - 2)
@@ -122,7 +122,7 @@ std::optional<std::pair<std::string_view, Bytes>> parts_of_copy(std::string_view
   return std::pair(slot.substr(0, end), std::move(*signature));
 }
 
-/// Whose an unsigned record says that it is; empty if it is no record.
+/// The owner that an unsigned record claims; empty if it is not a record.
 std::string claim_of(std::string_view text) {
   try {
     const HeadRecord record = head_record_from(text, "its text");
@@ -152,7 +152,7 @@ HeadCopy read_head_copy(std::string bytes, std::span<const PublicKey> signers) {
     copy.record = head_record_from(text, "its text");
     copy.fault.clear();
   } catch (const StudyError& error) {
-    copy.fault = std::string("is no record of this version (") + error.what() + ")";
+    copy.fault = std::string("is not a record of this version (") + error.what() + ")";
   }
   return copy;
 }

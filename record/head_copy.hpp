@@ -16,27 +16,27 @@ namespace touchtrial::record {
 
 inline constexpr std::size_t kHeadCopyBytes = 12288;
 
-/// A copy as it was read.
+/// A copy after reading.
 struct HeadCopy {
   std::string bytes;
   std::optional<HeadRecord> record;
-  std::string fault;  ///< why there is no record
-  /// Whose the copy says that it is, if it is whole and signed by none of those who count.
+  std::string fault;  ///< why the record is missing
+  /// The owner that the copy claims, if it is complete but not signed by a valid signer.
   std::string claim;
 };
 
 /// The bytes of a copy.
-/// \pre record.sessions are no more than kMaxHeadSessions
+/// \pre at most kMaxHeadSessions in record.sessions
 /// \throws FileError, naming `path`, if the record is too long or has a name that is not UTF-8
 [[nodiscard]] std::string head_copy_of(const HeadRecord& record, const Signer& signer,
                                        const std::filesystem::path& path);
 
 /// \param bytes  any
-/// \param signers  whose signatures count
+/// \param signers  valid public keys
 [[nodiscard]] HeadCopy read_head_copy(std::string bytes, std::span<const PublicKey> signers);
 
-/// The record that the text of a copy is.
-/// \throws StudyError if it is none
+/// Parses the text of a copy.
+/// \throws StudyError if it is not a record
 [[nodiscard]] HeadRecord head_record_from(std::string_view text, const std::string& source);
 
 /// \throws FileError, naming the file, on one line

@@ -29,11 +29,11 @@ namespace {
   refuse_head(path, what + " (" + std::generic_category().message(error) + "); " + remedy);
 }
 
-/// A head file that is open and, if the disk knows locks, locked.
+/// An open head file, locked if the file system supports locks.
 class LockedHead {
  public:
   /// \param access  O_RDONLY or O_RDWR
-  /// \throws FileError if the file cannot be opened, or another program holds it for too long
+  /// \throws FileError if the file cannot be opened, or another program holds the lock for too long
   LockedHead(const std::filesystem::path& path, int access, std::chrono::milliseconds patience)
       : path_(path) {
     const bool writes = access == O_RDWR;
@@ -55,10 +55,10 @@ class LockedHead {
   LockedHead& operator=(const LockedHead&) = delete;
 
   [[nodiscard]] bool is_there() const noexcept { return file_ >= 0; }
-  /// Whether the file is as long as it should be.
+  /// Whether the file has the expected length.
   [[nodiscard]] bool has_its_size() const noexcept { return size_ == off_t{2 * kHeadCopyBytes}; }
 
-  /// The bytes of one slot, as many as there are.
+  /// The existing bytes of one slot.
   [[nodiscard]] std::string slot(std::size_t index) const {
     std::string bytes(kHeadCopyBytes, '\0');
     std::size_t done = 0;
@@ -74,8 +74,8 @@ class LockedHead {
     return bytes;
   }
 
-  /// Puts a slot onto the disk. If that fails, it puts the old bytes back as far as possible, so
-  /// that nobody reads what a power cut may still take away.
+  /// Writes and syncs a slot. If that fails, it restores the old bytes as far as possible, so that
+  /// no program reads bytes that a power cut may still lose.
   /// \throws FileError
   void write(std::size_t index, const std::string& bytes, const std::string& old) const {
     const bool cut =
@@ -94,18 +94,18 @@ class LockedHead {
       refuse_head(path_, "is not a file; move it away");
     }
     wait_for(lock, patience);
-    // Only now: the program that held the lock may have changed the size.
+    // Checked under the lock: the program that held it may have changed the size.
     if (::fstat(file_, &status) == 0) size_ = status.st_size;
   }
 
-  /// A program that was stopped while it holds the lock must not stop this one for ever.
+  /// A suspended program that holds the lock must not block this one for ever.
   void wait_for(int lock, std::chrono::milliseconds patience) const {
     const auto end = std::chrono::steady_clock::now() + patience;
     while (::flock(file_, lock | LOCK_NB) != 0) {
       if (errno == EINTR) continue;
       if (errno != EWOULDBLOCK) {
-        if (lock == LOCK_SH) return;  // the disk knows no locks
-        refuse_with_reason(path_, "cannot be locked", errno, "lay it on a disk of this machine");
+        if (lock == LOCK_SH) return;  // the file system has no locks
+        refuse_with_reason(path_, "cannot be locked", errno, "move it to a local disk");
       }
       if (std::chrono::steady_clock::now() >= end) {
         refuse_head(path_, "another program keeps it locked; end that program");
@@ -131,7 +131,7 @@ class LockedHead {
   off_t size_ = 0;
 };
 
-/// Both slots of a file, and which of them counts.
+/// Both slots of a file, and which of them is current.
 struct HeadSlots {
   std::array<HeadCopy, 2> slots;
   std::size_t latest = 0;
@@ -191,7 +191,7 @@ void require_second_folder(const std::filesystem::path& folder,
   }
 }
 
-bool know_one_database(const HeadRecord& one, const HeadRecord& other) {
+bool describe_one_database(const HeadRecord& one, const HeadRecord& other) {
   return one.study_id == other.study_id && one.station == other.station &&
          one.database == other.database;
 }
@@ -209,18 +209,18 @@ std::optional<Loss> loss_of_chain(const StudyStore& store, int session, const st
   if (same_place) {
     return Loss{.session = session,
                 .what = "event " + std::to_string(known.length - 1) + " of " + name +
-                        " is not the one that the head file knows: it was altered, or the "
-                        "database was rolled back and written anew"};
+                        " is not the one in the head file: it was altered, or the database was "
+                        "rolled back and rewritten"};
   }
   const std::optional<Event> last = store.last_event(session);
   if (!last) {
     return Loss{.session = session,
-                .what = name + " is gone; the head file knows " + counted(known.length, "event") +
+                .what = name + " is gone; the head file records " + counted(known.length, "event") +
                         " of it"};
   }
   return Loss{.session = session,
               .what = name + " has " + counted(last->sequence + 1, "event") +
-                      "; the head file knows " + std::to_string(known.length)};
+                      "; the head file records " + std::to_string(known.length)};
 }
 
 std::map<int, std::string> names_of_sessions(const StudyStore& store) {
@@ -232,7 +232,7 @@ std::map<int, std::string> names_of_sessions(const StudyStore& store) {
   return names;
 }
 
-/// Tells missing answers together with the session that lost them, if that can be only one.
+/// Attributes missing answers to the session that lost them, if only one is possible.
 void add_answers(std::vector<Loss>& found, std::int64_t known, std::int64_t stored) {
   const std::int64_t missing = known - stored;
   if (missing <= 0) return;
@@ -245,23 +245,23 @@ void add_answers(std::vector<Loss>& found, std::int64_t known, std::int64_t stor
   }
   found.push_back({.session = 0,
                    .what = missing_answers(missing) + ": the database has " +
-                           std::to_string(stored) + ", the head file knows " +
+                           std::to_string(stored) + ", the head file records " +
                            std::to_string(known),
                    .answers = missing});
 }
 
 }  // namespace
 
-void HeadRecord::know_file(const ChainHead& end) {
+void HeadRecord::advance_file(const ChainHead& end) {
   if (end.length > file.length) file = end;
 }
 
-void HeadRecord::know_session(int session, const ChainHead& end) {
+void HeadRecord::advance_session(int session, const ChainHead& end) {
   ChainHead& known = sessions[session];
   if (end.length > known.length) known = end;
 }
 
-void HeadRecord::know_answers(std::int64_t answers) {
+void HeadRecord::advance_answers(std::int64_t answers) {
   acknowledged = std::max(acknowledged, answers);
 }
 
@@ -322,7 +322,7 @@ void HeadFile::update(const Signer& signer, const HeadChange& change,
   std::vector<PublicKey> signers(others.begin(), others.end());
   signers.push_back(signer.public_half());
   try {
-    // Another program may make the file between the two.
+    // Another program may create the file between the two attempts.
     constexpr int kTries = 3;
     for (int i = 0; i < kTries; ++i) {
       if (overwrite(signer, change, signers) || create(signer, change)) return;
@@ -347,7 +347,7 @@ bool HeadFile::overwrite(const Signer& signer, const HeadChange& change,
   return true;
 }
 
-/// \return whether there was no file
+/// \return false if the file exists already
 bool HeadFile::create(const Signer& signer, const HeadChange& change) const {
   HeadRecord record;
   change(record);
@@ -356,7 +356,7 @@ bool HeadFile::create(const Signer& signer, const HeadChange& change) const {
   const std::string slot = head_copy_of(record, signer, path_);
   Draft draft(path_, Draft::Kind::file);
   draft.write(bytes_of(slot + slot));
-  return draft.take_free_place();
+  return draft.rename_if_free();
 }
 
 HeadFiles::HeadFiles(const std::filesystem::path& database, std::vector<PublicKey> signers,
@@ -404,7 +404,7 @@ void HeadFiles::update(const Signer& signer, const HeadChange& change) const {
     }
     change(record);
     record.also = also_;
-    if (know_one_database(record, own)) return;
+    if (describe_one_database(record, own)) return;
     refuse_head(second.path(), "belongs to another database; name a folder for each database");
   };
   second.update(signer, change_second, signers_);
@@ -429,9 +429,9 @@ std::vector<KnownHead> known_heads(const StudyStore& store, const std::filesyste
 
 std::vector<Loss> losses(const HeadRecord& known, const StudyStore& store) {
   const HeadRecord now = record_of(store);
-  if (!know_one_database(known, now)) {
+  if (!describe_one_database(known, now)) {
     return {{.session = 0,
-             .what = "the database is not the one that the head file knows: it was made anew, its "
+             .what = "the database is not the one in the head file: it was recreated, its "
                      "first event was altered, or the head file belongs to another database; " +
                      missing_answers(known.acknowledged),
              .answers = known.acknowledged}};
@@ -450,7 +450,7 @@ std::vector<Loss> losses(const HeadRecord& known, const StudyStore& store) {
   return found;
 }
 
-std::string spoken_head(const HeadRecord& record) {
+std::string head_digits(const HeadRecord& record) {
   return in_fours(to_hex(record.file.hash).substr(0, 16));
 }
 

@@ -1,6 +1,6 @@
-/// \file The head file of a database: it stands outside of the database, and knows the ends of its
-/// chains and how many answers were acknowledged. A database that was rolled back, lost its
-/// write-ahead log, or had sessions dropped from its end, lacks something that the head file knows.
+/// \file The head file of a database: outside of the database, it records the ends of its chains
+///   and the number of acknowledged answers. A database that was rolled back, lost its write-ahead
+///   log, or had sessions removed from its end, lacks something that its head file records.
 ///
 /// Order of writing: commit in the database, then `update`, then the acknowledgement. A database
 /// that is ahead of its head file is therefore normal. Format: docs/data-dictionary.md, "Head
@@ -26,57 +26,57 @@ namespace touchtrial::record {
 
 class StudyStore;
 
-/// How many open sessions a head file holds. Of more, it keeps those with the highest numbers.
+/// How many open sessions a head file holds; of more, those with the highest numbers.
 inline constexpr std::size_t kMaxHeadSessions = 64;
 
-/// What a head file says.
+/// The content of a head file.
 struct HeadRecord {
   std::string study_id;
   std::string station;                ///< its name
   Digest database{};                  ///< hash of the first event of the file's chain
-  std::int64_t count = 0;             ///< how often the file was written; 0: there is no file yet
+  std::int64_t count = 0;             ///< number of writes of the file; 0: no file yet
   ChainHead file;                     ///< the end of the file's chain
   std::map<int, ChainHead> sessions;  ///< the ends of open sessions, by number, from 1
   std::int64_t acknowledged = 0;      ///< answers in the whole database
   std::string also;                   ///< folder of the second head file; empty: there is none
 
-  /// Note the end of a chain, or the number of answers, unless more is known already: of two
-  /// programs that wrote to the database, the slower one may come here last.
-  void know_file(const ChainHead& end);
-  void know_session(int session, const ChainHead& end);
-  void know_answers(std::int64_t answers);
+  /// Advance the end of a chain, or the number of answers; never back, because of two programs that
+  /// write to the database the slower one may call this last.
+  void advance_file(const ChainHead& end);
+  void advance_session(int session, const ChainHead& end);
+  void advance_answers(std::int64_t answers);
 
   friend bool operator==(const HeadRecord&, const HeadRecord&) = default;
 };
 
-/// What a head file should know of a database as it is now: for its first record, and after a loss
-/// was accepted. `count` and `also` are left out.
+/// The record that matches the current database: for the first record, and after a loss was
+/// accepted. `count` and `also` are not set.
 [[nodiscard]] HeadRecord record_of(const StudyStore& store);
 
 /// `<database>.head`.
 [[nodiscard]] std::filesystem::path head_path_for(const std::filesystem::path& database);
 
-/// Whose signatures count on a head file.
+/// The valid signers of a head file.
 [[nodiscard]] std::vector<PublicKey> head_signers(const StudyCommitment& commitment);
 
-/// Changes a record. It may be called more than once, each time with a record to change. `update`
-/// sets `count` by itself.
+/// Changes a record. It may be called several times, each with another record. `update` itself sets
+/// `count`.
 using HeadChange = std::function<void(HeadRecord&)>;
 
 /// Writes a change to all head files of a database, as `update` does.
-using HeadKeeper = std::function<void(const HeadChange&)>;
+using HeadWriter = std::function<void(const HeadChange&)>;
 
 /// A head file, and its content.
 struct HeadReading {
   std::filesystem::path file;
   HeadRecord record;
-  /// What is wrong with the other of the file's two copies, or with its size; empty: nothing. A
-  /// power cut during `update` may leave one copy torn.
+  /// The fault of the file's other copy, or of its size; empty: none. A power cut during `update`
+  /// may leave one copy torn.
   std::string damage;
 };
 
-/// One head file: two signed copies of its record, which are written in turn. Several programs and
-/// threads may use one file at a time; a lock on it keeps their changes apart.
+/// One head file: two signed copies of its record, which are written alternately. Several programs
+/// and threads may use one file at a time; a lock serialises their changes.
 class HeadFile {
  public:
   /// \param patience  how long to wait for another program that holds the lock
@@ -85,21 +85,21 @@ class HeadFile {
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
 
-  /// The newest whole copy. Read it before the database, which others may write to meanwhile.
-  /// \param signers  public halves whose signatures count: the station's, the investigator's
+  /// The newest complete copy. Read it before the database, which others may write to meanwhile.
+  /// \param signers  public keys of valid signers: the station, the investigator
   /// \return nothing if there is no file
-  /// \throws FileError if no copy is whole and signed by one of `signers`, or the file cannot be
+  /// \throws FileError if no copy is complete and signed by one of `signers`, or the file cannot be
   ///   read
   [[nodiscard]] std::optional<HeadRecord> read(std::span<const PublicKey> signers) const;
-  /// The same, with what is wrong with the other copy.
+  /// The same, with the fault of the other copy.
   [[nodiscard]] std::optional<HeadReading> reading(std::span<const PublicKey> signers) const;
 
   /// Changes the record, and returns when it is on the disk. If there is no file, `change` gets an
-  /// empty record, whose `count` is 0, and the file is made. Whatever `change` throws comes through
-  /// and leaves the file as it was.
-  /// \param others  whose signatures count beside the signer's own
+  /// empty record, whose `count` is 0, and the file is created. An exception of `change` is passed
+  /// on and leaves the file unchanged.
+  /// \param others  valid signers in addition to `signer`
   /// \throws StoreError if the file cannot be read, locked, written or synced; its last record then
-  ///   stands
+  ///   remains
   void update(const Signer& signer, const HeadChange& change,
               std::span<const PublicKey> others = {}) const;
 
@@ -113,28 +113,28 @@ class HeadFile {
 };
 
 /// The head files of one database: `<database>.head` beside it and, if there is a second folder, a
-/// file of the same name there. Each keeps what it knows by itself, so that a file that was rolled
-/// back with the database is given away by the other.
+/// file of the same name there. Each has its own content, so that the other one reveals a file that
+/// was rolled back with the database.
 class HeadFiles {
  public:
   /// \param signers  as HeadFile::read
   /// \param also  the second folder, preferably on another disk; empty: none; nothing: the one that
   ///   `<database>.head` names
-  /// \throws FileError if the second folder is not there, cannot be written, or is the database's
+  /// \throws FileError if the second folder is missing, cannot be written, or is the database's
   ///   own; as HeadFile::read if `also` is nothing
   HeadFiles(const std::filesystem::path& database, std::vector<PublicKey> signers,
             std::optional<std::filesystem::path> also = {});
 
   /// One path or two, the one beside the database first.
   [[nodiscard]] std::vector<std::filesystem::path> paths() const;
-  /// The second folder as it is recorded; empty: there is none.
+  /// The recorded second folder; empty: none.
   [[nodiscard]] const std::string& also() const noexcept { return also_; }
-  /// The files that there are, in the order of `paths`. A database that has sessions has all of its
-  /// head files, unless they were removed.
+  /// The existing files, in the order of `paths`. A database that has sessions has all of its head
+  /// files, unless they were removed.
   /// \throws FileError as HeadFile::read
   [[nodiscard]] std::vector<HeadReading> read() const;
-  /// As HeadFile::update, for each file in turn. A second file that is missing is made with the
-  /// record of the first.
+  /// As HeadFile::update, for each file in turn. A missing second file is created with the record
+  /// of the first.
   /// \throws StoreError the same; also if the second file belongs to another database
   void update(const Signer& signer, const HeadChange& change) const;
 
@@ -147,32 +147,32 @@ class HeadFiles {
 /// A head file that a database has, or had.
 struct KnownHead {
   std::filesystem::path file;
-  std::optional<HeadReading> reading;  ///< nothing: it is gone
+  std::optional<HeadReading> reading;  ///< nothing: the file is gone
 };
 
-/// The head files that lie beside a database or are on record: the one beside it first, then those
-/// in the folders that the database and that file name. Empty if there are none.
+/// The head files beside a database or on record: first the one beside it, then those in the
+/// folders that the database and that file name. Empty if there are none.
 /// \throws FileError as HeadFile::read
 [[nodiscard]] std::vector<KnownHead> known_heads(const StudyStore& store,
                                                  const std::filesystem::path& database);
 
-/// Something that a head file knows and the database lacks.
+/// Something that a head file records and the database lacks.
 struct Loss {
   int session = 0;           ///< 0: the file's chain, or the database as a whole
-  std::string what;          ///< a sentence for people, without the database's name
-  std::int64_t answers = 0;  ///< acknowledged answers that are missing, if the sentence says so
+  std::string what;          ///< a sentence for messages, without the database's name
+  std::int64_t answers = 0;  ///< missing acknowledged answers, if `what` is about them
 
   friend bool operator==(const Loss&, const Loss&) = default;
 };
 
-/// Holds a database against what a head file knows: the file's chain, every session that was open,
-/// and the number of answers. It compares stored hashes; StudyStore::first_fault computes them.
+/// Compares a database with a head file: the file's chain, every session that was open, and the
+/// number of answers. It compares stored hashes; StudyStore::first_fault computes them.
 /// \return the file's chain first, then sessions by number; empty: nothing is missing
 /// \throws StoreError if the database cannot be read
 [[nodiscard]] std::vector<Loss> losses(const HeadRecord& known, const StudyStore& store);
 
-/// The first 16 digits of the file chain's hash in groups of four, for people to write down and
-/// compare: "0f3a 91c2 77de 4b08". `verify --head` takes them.
-[[nodiscard]] std::string spoken_head(const HeadRecord& record);
+/// The first 16 digits of the file chain's hash in groups of four, to write down and compare: "0f3a
+/// 91c2 77de 4b08". `verify --head` takes them.
+[[nodiscard]] std::string head_digits(const HeadRecord& record);
 
 }  // namespace touchtrial::record

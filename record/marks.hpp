@@ -1,4 +1,4 @@
-/// \file The events that other instruments are told of, and what a session records of that.
+/// \file The marks that are sent to other instruments, and what a session records about them.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,10 @@
 
 namespace touchtrial::record {
 
-/// The events that instruments are told of. The values are the codes on the line, and never change.
-/// None depends on what is presented or answered.
+/// The marks. The values are the codes on the serial line, and never change. None depends on what
+/// is presented or answered.
 enum class Mark : int {
-  session_begins = 1,  ///< or goes on after the program ended
+  session_begins = 1,  ///< or is resumed after the program ended
   session_ends = 2,
   plane_on = 10,
   contact = 11,  ///< the stylus comes near the plane, see session::kLandingHeightMm
@@ -25,16 +25,16 @@ enum class Mark : int {
   stopped = 43,
   practised = 50,  ///< a practice presentation is answered
 };
-/// With hyphens, for instance "plane-on"; "unknown" for a code of none.
+/// With hyphens, for instance "plane-on"; "unknown" for another code.
 [[nodiscard]] std::string_view name_of(Mark mark) noexcept;
 
-/// Sealed part of `marked`: the event codes that went to other instruments since the last such
-/// event, one entry a list for each, and how their clock stood.
+/// Sealed part of `marked`: the marks sent to other instruments since the last such event, one
+/// entry in each list, and the offset of their clock.
 struct MarksBody {
   std::vector<std::int64_t> codes{};   ///< Mark
   std::vector<std::int64_t> trials{};  ///< 0 outside trials
   std::vector<std::int64_t> at_ns{};   ///< of the event, since the session's opening
-  /// From the event to the end of the write on the serial line; 0: no line, or it took nothing.
+  /// From the event to the end of the write on the serial line; 0: no line, or the write failed.
   std::vector<std::int64_t> latency_ns{};
   /// The Lab Streaming Layer's time at the session's opening, s, and its uncertainty; empty: no
   /// layer.

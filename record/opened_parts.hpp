@@ -1,5 +1,5 @@
-/// \file Opened events whose bodies stay in their two parts: who reads a study's answers opens every
-/// event, and few have use for the text of the whole body.
+/// \file Opened events whose bodies stay in two parts: reading a study's answers opens every event,
+///   and joining all bodies would cost time without need.
 #pragma once
 
 #include "core/cipher.hpp"
@@ -12,7 +12,7 @@
 
 namespace touchtrial::record {
 
-/// What is sealed of a session's event, beside what is in clear.
+/// The sealed part of a session's event.
 struct OpenedParts {
   std::chrono::nanoseconds at{};
   BodyParts body;
@@ -25,7 +25,7 @@ class EventOpener {
   explicit EventOpener(const SecretKey& participant_key);
 
   /// \param event  of the session, as it is stored
-  /// \return nothing if the key is wrong, or anything of the event was altered
+  /// \return nothing if the key is wrong, or the event was altered
   [[nodiscard]] std::optional<OpenedParts> operator()(const Event& event) const;
 
  private:
@@ -33,8 +33,8 @@ class EventOpener {
   Unsealer safety_;
 };
 
-/// The body that the two parts come to.
-/// \throws StoreError, naming the key, if they are no such body
+/// Reads a body from its two parts.
+/// \throws StoreError, naming the key, if they are not such a body
 template <typename Body>
 [[nodiscard]] Body from_parts(const BodyParts& parts);
 

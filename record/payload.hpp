@@ -1,4 +1,4 @@
-/// \file What the bodies of events hold. Each struct is one JSON object; see
+/// \file The content of the bodies of events. Each struct is one JSON object; see
 /// docs/data-dictionary.md.
 #pragma once
 
@@ -24,8 +24,8 @@ struct StationIdentity {
   friend bool operator==(const StationIdentity&, const StationIdentity&) = default;
 };
 
-/// `study-committed`, the first event of the file's chain: what this database is about, fixed
-/// before any trial.
+/// `study-committed`, the first event of the file's chain: the study of this database, fixed before
+/// any trial.
 struct StudyCommitment {
   std::string study;          ///< the study's name
   std::string protocol;       ///< the protocol's name
@@ -45,7 +45,7 @@ struct StudyCommitment {
   friend bool operator==(const StudyCommitment&, const StudyCommitment&) = default;
 };
 
-/// `session-opened`: ties a session's chain and key to the file.
+/// `session-opened`: binds a session's chain and key to the file.
 struct SessionOpenedBody {
   int session = 0;
   std::string participant;
@@ -81,9 +81,9 @@ struct ParticipantBody {
   bool after_outcomes = false;  ///< the participant's outcomes had been seen
 };
 
-/// What a withdrawal keeps of the participant. What is gone never comes back.
-enum class Kept {
-  data,           ///< everything; the participant takes no further part
+/// What a withdrawal retains of the participant. Erased data cannot be restored.
+enum class Retention {
+  data,           ///< everything; the participant only leaves the study
   safety_record,  ///< stops, faults, largest forces, reasons and deviations
   nothing         ///< nothing that is sealed
 };
@@ -91,9 +91,9 @@ enum class Kept {
 /// `participant-withdrawn`.
 struct WithdrawalBody {
   int session = 0;
-  Kept kept{};
+  Retention kept{};
   std::string reason;
-  std::string not_erased{};  ///< what the erasure could not reach; in clear
+  std::string not_erased{};  ///< copies that the erasure could not reach; in clear
 };
 
 /// `participant-replaced`.
@@ -113,7 +113,7 @@ struct NoteBody {
 /// `loss-accepted`.
 struct LossBody {
   std::string reason;
-  std::string missing;       ///< what the database lacks, in words; names no outcome
+  std::string missing;       ///< what the database lacks, as text; names no outcome
   std::int64_t answers = 0;  ///< acknowledged answers that are lost
 };
 
@@ -140,7 +140,7 @@ struct ScreenRecord {
   friend bool operator==(const ScreenRecord&, const ScreenRecord&) = default;
 };
 
-/// `opened`, in real time: the device that the hand was on. Says nothing about stimuli.
+/// `opened`, in real time: the device that the hand was on. Reveals nothing about stimuli.
 struct StationRecord {
   std::string model;         ///< as the device reports it; may be empty
   std::string firmware;      ///< likewise
@@ -151,7 +151,7 @@ struct StationRecord {
   /// SHA-256 of the device's certificate, hexadecimal; study::kUnverifiedDevice; or empty: none.
   std::string calibration{};
   std::optional<ScreenRecord> screen{};  ///< only of sessions before a window
-  /// \name The lab's corrections that were in force, on each axis of the device frame
+  /// \name The lab's corrections in force, by axis of the device frame
   ///@{
   std::array<double, 3> force_scale{1.0, 1.0, 1.0};
   std::array<double, 3> length_scale{1.0, 1.0, 1.0};
@@ -179,8 +179,8 @@ struct SessionOpening {
   [[nodiscard]] bool is_visual() const noexcept { return station && station->visual; }
 };
 
-// Of some bodies only a part is in clear (split_body). What their members are in an event that is
-// not opened is said with each.
+// Of some bodies only a part is in clear (split_body). Each sealed member's comment states its
+// value in an event that is not opened.
 
 /// `answered`. Only the trial is in clear; the other members are then empty.
 struct AnswerBody {
@@ -219,27 +219,27 @@ struct DeviationBody {
 /// `paused`.
 struct PauseBody {
   std::string text{};  ///< the experimenter's reason; may be empty; sealed
-  /// The presentation whose answer waits meanwhile; empty between presentations.
+  /// The presentation whose answer is pending; empty between presentations.
   std::optional<int> trial{};
 };
 
 /// `resumed`.
 struct ResumedBody {
   std::string after;              ///< "pause", or "program-ended"
-  double away_s = 0.0;            ///< since the last event before; sealed: 0 if not opened
+  double away_s = 0.0;            ///< since the previous event; sealed: 0 if not opened
   std::string program_version{};  ///< after the program ended
   std::optional<int> trial{};     ///< as in the pause before
 };
 
-/// Reason of an `interrupted` that makes room for a pause. The same presentation is the next one,
-/// whatever the study does after other interruptions.
+/// Reason of an `interrupted` for a pause. The same presentation is the next one, whatever the
+/// study does after other interruptions.
 inline constexpr const char* kPauseReason = "pause";
 
 /// `presented`, `first-contact`, `interrupted`, `timed-out`.
 struct TrialBody {
   int trial = 0;                 ///< from 1
   int block = 0;                 ///< `presented` only
-  std::string reason;            ///< `interrupted` only, and what follows
+  std::string reason;            ///< `interrupted` only, like the members below
   std::string safety_fault{};    ///< as InterruptionDetail has it
   std::string device_fault{};    ///< likewise
   double largest_force_n = 0.0;  ///< before the interruption; sealed: 0 if not opened
@@ -259,15 +259,15 @@ struct ServoHealth {
   double lateness_p99_us = 0.0;
   double lateness_p999_us = 0.0;
   double lateness_worst_us = 0.0;
-  std::int64_t lost = 0;  ///< samples that found no room in the ring to the trace
+  std::int64_t lost = 0;  ///< samples that did not fit into the ring to the trace
   std::int64_t held = 0;  ///< samples of the trace that were filled in, for overruns and lost ones
 
   friend bool operator==(const ServoHealth&, const ServoHealth&) = default;
 };
 
-/// `trace-stored`: whether the hand did what the instructions ask for, each within its window or
-/// not. It counts what the hand did, and not what the texture did to it: with the forces of the
-/// texture, the same windows would tell rough textures from smooth ones.
+/// `trace-stored`: whether the hand stayed within each window of the instructions. Only the hand's
+/// own motion and force count: with the forces of the texture, the windows would distinguish rough
+/// textures from smooth ones.
 struct HandWindows {
   bool contact = true;  ///< long enough at the plane
   bool path = true;     ///< far enough along it
@@ -278,7 +278,7 @@ struct HandWindows {
 };
 
 /// `trace-stored`: the hand's windows and the servo's health in clear; the sealed part
-/// (TrialMeasures) says what was felt.
+/// (TrialMeasures) describes what was felt.
 struct TraceBody {
   int trial = 0;
   std::int64_t samples = 0;  ///< sealed: 0 if not opened
@@ -298,7 +298,7 @@ struct TraceBody {
   std::optional<ServoHealth> servo{};  ///< real time only
 };
 
-/// Sealed part of `trace-stored`: numbers that would tell stimuli apart.
+/// Sealed part of `trace-stored`: numbers that depend on the stimulus.
 struct TrialMeasures {
   double contact_s = 0.0;
   double path_mm = 0.0;  ///< length of the stylus' path while in contact
@@ -311,8 +311,8 @@ struct TrialMeasures {
   friend bool operator==(const TrialMeasures&, const TrialMeasures&) = default;
 };
 
-/// `interrupted`, in real time: what happened, and the last seconds before it. The faults' names
-/// are in clear too.
+/// `interrupted`, in real time: the faults, and the last seconds before them. The faults' names are
+/// also in clear.
 struct InterruptionDetail {
   std::string safety_fault;      ///< name of the device layer's SafetyFault
   std::string device_fault;      ///< name of its DeviceFault
@@ -323,23 +323,23 @@ struct InterruptionDetail {
   friend bool operator==(const InterruptionDetail&, const InterruptionDetail&) = default;
 };
 
-/// A multiple of 0.1 that has one decimal when it is printed.
+/// Rounds to a multiple of 0.1, printed with one decimal.
 [[nodiscard]] inline double in_tenths(double number) {
   return std::round(10.0 * number) / 10.0;
 }
 
-/// `closed`. How answers are spread is not in it: where a key means something, that is the outcome.
+/// `closed`. Without the distribution of answers, which is the outcome if positions have meanings.
 struct ClosedBody {
   bool complete = false;  ///< whether the schedule was finished
   int answers = 0;        ///< answered presentations
   bool one_key = false;   ///< see session::Session::close
-  /// That was sent in all presentations, to tenths of a newton; sealed, since weak levels of an
-  /// adaptive track need less. Empty: there was none, or it is not opened.
+  /// Over all presentations, to tenths of a newton; sealed, because weak levels of an adaptive
+  /// track need less. Empty: none, or not opened.
   std::optional<double> largest_force_n{};
 };
 
-/// Sealed part of `closed`: the chain before it. Nobody without the key can give another chain this
-/// end.
+/// Sealed part of `closed`: the chain before it. Without the key, another chain cannot be given
+/// this end.
 struct ChainEnd {
   std::int64_t length = 0;  ///< events before `closed`
   Digest head{};            ///< hash of the last of them

@@ -24,13 +24,15 @@
 namespace touchtrial::record {
 
 /// By enumerator.
-inline constexpr std::array<std::string_view, 3> kKeptNames = {"data", "safety-record", "nothing"};
+inline constexpr std::array<std::string_view, 3> kRetentionNames = {"data", "safety-record",
+                                                                    "nothing"};
 
-/// Takes the members of a body from one JSON object, of several with one key the last. Every
-/// function throws StoreError, naming the key, if the value is missing or not what is asked for.
+/// Reads the members of a body from one JSON object; of several with one key the last counts. Every
+/// function throws StoreError, naming the key, if the value is missing or has another type or
+/// range.
 class BodyReader {
  public:
-  /// \param more  an object whose members count before those of the first; empty: there is none
+  /// \param more  an object whose members override those of the first; empty: none
   /// \throws StoreError if a text is not one JSON object
   explicit BodyReader(std::string_view text, std::string_view more = {}) : first_(parsed(text)) {
     if (!more.empty()) second_ = parsed(more);
@@ -63,10 +65,10 @@ class BodyReader {
     if (!bytes || bytes->size() != value.size()) refuse(key, kWhy);
     std::copy(bytes->begin(), bytes->end(), value.begin());
   }
-  void operator()(std::string_view key, Kept& value) const {
-    const auto* const found = std::ranges::find(kKeptNames, text(key, "is not a text"));
-    if (found == kKeptNames.end()) refuse(key, "is none of data, safety-record and nothing");
-    value = static_cast<Kept>(found - kKeptNames.begin());
+  void operator()(std::string_view key, Retention& value) const {
+    const auto* const found = std::ranges::find(kRetentionNames, text(key, "is not a text"));
+    if (found == kRetentionNames.end()) refuse(key, "is not data, safety-record or nothing");
+    value = static_cast<Retention>(found - kRetentionNames.begin());
   }
   /// A whole number, at least `least`.
   void operator()(std::string_view key, std::int64_t& value, std::int64_t least = 0) const {
@@ -83,7 +85,7 @@ class BodyReader {
       refuse(key, "is not a list of the right length");
     }
     for (std::size_t i = 0; i < size; ++i) {
-      if (!found[i].is_number()) refuse(key, "holds what is no number");
+      if (!found[i].is_number()) refuse(key, "contains something other than numbers");
       value[i] = found[i].get<double>();
     }
   }
@@ -91,7 +93,7 @@ class BodyReader {
     const Json& found = at(key);
     if (!found.is_array()) refuse(key, "is not a list");
     for (const Json& number : found) {
-      if (!number.is_number()) refuse(key, "holds what is no number");
+      if (!number.is_number()) refuse(key, "contains something other than numbers");
       value.push_back(number.get<double>());
     }
   }
@@ -100,7 +102,8 @@ class BodyReader {
     const Json& found = at(key);
     if (!found.is_array()) refuse(key, "is not a list");
     for (const Json& number : found) {
-      if (!number.is_number_unsigned()) refuse(key, "holds what is no whole number from 0 on");
+      if (!number.is_number_unsigned())
+        refuse(key, "contains something other than whole numbers from 0");
       value.push_back(number.get<std::int64_t>());
     }
   }
@@ -113,18 +116,17 @@ class BodyReader {
       value.push_back(static_cast<int>(number));
     }
   }
-  /// Any of these, or nothing if the key is absent.
+  /// Any of these types, or nothing if the key is absent.
   template <typename Value, typename... Least>
   void operator()(std::string_view key, std::optional<Value>& value, Least... least) const {
     if (find(key) != nullptr) (*this)(key, value.emplace(), least...);
   }
-  /// Any of these, left as it is if the key is absent.
+  /// Any of these types, unchanged if the key is absent.
   template <typename Value, typename... Least>
   void if_any(std::string_view key, Value& value, Least... least) const {
     if (find(key) != nullptr) (*this)(key, value, least...);
   }
-  /// A member that is sealed: left as it is if the key is absent, as it is before the event is
-  /// opened.
+  /// A sealed member: unchanged if the key is absent, which is so before the event is opened.
   template <typename Value>
   void sealed(std::string_view key, Value& value) const {
     if_any(key, value);
@@ -183,11 +185,11 @@ class BodyReader {
   }
 
   Json first_ = Json::object();
-  Json second_ = Json::object();  ///< whose members count before those of the first
+  Json second_ = Json::object();  ///< its members override those of the first
   std::string place_;             ///< JSON pointer
 };
 
-/// Puts the members of a body into one JSON object. The limits that BodyReader checks mean nothing
+/// Puts the members of a body into one JSON object. The limits that BodyReader checks are ignored
 /// here.
 class BodyWriter {
  public:
@@ -199,8 +201,8 @@ class BodyWriter {
   void operator()(const char* key, const Signature& value) {
     object_[key] = to_hex(ByteView(value));
   }
-  void operator()(const char* key, Kept value) {
-    object_[key] = kKeptNames.at(static_cast<std::size_t>(value));
+  void operator()(const char* key, Retention value) {
+    object_[key] = kRetentionNames.at(static_cast<std::size_t>(value));
   }
   /// JSON has no infinities.
   void operator()(const char* key, double value) {

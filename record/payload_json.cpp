@@ -43,7 +43,7 @@ void visit_member(Io& io, In<Io, int>& visit) {
   io.if_any("visit", visit, 2);
 }
 
-/// A choice or a rating, whose members lie beside the body's others.
+/// A choice or a rating, whose members are inlined into the body.
 template <typename Io>
 void answer_members(Io& io, In<Io, std::optional<Answer>>& answer) {
   std::optional<int> position = position_of(answer);
@@ -60,7 +60,7 @@ void answer_members(Io& io, In<Io, std::optional<Answer>>& answer) {
   }
 }
 
-// What each body holds: key, member, and the least value of a whole number unless it is 0.
+// The members of each body: key, member, and the minimum of a whole number unless it is 0.
 
 template <typename Io>
 void members(Io& io, In<Io, StationIdentity>& body) {
@@ -314,7 +314,7 @@ void members(Io& io, In<Io, HeadsBody>& body) {
   io("also", body.also);
 }
 
-// Only read: those who write these leave members out by kind of event.
+// Only for reading: writers omit members by kind of event.
 
 template <typename Io>
 void members(Io& io, In<Io, TrialBody>& body) {
@@ -458,7 +458,7 @@ int session_from_json(const std::string& text) {
   return member_of<int>(text, "session", 1);
 }
 
-// The structs take no part in this, so that members added to them later change no collected chain.
+// Works on JSON, so that members added to the structs later do not change collected chains.
 std::string renumbered(const std::string& body, int session) {
   static_cast<void>(session_from_json(body));
   json object = json::parse(body);

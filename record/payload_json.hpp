@@ -1,5 +1,5 @@
-/// \file The bodies of events as compact JSON with sorted keys, and back. Reading is strict about
-/// what a body must hold and ignores keys that a later version may add. Format:
+/// \file The bodies of events as compact JSON with sorted keys, and back. Reading requires all
+/// members of a body and ignores keys that a later version may add. Format:
 /// docs/data-dictionary.md, "Events".
 #pragma once
 
@@ -25,10 +25,10 @@ template <typename Body>
 [[nodiscard]] std::string remark_to_json(const std::string& text);
 
 /// The body of a station's event as a collected study holds it: `session` is the session's number
-/// there, and nothing else changes.
-/// \throws StoreError if the text is no body about a session
+/// there; everything else is unchanged.
+/// \throws StoreError if the text is not a body about a session
 [[nodiscard]] std::string renumbered(const std::string& body, int session);
-/// The same for a `session-opened`, which also says where the session comes from.
+/// The same for a `session-opened`, which also gets the session's station.
 [[nodiscard]] std::string renumbered_opening(const std::string& body, int session, int station);
 
 /// All readers throw StoreError if the text is not such a body; the message names the key.

@@ -10,15 +10,15 @@
 namespace touchtrial::record {
 namespace {
 
-/// The length of a text in steps of so many bytes is all that its box tells.
+/// A box reveals the length of its text only in steps of this many bytes.
 constexpr std::size_t kStep = 256;
 
-/// A remark without a code is no deviation. Everything else is part of the safety record.
+/// A remark without a code is not a deviation. Everything else is part of the safety record.
 bool is_plain_remark(EventKind kind, const std::string& body) {
   return kind == EventKind::participant_noted && note_from_json(body).code.empty();
 }
 
-/// A collected study keeps what this names, but gives chains and sessions other numbers.
+/// Collecting renumbers chains and sessions but does not change these members.
 std::string context_of(EventKind kind, std::chrono::nanoseconds at, int own_session) {
   return "text|" + std::to_string(own_session) + "|" + std::string(name_of(kind)) + "|" +
          std::to_string(at.count());
@@ -29,7 +29,8 @@ std::string context_of(EventKind kind, std::chrono::nanoseconds at, int own_sess
 PersonText sealed_person_text(EventKind kind, std::chrono::nanoseconds at, const std::string& body,
                               const SessionOpenedBody& opened) {
   BodyParts parts = split_body(kind, body);
-  parts.hidden.resize((parts.hidden.size() / kStep + 1) * kStep, ' ');  // blanks end a JSON text
+  parts.hidden.resize((parts.hidden.size() / kStep + 1) * kStep,
+                      ' ');  // trailing blanks are valid JSON
   const int own_session = opened.own_session > 0 ? opened.own_session : opened.session;
   SystemEntropy entropy;
   return {std::move(parts.clear),

@@ -1,6 +1,6 @@
 /// \file Texts about a person on the file's chain, which anybody can seal and only a session's keys
-/// open: remarks go with the participant's key, reasons and deviations with the safety key. Codes
-/// stay in clear. Format: docs/data-dictionary.md, "Events".
+/// open: the participant's key opens remarks, the safety key reasons and deviations. Codes stay in
+/// clear. Format: docs/data-dictionary.md, "Events".
 #pragma once
 
 #include "record/event.hpp"
@@ -11,13 +11,13 @@
 
 namespace touchtrial::record {
 
-/// What is left of the keys that open a session.
+/// The remaining keys of a session.
 struct PersonKeys {
   std::optional<SecretKey> participant;  ///< empty: destroyed
   std::optional<SecretKey> safety;       ///< likewise
 };
 
-/// A body in two: as anybody may read it, and a box.
+/// A body in two parts: one in clear, and a box.
 struct PersonText {
   std::string clear;  ///< JSON
   Bytes sealed;
@@ -32,13 +32,13 @@ struct PersonText {
                                             const std::string& body,
                                             const SessionOpenedBody& opened);
 
-/// The key that opens an event's sealed part, of any chain, if it is left.
+/// The key that opens an event's sealed part, of any chain, if it still exists.
 [[nodiscard]] const std::optional<SecretKey>& opener_of(const Event& event, const PersonKeys& keys);
 
 /// An event with its texts back in its body.
-/// \param event  of a file's chain, as it is stored; one without texts stays as it is
+/// \param event  of a file's chain, as it is stored; one without texts is unchanged
 /// \param own_session  see Event::own_session, of the session that it is about
-/// \return nothing if no key is there that opens it, or anything of it was altered
+/// \return nothing if its key is missing or it was altered
 [[nodiscard]] std::optional<Event> opened_person_text(const Event& event, int own_session,
                                                       const PersonKeys& keys);
 

@@ -25,7 +25,7 @@ constexpr int kPersonalBusyTimeoutMs = 2000;
   throw StoreError(one_line(path.string() + ": " + why));
 }
 
-/// Creates the file with its final permissions, so that others can never read it, not for a moment.
+/// Creates the file with its final permissions, so that others cannot read it even for a moment.
 void make_private(const std::filesystem::path& path) {
   refuse_link(path);
   const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
@@ -49,7 +49,7 @@ void set_up(SQLite::Database& connection, const std::filesystem::path& path) {
                                    "; use the program that wrote it");
   }
   if (id != 0 || connection.execAndGet("SELECT count(*) FROM sqlite_schema").getInt() != 0) {
-    refuse_personal_data(path, "is no personal-data file of Touchtrial; move it away");
+    refuse_personal_data(path, "is not a personal-data file of Touchtrial; move it away");
   }
   SQLite::Transaction transaction(connection);
   connection.exec(
@@ -72,7 +72,7 @@ PersonalRecord record_in(SQLite::Statement& row) {
   return record;
 }
 
-/// Calls `work`; errors of SQLite come out as StoreError with file and remedy.
+/// Calls `work`; errors of SQLite are rethrown as StoreError with file and remedy.
 template <typename Work>
 auto translated(const std::filesystem::path& path, Work&& work) {
   try {

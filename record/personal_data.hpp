@@ -1,5 +1,5 @@
-/// \file Who the participants are, and what they consented to, in a separate file beside the database.
-/// Exports take the versions of consent forms from it, and the rest for one person alone. Format:
+/// \file The participants' identities and consents, in a separate file beside the database. Exports
+/// take the versions of consent forms from it, and the rest for one person alone. Format:
 /// docs/data-dictionary.md, "Personal data".
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace touchtrial::record {
 
-/// One consent, and what the participant said then.
+/// One consent, and the participant's details at that time.
 struct PersonalRecord {
   std::string participant;
   std::string consent_version;  ///< version of the form that was signed
@@ -32,21 +32,22 @@ class PersonalData {
  public:
   /// Opens it, or makes an empty one.
   /// \throws FileError, with the remedy, if others may read it
-  /// \throws StoreError, with the remedy, if it cannot be made, or is a newer file or no such file
+  /// \throws StoreError, with the remedy, if it cannot be made, or is a file of a newer version or
+  ///   another kind
   explicit PersonalData(const std::filesystem::path& path);
   ~PersonalData();
   PersonalData(PersonalData&&) noexcept;
   PersonalData& operator=(PersonalData&&) noexcept;
 
-  /// Adds a consent. Earlier ones of the participant stay.
+  /// Adds a consent; earlier ones of the participant are retained.
   /// \throws StoreError if it cannot be written
   void put(const PersonalRecord& record);
-  /// The participant's last consent, with the age, gender and contact that were given last.
+  /// The participant's last consent, with the latest age, gender and contact.
   [[nodiscard]] std::optional<PersonalRecord> find(const std::string& participant) const;
   /// Every consent, by participant, each participant's in the order in which they were recorded.
   [[nodiscard]] std::vector<PersonalRecord> all() const;
   /// Removes every consent of a participant.
-  /// \return whether there was such a participant
+  /// \return whether the participant had any
   /// \throws StoreError if it cannot be written
   bool remove(const std::string& participant);
 

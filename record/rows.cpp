@@ -140,7 +140,7 @@ std::vector<Event> read_events(const Database& database, int session, std::excep
 }
 
 std::optional<Event> read_event(const Database& database, int session, std::int64_t sequence) {
-  // By its whole key: the ranges of for_each_event would walk through all events of the session.
+  // By its whole key: the range query of for_each_event would scan all events of the session.
   static const std::string sql = std::string(kEventsSql) + "WHERE session = ? AND sequence = ?";
   Query query = database.query(sql.c_str());
   query.bind(session).bind(sequence);
@@ -185,7 +185,7 @@ std::map<int, SessionRow> read_sessions(const Database& database) {
 }
 
 std::vector<TrialRow> read_trials(const Database& database) {
-  // Kinds and bodies decide: hashes and sealed parts, most of a row, stay where they are.
+  // Reads only kinds and bodies, not hashes and sealed parts, which are most of a row.
   Query query = database.query(
       "SELECT session, sequence, kind, body FROM events WHERE session > 0 AND kind IN ('opened', "
       "'presented', 'answered', 'interrupted', 'timed-out', 'trace-stored', 'explored-again', "

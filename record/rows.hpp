@@ -20,13 +20,13 @@ using EventVisitor = std::function<void(const Event&)>;
 
 void insert_event(const Database& database, const Event& event);
 void insert_trace(const Database& database, const SealedTrace& trace);
-/// Those of the two that there are.
+/// Inserts the existing ones of the two keys.
 void insert_keys(const Database& database, int session, const WrappedKeys& keys);
 void insert_station_key(const Database& database, int session, const Bytes& kept);
 
 [[nodiscard]] WrappedKeys read_keys(const Database& database, int session);
 
-/// The events that are asked for: those with all of the members that are given.
+/// Selects events that match all given members.
 struct EventFilter {
   std::optional<std::int64_t> session{};
   std::span<const EventKind> kinds{};  ///< any of these; empty: all
@@ -34,12 +34,13 @@ struct EventFilter {
 
 /// Calls `visit` for the events that the filter names, by session and sequence. `visit` may use the
 /// database.
-/// \throws EventFault if a row is no event: unknown kind, impossible number, hash of another length
+/// \throws EventFault if a row is not a valid event: unknown kind, impossible number, hash of
+///   another length
 void for_each_event(const Database& database, const EventFilter& filter, const EventVisitor& visit);
 /// The same for all events of one chain.
 void for_each_event(const Database& database, std::int64_t session, const EventVisitor& visit);
 /// The events of one chain, in order, as far as they can be read.
-/// \param fault  gets what for_each_event would throw at the first that cannot
+/// \param fault  set to the exception that for_each_event would throw at the first unreadable event
 [[nodiscard]] std::vector<Event> read_events(const Database& database, int session,
                                              std::exception_ptr& fault);
 /// One event, if it exists.
@@ -47,17 +48,17 @@ void for_each_event(const Database& database, std::int64_t session, const EventV
 [[nodiscard]] std::optional<Event> read_event(const Database& database, int session,
                                               std::int64_t sequence);
 
-/// The last event of one chain, if there is one; those before it are not read.
+/// The last event of one chain, if any; earlier events are not read.
 /// \throws the same
 [[nodiscard]] std::optional<Event> read_last_event(const Database& database, int session);
 
 /// The number of every session that has events, except 0, ascending.
 [[nodiscard]] std::vector<std::int64_t> sessions_with_events(const Database& database);
 
-/// What the events of each session come to, and the file's chain says of it, by number.
+/// The row of each session by its events and the file's chain, by number.
 /// \throws EventFault if an event cannot be read, or cannot follow those before
 [[nodiscard]] std::map<int, SessionRow> read_sessions(const Database& database);
-/// What the events come to for each trial, by session and trial.
+/// The row of each trial, by session and trial.
 /// \throws the same
 [[nodiscard]] std::vector<TrialRow> read_trials(const Database& database);
 

@@ -11,7 +11,7 @@
 namespace touchtrial::record {
 namespace {
 
-/// Without row numbers where rows are small, under keys of several columns.
+/// WITHOUT ROWID for small rows with keys of several columns.
 constexpr const char* kTablesSql = R"sql(
 CREATE TABLE events(
   session INTEGER NOT NULL,
@@ -53,7 +53,7 @@ std::string schema_sql() {
   return kTablesSql + append_only_sql("events", "sequence") + append_only_sql("traces", "trial");
 }
 
-/// By type and name: the table that an object belongs to, and its SQL without blanks and line ends.
+/// By type and name: an object's table, and its SQL without blanks and line ends.
 using SchemaObjects = std::map<std::pair<std::string, std::string>, std::string>;
 
 SchemaObjects objects_of(SQLite::Database& connection) {
@@ -68,8 +68,8 @@ SchemaObjects objects_of(SQLite::Database& connection) {
   return objects;
 }
 
-/// What SQLite keeps for itself, which any viewer's ANALYZE or AUTOINCREMENT leaves behind. Its
-/// statistics sample no column but the keys of rows, which are in clear.
+/// SQLite's internal tables, which a viewer's ANALYZE or AUTOINCREMENT leaves behind. Its
+/// statistics sample only the keys of rows, which are in clear.
 const SchemaObjects& harmless_objects() {
   static const auto table = [](std::string name, const std::string& columns) {
     std::string sql = name + " CREATETABLE" + name + "(" + columns + ")";
@@ -112,7 +112,7 @@ std::string identifier(const std::string& name) {
   return quoted + '"';
 }
 
-/// A word for a shell, on one line: '...' or, where a byte cannot be shown, $'...' of bash and zsh.
+/// A quoted shell word, on one line: '...' or, with unprintable bytes, $'...' of bash and zsh.
 std::string shell_word(const std::string& text) {
   if (one_line(text) == text) {
     std::string word = "'";
@@ -136,13 +136,13 @@ std::string shell_word(const std::string& text) {
 /// The command that drops objects and columns.
 /// \param statements  SQL
 std::string drop_command(const std::filesystem::path& database, const std::string& statements) {
-  // sqlite3 takes a name that begins so for an option or an address.
+  // sqlite3 would parse a name that begins like this as an option or an address.
   const std::string path = database.string();
   const bool is_name = path.starts_with('-') || path.starts_with("file:");
   return "sqlite3 " + shell_word(is_name ? "./" + path : path) + ' ' + shell_word(statements);
 }
 
-/// Drops what does not belong to the schema: first what depends on tables.
+/// Drops foreign objects: first those that depend on tables.
 /// \param alien  objects; internal indexes go with their tables
 std::string drop_statements(const SchemaObjects& alien) {
   std::string sql;

@@ -18,12 +18,12 @@ void make_tables(const Database& database);
 
 struct SchemaFault {
   std::string what;    ///< the first difference, by type and name
-  std::string remedy;  ///< a shell's command that removes all that was added; empty: none does
+  std::string remedy;  ///< a shell command that removes all additions; empty: none does
 };
 
 /// Compares the tables, indices and triggers of a database with those of kSchemaVersion. Finds, for
 /// instance, a dropped trigger, an altered table, or a view that stands in for a table. SQLite's
-/// own tables, as ANALYZE makes them, may be there.
+/// internal tables, for example of ANALYZE, are allowed.
 [[nodiscard]] std::optional<SchemaFault> schema_fault(const Database& database);
 
 }  // namespace touchtrial::record

@@ -23,7 +23,7 @@ std::optional<SecretKey> key_from(const std::optional<Bytes>& bytes) {
   return key;
 }
 
-// What each box is bound to; part of the format.
+// The context that each box is bound to; part of the format.
 
 std::string participant_key_context(int own_session) {
   return "participant-key|" + std::to_string(own_session);
@@ -48,7 +48,7 @@ std::string trace_context(int own_session, int trial) {
 }
 
 // The sealed part of an event: its time, the length of the hidden part of its body, that part, and
-// the secret text. Numbers have their lowest byte first.
+// the secret text. Numbers are little-endian.
 
 constexpr std::size_t kTimeSize = 8;
 constexpr std::size_t kLengthSize = 4;
@@ -204,7 +204,7 @@ SealedTrace seal_trace(int own_session, int trial, const Trace& trace,
 }
 
 std::optional<Trace> unsealed_trace(const SealedTrace& sealed, const SecretKey& participant_key) {
-  // Whoever sealed it chose the padding, which its end marks.
+  // The sealer chose the padding, whose start is marked.
   const std::optional<Bytes> bytes = unseal(
       participant_key, trace_context(sealed.session, sealed.trial), sealed.box, /*padded_size=*/1);
   if (!bytes) return std::nullopt;

@@ -1,9 +1,9 @@
-/// \file What is encrypted under a participant's two keys, and who holds them: the investigator
-/// always, the station only while the session is open. The safety key follows from the
-/// participant's key, and outlives it: it opens why sessions were stopped, what deviated and how a
-/// session ended, and no outcome. A box is bound to the session's own number (Event::own_session)
-/// and to its place there, an event's also to all that is in clear of it, so that none can be
-/// passed off as another. Format: docs/data-dictionary.md, "Events".
+/// \file Encryption under a participant's two keys, which the investigator always holds, and the
+///   station while the session is open. The safety key is derived from the participant's key, and
+///   outlives it: it opens reasons of stops, deviations and the end of a session, but no outcome. A
+///   box is bound to the session's own number (Event::own_session) and to its place there, an
+///   event's box also to the event's clear part, so that boxes cannot be exchanged. Format:
+///   docs/data-dictionary.md, "Events".
 #pragma once
 
 #include "core/public_keys.hpp"
@@ -16,9 +16,9 @@
 
 namespace touchtrial::record {
 
-/// An encrypted trace, on its way to a database or from one.
+/// An encrypted trace, as written to or read from a database.
 struct SealedTrace {
-  int session = 0;  ///< its own number, see Event::own_session: the box is bound to it
+  int session = 0;  ///< its own number (Event::own_session), to which the box is bound
   int trial = 0;
   Bytes box;
 
@@ -30,8 +30,8 @@ struct SealedTrace {
 /// Whether the sealed parts of a session's events of this kind belong to the safety record.
 [[nodiscard]] bool is_safety_record(EventKind kind);
 
-/// A session's two keys as a database holds them, each sealed for the investigator. Once one is
-/// destroyed, nobody can read what it seals any more.
+/// A session's two keys as a database holds them, each sealed for the investigator. What a key
+/// sealed is unreadable once the key is destroyed.
 struct WrappedKeys {
   std::optional<Bytes> participant;  ///< empty: destroyed
   std::optional<Bytes> safety;       ///< likewise
@@ -39,7 +39,7 @@ struct WrappedKeys {
   friend bool operator==(const WrappedKeys&, const WrappedKeys&) = default;
 };
 
-/// What a database gets to know of a new session's keys.
+/// The part of a new session's keys that a database stores.
 struct NewKeys {
   Bytes participant;    ///< sealed for the investigator
   Bytes safety;         ///< likewise
@@ -50,7 +50,7 @@ struct NewKeys {
 /// \param own_session  the session's own number, see SessionRow
 [[nodiscard]] NewKeys wrap_participant_key(const PublicKey& investigator, int own_session,
                                            const SecretKey& participant_key);
-/// \return nothing if the bytes are no such key, or another session's
+/// \return nothing if the bytes are not such a key, or another session's
 [[nodiscard]] std::optional<SecretKey> unwrap_participant_key(const BoxKeys& investigator,
                                                               int own_session,
                                                               const Bytes& wrapped);
@@ -58,7 +58,8 @@ struct NewKeys {
 [[nodiscard]] std::optional<SecretKey> unwrap_safety_key(const BoxKeys& investigator,
                                                          int own_session, const Bytes& wrapped);
 
-/// What opens texts about a person on the file's chain: of the safety record, and of the remarks.
+/// The keys that open texts about a person on the file's chain: of the safety record, and of
+/// remarks.
 [[nodiscard]] BoxKeys reasons_box(const SecretKey& safety_key);
 [[nodiscard]] BoxKeys remarks_box(const SecretKey& participant_key);
 
@@ -66,18 +67,17 @@ struct NewKeys {
 /// \param station_secret  see study::Station
 [[nodiscard]] Bytes keep_participant_key(const SecretKey& station_secret, int own_session,
                                          const SecretKey& participant_key);
-/// \return nothing if the bytes are no such key, another session's or another station's
+/// \return nothing if the bytes are not such a key, or another session's or station's
 [[nodiscard]] std::optional<SecretKey> kept_participant_key(const SecretKey& station_secret,
                                                             int own_session, const Bytes& kept);
 
 /// An event of a session as it was recorded.
 struct OpenedEvent {
   Event event;         ///< with its time and its whole body; its hash is that of the stored event
-  std::string secret;  ///< text that no body holds (schedule, measures); may be empty
+  std::string secret;  ///< text outside the body (schedule, measures); may be empty
 };
 
-/// Seals the time of a session's event, the members of its body that are not in clear, and a secret
-/// text.
+/// Seals the time of a session's event, the sealed members of its body, and a secret text.
 /// \param event  with its time, whole body and `previous`
 /// \param padding  bytes, see touchtrial::seal; a multiple of kSealedUnit
 /// \return the event as it is stored, with its hash
@@ -99,7 +99,7 @@ struct OpenedEvent {
 [[nodiscard]] std::optional<std::string> unsealed(const Event& event,
                                                   const SecretKey& participant_key);
 
-/// Encodes and encrypts a trace. The size of the box depends on its tens of seconds alone
+/// Encodes and encrypts a trace. The size of the box depends only on its tens of seconds
 /// (trace_padding).
 /// \param own_session  the session's own number, see SessionRow
 /// \throws what encode_trace throws

@@ -1,4 +1,4 @@
-/// \file Keeps a second program out of a participant's session.
+/// \file Prevents two programs from running a participant's session at once.
 #pragma once
 
 #include <filesystem>
@@ -7,14 +7,14 @@
 namespace touchtrial::record {
 
 /// Holds a lock on one participant of a study while it exists. The kernel releases the lock when
-/// the process ends, in whatever way. The lock is on `<db>.lock`, an empty file that stays, and
-/// does not hinder sessions of other participants. It is advisory: it keeps only this program's
-/// sessions apart. Folders that several machines share may not support such locks.
+/// the process ends in any way. The lock is on `<db>.lock`, an empty file that remains, and does
+/// not block sessions of other participants. It is advisory: only this program respects it. Network
+/// folders may not support such locks.
 class SessionLock {
  public:
   /// Takes the lock without waiting.
-  /// \throws StoreError, naming the participant and what to do, if another holds it, or if the file
-  ///   cannot be made
+  /// \throws StoreError, naming the participant and what to do, if another program holds it, or the
+  ///   file cannot be created
   SessionLock(const std::filesystem::path& database, const std::string& participant);
   ~SessionLock();
   SessionLock(SessionLock&& other) noexcept;

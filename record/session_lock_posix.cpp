@@ -53,11 +53,11 @@ SessionLock::SessionLock(const std::filesystem::path& database, const std::strin
   ::close(std::exchange(file_, -1));
   if (error != EAGAIN && error != EACCES) {
     refuse_lock(path, std::string("cannot be locked (") + std::strerror(error) +
-                          "); lay the database on a disk of this machine");
+                          "); move the database to a local disk");
   }
   refuse_lock(database,
               "participant " + participant +
-                  " is in a session of another program; go on in that window, or end it there "
+                  " is in a session of another program; continue in that window, or end it there "
                   "and start again");
 }
 

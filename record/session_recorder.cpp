@@ -25,9 +25,9 @@ bool is_remark(EventKind kind) {
   }
 }
 
-/// The padding of an interruption: that of a flight record of three seconds, which the usual record
-/// never exceeds, or of its ticks in whole thousands if it is longer. So the size tells neither
-/// rough textures from smooth ones nor how long they were felt.
+/// The padding of an interruption: for a flight record of three seconds, which the usual record
+/// never exceeds, or for its ticks in whole thousands if it is longer. The size therefore reveals
+/// neither roughness nor duration.
 std::size_t interruption_padding(std::int64_t ticks) {
   // A row has 21 values, 14 of them of up to 24 characters; ordinary rows need 330 bytes or less.
   constexpr std::size_t kBytesAThousand = 384'000;
@@ -142,7 +142,7 @@ void SessionRecorder::remarked(std::chrono::nanoseconds at, EventKind kind,
                                const std::string& text) {
   if (!is_remark(kind)) {
     throw StoreError("an event of kind '" + std::string(name_of(kind)) +
-                     "' is no remark; record it with the function of its name");
+                     "' is not a remark; use its own function");
   }
   append(at, {kind, remark_to_json(text)});
 }
@@ -154,7 +154,7 @@ void SessionRecorder::stopped(std::chrono::nanoseconds at, const StopBody& why) 
 void SessionRecorder::closed(std::chrono::nanoseconds at, bool complete, int answers, bool one_key,
                              std::optional<double> largest_force_n) {
   if (largest_force_n) largest_force_n = in_tenths(*largest_force_n);
-  // Sealing this takes the key: a chain that somebody makes anew without it ends differently.
+  // Sealing this requires the key, so a forged chain ends differently.
   const ClosedBody body{.complete = complete,
                         .answers = answers,
                         .one_key = one_key,
@@ -163,7 +163,7 @@ void SessionRecorder::closed(std::chrono::nanoseconds at, bool complete, int ans
          {EventKind::closed, to_json(body), to_json(ChainEnd{.length = length_, .head = head_})});
 }
 
-void SessionRecorder::go_on_after(const Event& last) {
+void SessionRecorder::continue_after(const Event& last) {
   head_ = last.hash;
   length_ = last.sequence + 1;
   last_at_ = last.at;
@@ -205,7 +205,7 @@ void SessionRecorder::append_together(std::chrono::nanoseconds at, std::span<Dra
   } else {
     sink_.accept_together(events);
   }
-  // Only now: an event that its sink refused is not part of the chain.
+  // Added last: an event that the sink refused is not part of the chain.
   head_ = previous;
   last_at_ = at;
   length_ += static_cast<std::int64_t>(events.size());

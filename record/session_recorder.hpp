@@ -1,4 +1,4 @@
-/// \file Turns what happens in one session into chained, sealed events.
+/// \file Records one session as chained, sealed events.
 #pragma once
 
 #include "record/payload.hpp"
@@ -22,21 +22,21 @@ struct RecordedEvent {
   std::optional<SealedTrace> trace;
 };
 
-/// What is stored for a presentation beside its answer, ready to be written.
+/// The evidence of a presentation, stored with its answer and ready to be written.
 struct TrialEvidence {
   TraceBody body;
   TrialMeasures measures;
   SealedTrace trace;
 };
 
-/// Where events go. When `accept` returns, a durable sink has them on the disk.
+/// The destination of events. When `accept` returns, a durable sink has them on the disk.
 class EventSink {
  public:
   virtual ~EventSink() = default;
-  /// \param trace  comes with a trace_stored event and with no other
+  /// \param trace  only with a trace_stored event
   /// \throws StoreError if the event cannot be stored; it is then not part of the chain
   virtual void accept(const Event& event, const std::optional<SealedTrace>& trace) = 0;
-  /// Takes events that belong together. A durable sink stores all or none of them.
+  /// Accepts events that belong together. A durable sink stores all or none of them.
   virtual void accept_together(std::span<const RecordedEvent> events) {
     for (const auto& [event, trace] : events) accept(event, trace);
   }
@@ -53,7 +53,7 @@ class BufferedEvents final : public EventSink {
 
 /// The growing chain of one session. Not thread-safe; any number may run beside each other. Times
 /// must not be negative or decrease. Every function that records throws StoreError if the time
-/// decreases, a text is not UTF-8, or the sink refuses: the chain is then as it was.
+/// decreases, a text is not UTF-8, or the sink refuses: the chain is then unchanged.
 class SessionRecorder {
  public:
   /// \param session  number in the database, from 1
@@ -65,12 +65,12 @@ class SessionRecorder {
               const std::string& secret_schedule);
   void presented(std::chrono::nanoseconds at, int trial, int block);
   void first_contact(std::chrono::nanoseconds at, int trial);
-  /// \param evidence  of the same presentation, stored with the answer or not at all
+  /// \param evidence  of the same presentation, stored atomically with the answer
   void answered(std::chrono::nanoseconds at, const AnswerBody& answer,
                 const std::optional<TrialEvidence>& evidence = std::nullopt);
-  /// \param reason  in clear: a fixed phrase that says nothing about the stimulus, never free text
-  /// \param detail  sealed but for the faults' names, with a padding that does not depend on a
-  ///   flight record of up to 3,000 ticks, and of a longer one depends on whole thousands
+  /// \param reason  in clear: a fixed phrase that does not depend on the stimulus, never free text
+  /// \param detail  sealed except the faults' names; the padding is the same for flight records of
+  ///   up to 3,000 ticks, and depends on whole thousands of longer ones
   void interrupted(std::chrono::nanoseconds at, int trial, const std::string& reason,
                    const std::optional<InterruptionDetail>& detail = std::nullopt);
   void timed_out(std::chrono::nanoseconds at, int trial,
@@ -80,7 +80,7 @@ class SessionRecorder {
   /// one records.
   [[nodiscard]] TrialEvidence packed(TraceBody body, const TrialMeasures& measures,
                                      const Trace& trace) const;
-  /// Stores what `packed` makes of these, without an answer.
+  /// Stores the result of `packed`, without an answer.
   void trace_stored(std::chrono::nanoseconds at, const TraceBody& body,
                     const TrialMeasures& measures, const Trace& trace);
   void practised(std::chrono::nanoseconds at, const PracticeBody& body);
@@ -88,7 +88,7 @@ class SessionRecorder {
   /// \param name  of the questionnaire, in clear
   /// \param answers  JSON, sealed
   void questioned(std::chrono::nanoseconds at, const std::string& name, const std::string& answers);
-  /// Sealed altogether.
+  /// Entirely sealed.
   void marked(std::chrono::nanoseconds at, const MarksBody& marks);
   void explored_again(std::chrono::nanoseconds at, int trial);
   /// \param first_trial  number of the block's first trial from now on
@@ -101,15 +101,15 @@ class SessionRecorder {
   /// \param text  one line, or empty; sealed if a person may have typed it: stopped, noted
   void remarked(std::chrono::nanoseconds at, EventKind kind, const std::string& text);
   void stopped(std::chrono::nanoseconds at, const StopBody& why);
-  /// Seals the chain's length and head up to here into the event, see ChainEnd.
+  /// Seals the chain's current length and head into the event, see ChainEnd.
   /// \param complete  whether the schedule was finished
   /// \param answers, one_key, largest_force_n  see ClosedBody
   void closed(std::chrono::nanoseconds at, bool complete, int answers = 0, bool one_key = false,
               std::optional<double> largest_force_n = std::nullopt);
 
-  /// Goes on with a chain that is stored already.
+  /// Continues a stored chain.
   /// \param last  its last event, opened
-  void go_on_after(const Event& last);
+  void continue_after(const Event& last);
 
   /// Hash of the last event; zeros before the first.
   [[nodiscard]] const Digest& head() const noexcept { return head_; }
@@ -120,7 +120,7 @@ class SessionRecorder {
     EventKind kind{};
     std::string body;  ///< whole
     std::string secret{};
-    std::optional<std::size_t> padding{};  ///< empty: that of the kind
+    std::optional<std::size_t> padding{};  ///< empty: the kind's
     std::optional<SealedTrace> trace{};
   };
   void append(std::chrono::nanoseconds at, Draft draft);

@@ -1,5 +1,5 @@
-// Sessions and participants of a StoredStudy: who is let in, goes on, ends, withdraws or is
-// replaced.
+// Sessions and participants of a StoredStudy: admission, continuation, end, withdrawal and
+// replacement.
 #include "core/text.hpp"
 #include "core/utc.hpp"
 #include "record/payload_json.hpp"
@@ -14,14 +14,14 @@ namespace {
 
 constexpr std::size_t kLongestParticipant = 32;
 
-/// Whether a session goes on where the participant's last visit ended.
+/// Whether a session is the visit after the participant's last one.
 bool is_next_visit(const SessionOpening& opening, const SessionRow& last) {
   return opening.visit == last.visit + 1 && opening.enrolment == last.enrolment &&
          last.state == SessionState::completed && !last.withdrawn;
 }
 
-/// No session is opened after the study was closed, so that the newest event of the two kinds
-/// tells; a study of many sessions is not read from its beginning.
+/// No session is opened after the study was closed, so the newest event of the two kinds decides,
+/// and a study of many sessions need not be read from its beginning.
 bool is_closed(const Database& database) {
   Query query = database.query(
       "SELECT kind = 'study-closed' FROM events WHERE session = 0 AND "
@@ -33,13 +33,14 @@ std::string title_of(const SessionRow& row) {
   return "session " + std::to_string(row.session) + " (participant " + row.participant + ")";
 }
 
-/// Whether nobody explores after an event of this kind, so that the log can be emptied.
+/// Whether no exploration follows directly on an event of this kind, so that the log can be
+/// emptied.
 bool is_rest(EventKind kind) {
   return kind == EventKind::break_taken || kind == EventKind::paused;
 }
 
-/// What is acknowledged, and where a session may end.
-bool is_known_by_heads(EventKind kind) {
+/// Acknowledged events, and events at which a session may end.
+bool concerns_heads(EventKind kind) {
   return kind == EventKind::opened || kind == EventKind::answered || kind == EventKind::timed_out ||
          kind == EventKind::stopped || kind == EventKind::closed || is_rest(kind);
 }
@@ -55,7 +56,7 @@ std::chrono::nanoseconds years_after(std::chrono::nanoseconds utc, int years) {
   return (sys_days(date) + (time - day)).time_since_epoch();
 }
 
-/// A trace comes with the event that names it, and with no other.
+/// A trace is stored only with the event that names it.
 void require_match(const Event& event, const SealedTrace* trace) {
   if (event.kind != EventKind::trace_stored) {
     if (trace == nullptr) return;
@@ -81,15 +82,15 @@ bool is_participant_id(const std::string& id) {
 void StoredStudy::refuse_if_over() const {
   if (stations() > 0) {
     refuse(
-        "was collected from several stations and takes no sessions of its own; record them in a "
+        "was collected from several stations and accepts no sessions of its own; record them in a "
         "station's database, and merge again");
   }
-  if (is_closed(database_)) refuse("the study is closed; it takes no more sessions");
+  if (is_closed(database_)) refuse("the study is closed; it accepts no more sessions");
 }
 
 void StoredStudy::require_participant_id(const std::string& id) const {
   if (is_participant_id(id)) return;
-  refuse("'" + id + "' is no participant id; " + std::string(kParticipantIdRule));
+  refuse("'" + id + "' is not a participant id; " + std::string(kParticipantIdRule));
 }
 
 void StoredStudy::admit(const Event& opened, const SessionKeys& keys, std::chrono::nanoseconds at) {
@@ -150,13 +151,13 @@ void StoredStudy::check_opening(const SessionOpening& opening) const {
   require_participant_id(opening.participant);
   refuse_mixture(opening);
   refuse_if_taken(opening);
-  refuse_if_promised(opening);
+  refuse_if_reserved(opening);
 }
 
 void StoredStudy::refuse_mixture(const SessionOpening& opening) const {
   if (opening.pilot != commitment().pilot) {
     refuse(commitment().pilot ? "is the database of a pilot; give the study's own sessions another"
-                              : "is no pilot's database; give pilot sessions another");
+                              : "is not a pilot's database; give pilot sessions another");
   }
   const bool visual = opening.is_visual();
   if (visual && !opening.pilot) {
@@ -204,21 +205,22 @@ void StoredStudy::refuse_if_taken(const SessionOpening& opening) const {
          "); give the next free number");
 }
 
-void StoredStudy::refuse_if_promised(const SessionOpening& opening) const {
-  const std::map<int, std::string> promised = promised_enrolments();
-  const auto kept = promised.find(opening.enrolment);
-  if (kept != promised.end() && kept->second != opening.participant) {
+void StoredStudy::refuse_if_reserved(const SessionOpening& opening) const {
+  const std::map<int, std::string> reserved = reserved_enrolments();
+  const auto kept = reserved.find(opening.enrolment);
+  if (kept != reserved.end() && kept->second != opening.participant) {
     refuse("enrolment " + std::to_string(opening.enrolment) + " is kept for participant " +
-           kept->second + ", who replaces somebody; give participant " + opening.participant +
+           kept->second + ", who replaces another; give participant " + opening.participant +
            " number " + std::to_string(next_enrolment()));
   }
   const auto own = std::ranges::find_if(
-      promised, [&](const auto& entry) { return entry.second == opening.participant; });
-  if (own != promised.end() && own->first != opening.enrolment) {
-    refuse("participant " + opening.participant + " replaces somebody and inherits enrolment " +
-           std::to_string(own->first) + "; leave the number out, or give that one");
+      reserved, [&](const auto& entry) { return entry.second == opening.participant; });
+  if (own != reserved.end() && own->first != opening.enrolment) {
+    refuse("participant " + opening.participant +
+           " replaces another participant and inherits enrolment " + std::to_string(own->first) +
+           "; leave the number out, or give that one");
   }
-  if (own != promised.end()) return;
+  if (own != reserved.end()) return;
   const SessionRow* last = nullptr;
   for (const auto& [session, row] : sessions()) {
     if (row.participant == opening.participant) last = &row;
@@ -233,13 +235,13 @@ Event StoredStudy::last_of_open(int session) const {
   const SessionRow row = this->session(session);
   const std::string name = title_of(row);
   if (row.state != SessionState::open) {
-    refuse(name + " has ended and cannot go on; use another participant id, or restart it");
+    refuse(name + " has ended and cannot continue; use another participant id, or restart it");
   }
-  if (row.withdrawn) refuse(name + " cannot go on: the participant has withdrawn");
+  if (row.withdrawn) refuse(name + " cannot continue: the participant has withdrawn");
   if (!row.replaced_by.empty()) {
-    refuse(name + " cannot go on: it was replaced by participant " + row.replaced_by);
+    refuse(name + " cannot continue: it was replaced by participant " + row.replaced_by);
   }
-  if (is_closed(database_)) refuse(name + " cannot go on: the study is closed");
+  if (is_closed(database_)) refuse(name + " cannot continue: the study is closed");
   return last_event(session).value();
 }
 
@@ -276,22 +278,22 @@ void StoredStudy::withdraw(const WithdrawalBody& withdrawal, std::chrono::nanose
   const int session = withdrawal.session;
   const SessionRow row = this->session(session);
   const std::string whose = "the participant of session " + std::to_string(session);
-  if (withdrawal.kept == Kept::data && row.withdrawn) {
+  if (withdrawal.kept == Retention::data && row.withdrawn) {
     refuse(whose + " has already withdrawn" + (row.erased ? ", and the data are erased" : ""));
   }
-  if (withdrawal.kept == Kept::safety_record && row.erased) {
+  if (withdrawal.kept == Retention::safety_record && row.erased) {
     refuse(whose + " has already withdrawn, and the data are erased");
   }
-  if (withdrawal.kept == Kept::nothing) refuse_while_kept(session, at);
+  if (withdrawal.kept == Retention::nothing) require_retention_over(session, at);
   const auto destroy = [&](const char* sql) { database_.query(sql).bind(session).run(); };
-  destroy("DELETE FROM station_keys WHERE session = ?");  // the session cannot go on
-  if (withdrawal.kept != Kept::data) destroy("DELETE FROM participant_keys WHERE session = ?");
-  if (withdrawal.kept == Kept::nothing) destroy("DELETE FROM safety_keys WHERE session = ?");
+  destroy("DELETE FROM station_keys WHERE session = ?");  // the session cannot continue
+  if (withdrawal.kept != Retention::data) destroy("DELETE FROM participant_keys WHERE session = ?");
+  if (withdrawal.kept == Retention::nothing) destroy("DELETE FROM safety_keys WHERE session = ?");
   append_about(session, EventKind::participant_withdrawn, at, to_json(withdrawal));
 }
 
-/// The safety record goes last, and only when the study's years have passed.
-void StoredStudy::refuse_while_kept(int session, std::chrono::nanoseconds at) const {
+/// The safety record is erased last, and only when the study's years have passed.
+void StoredStudy::require_retention_over(int session, std::chrono::nanoseconds at) const {
   const std::string whose = "the safety record of session " + std::to_string(session);
   if (!this->session(session).erased) {
     refuse(whose + " is kept as long as the data are; erase those first (withdraw --erase)");
@@ -303,7 +305,7 @@ void StoredStudy::refuse_while_kept(int session, std::chrono::nanoseconds at) co
   if (at >= until) return;
   refuse(whose + " is kept until " + utc_day(until) + ", for " +
          std::to_string(commitment().safety_record_years) +
-         " years, as the study says; come back then");
+         " years, as the study states; try again then");
 }
 
 void StoredStudy::replace(const ReplacementBody& replacement, std::chrono::nanoseconds at) {
@@ -334,8 +336,8 @@ void StoredStudy::check_replaced(const SessionRow& row) const {
   if (row.excluded || row.erased || left_early || row.state == SessionState::stopped) return;
   if (row.withdrawn) {
     refuse(name +
-           " is complete, and its data are kept and analysed; exclude it first if somebody "
-           "is to take its place");
+           " is complete, and its data are kept and analysed; exclude it first if it is to be "
+           "replaced");
   }
   refuse(name + (row.state == SessionState::open ? " is still open" : " is complete") +
          "; who is replaced must have been stopped, excluded or withdrawn first");
@@ -347,11 +349,11 @@ void StoredStudy::check_replacement(const SessionRow& row, const std::string& by
   for (const auto& [session, other] : sessions()) {
     if (other.participant != by) continue;
     refuse("participant " + by + " already has session " + std::to_string(session) +
-           "; only somebody new can take a place");
+           "; only a new participant can replace another");
   }
-  for (const auto& [enrolment, promised] : promised_enrolments()) {
-    if (promised != by) continue;
-    refuse("participant " + by + " already replaces somebody, with enrolment " +
+  for (const auto& [enrolment, reserved] : reserved_enrolments()) {
+    if (reserved != by) continue;
+    refuse("participant " + by + " already replaces another participant, with enrolment " +
            std::to_string(enrolment) + "; name another participant");
   }
 }
@@ -394,7 +396,7 @@ void StoredSession::accept_together(std::span<const RecordedEvent> events) {
   chain_ = chain;
   rows_ = std::move(rows);
   const EventKind last = events.back().event.kind;
-  if (is_known_by_heads(last)) {
+  if (concerns_heads(last)) {
     study_.update_heads({.session = events.back().event.session,
                          .ended = last == EventKind::closed,
                          .answers = last == EventKind::answered ? 1 : 0});
@@ -402,7 +404,7 @@ void StoredSession::accept_together(std::span<const RecordedEvent> events) {
   if (erased_key || is_rest(last)) study_.empty_log();
 }
 
-/// If two programs recorded one session, each would lose what the other records.
+/// If two programs recorded one session, each would lose the other's events.
 void StoredSession::refuse_if_others_wrote(int session) const {
   const ChainHead stored = study_.head(session);
   if (stored.length == chain_.length() && stored.hash == chain_.head()) return;

@@ -38,7 +38,7 @@ StudyState StoredStudy::state() const {
     return chain;
   };
   const std::vector<Event> decisions = chain_of(kDecisions);
-  // Only a look before the end depends on who had come by then.
+  // Only a look before the end depends on the sessions so far.
   const bool is_final = std::ranges::all_of(decisions, [](const Event& event) {
     if (event.kind == EventKind::study_closed) return true;
     const UnblindingBody body = body_of(event, unblinding_from_json);
@@ -106,34 +106,34 @@ std::optional<SessionRow> StoredStudy::session_of(const std::string& participant
 }
 
 int StoredStudy::next_enrolment() const {
-  const std::map<int, std::string> promised = promised_enrolments();
+  const std::map<int, std::string> reserved = reserved_enrolments();
   std::set<int> taken;
   for (const auto& [session, row] : sessions()) {
     if (row.replaced_by.empty()) taken.insert(row.enrolment);
   }
   int number = 1;
-  while (taken.contains(number) || promised.contains(number)) ++number;
+  while (taken.contains(number) || reserved.contains(number)) ++number;
   return number;
 }
 
 int StoredStudy::enrolment_for(const std::string& participant) const {
-  for (const auto& [enrolment, by] : promised_enrolments()) {
+  for (const auto& [enrolment, by] : reserved_enrolments()) {
     if (by == participant) return enrolment;
   }
   return next_enrolment();
 }
 
-std::map<int, std::string> StoredStudy::promised_enrolments() const {
-  // A number belongs to its last session; if that was replaced, it is kept for the successor.
-  std::map<int, std::string> promised;
+std::map<int, std::string> StoredStudy::reserved_enrolments() const {
+  // A number belongs to its last session; if that was replaced, it is reserved for the successor.
+  std::map<int, std::string> reserved;
   for (const auto& [session, row] : sessions()) {
     if (row.replaced_by.empty()) {
-      promised.erase(row.enrolment);
+      reserved.erase(row.enrolment);
     } else {
-      promised[row.enrolment] = row.replaced_by;
+      reserved[row.enrolment] = row.replaced_by;
     }
   }
-  return promised;
+  return reserved;
 }
 
 std::optional<Event> StoredStudy::last_event(int session) const {
@@ -158,7 +158,7 @@ void StoredStudy::sign_with(const Signer& signer) {
   signer_ = signer;
 }
 
-void StoredStudy::keep_heads(HeadKeeper keeper, HeadRecord now) {
+void StoredStudy::set_head_writer(HeadWriter keeper, HeadRecord now) {
   heads_ = std::move(keeper);
   known_ = std::move(now);
 }
@@ -170,12 +170,12 @@ void StoredStudy::update_heads(const HeadUpdate& news) {
       [&] { return std::pair(head(0), news.session == 0 ? ChainHead{} : head(news.session)); });
   heads_([&](HeadRecord& record) {
     if (record.count == 0) record = known_;
-    record.know_answers(known_.acknowledged);
-    record.know_file(heads.first);
+    record.advance_answers(known_.acknowledged);
+    record.advance_file(heads.first);
     if (news.ended) {
       record.sessions.erase(news.session);
     } else if (news.session != 0) {
-      record.know_session(news.session, heads.second);
+      record.advance_session(news.session, heads.second);
     }
   });
 }
@@ -209,11 +209,11 @@ Event StoredStudy::opening_on_file(int session) const {
   for_each_event(database_, {.session = 0, .kinds = std::span(&kKind, 1)}, [&](const Event& event) {
     if (session_about(event) == session) found = event;
   });
-  if (!found) throw EventFault(session, kNoEvent, "the file's chain knows no such session");
+  if (!found) throw EventFault(session, kNoEvent, "the file's chain has no such session");
   return *std::move(found);
 }
 
-/// A signature vouches for all events before it: nobody signs on top of a chain that was made anew.
+/// A signature vouches for all events before it, so a forged chain must not be signed.
 void StoredStudy::require_signed(const Event& last) const {
   if (last.signature.empty() && stations() > 0) return;  // it follows from the stations' chains
   const std::optional<Event> committed = read_event(database_, 0, 0);

@@ -1,7 +1,6 @@
-/// \file A study in its database: the operations that StudyStore is made of, and its two inner
-/// parts (sessions that are stored event by event, the check of everything that is stored). Private
-/// to record. Call everything here inside Database::run, and functions that write inside
-/// StoredStudy::change.
+/// \file A study in its database: the operations behind StudyStore, and its two inner parts
+/// (sessions that are stored event by event, and the check of all stored data). Private to record.
+/// Call everything here inside Database::run, and functions that write inside StoredStudy::change.
 #pragma once
 
 #include "record/database.hpp"
@@ -20,17 +19,17 @@
 
 namespace touchtrial::record {
 
-/// A session's keys as a database keeps them. See sealing.hpp.
+/// A session's keys as stored in a database. See sealing.hpp.
 struct SessionKeys {
   NewKeys wrapped;  ///< for the investigator
   Bytes kept;       ///< at the station, while the session is open; may be empty
 };
 
-/// What a commit means to head files, beside the end of the file's chain.
+/// The changes of a commit for head files, besides the end of the file's chain.
 struct HeadUpdate {
   int session = 0;  ///< whose chain grew; 0: none
   bool ended = false;
-  std::int64_t answers = 0;  ///< how many came
+  std::int64_t answers = 0;  ///< added by the commit
 };
 
 class StoredStudy {
@@ -49,42 +48,42 @@ class StoredStudy {
   /// How many stations' files were collected into this one.
   [[nodiscard]] int stations() const;
   [[nodiscard]] int next_session() const;
-  /// The smallest enrolment number that is neither taken nor kept for somebody.
+  /// The smallest enrolment number that is neither taken nor reserved.
   [[nodiscard]] int next_enrolment() const;
   /// The number that the participant inherits, else next_enrolment.
   [[nodiscard]] int enrolment_for(const std::string& participant) const;
-  /// What events and file's chain say of every session, by number. Read once, then kept up with
-  /// what is appended here, and read anew when another program has written.
+  /// Every session by its events and the file's chain, by number. Read once, then updated by
+  /// appended events, and read again when another program has written.
   [[nodiscard]] const std::map<int, SessionRow>& sessions() const;
-  /// The same of all trials, by session and trial; read anew after an event of a session.
+  /// The same of all trials, by session and trial; read again after an event of a session.
   [[nodiscard]] const std::vector<TrialRow>& trials() const;
-  /// The participant's session of the last visit that nobody replaced, if any.
+  /// The participant's session of the last visit that was not replaced, if any.
   [[nodiscard]] std::optional<SessionRow> session_of(const std::string& participant) const;
   /// \throws StoreError if there is no such session
   [[nodiscard]] SessionRow session(int session) const;
 
-  /// \throws StoreError if neither the file's station nor its investigator signs so
+  /// \throws StoreError if `signer` is neither the file's station nor its investigator
   void sign_with(const Signer& signer);
   /// Adds a signed event to the file's chain.
-  /// \throws StoreError if nobody signs, or the event is for the investigator alone
+  /// \throws StoreError if there is no signer, or only the investigator may sign the event
   /// \throws EventFault if the last event is signed by none of the two
   void append_to_file(EventKind kind, std::chrono::nanoseconds at, const std::string& body,
                       Bytes sealed = {});
   /// \param now  record_of this database
-  void keep_heads(HeadKeeper keeper, HeadRecord now);
-  /// Tells the keeper of heads, if there is one, what was committed.
+  void set_head_writer(HeadWriter keeper, HeadRecord now);
+  /// Passes a commit to the writer of head files, if there is one.
   void update_heads(const HeadUpdate& news);
   /// The same for an event about a person, whose texts are sealed.
   /// \param body  whole
   void append_about(int session, EventKind kind, std::chrono::nanoseconds at,
                     const std::string& body);
-  /// Adds an event of a chain, and brings `sessions` up to date.
+  /// Adds an event of a chain, and updates `sessions`.
   void append(const Event& event, const std::optional<SealedTrace>& trace);
   /// After a participant withdrew or was replaced during a session, only its end is recorded.
   /// \throws StoreError for any other event of the session
   void refuse_after_withdrawal(const Event& event) const;
 
-  /// As Database::change; nothing is known of what was not committed.
+  /// As Database::change; cached rows of a failed transaction are dropped.
   template <typename Work>
   void change(Work&& work) {
     try {
@@ -95,12 +94,12 @@ class StoredStudy {
     }
   }
 
-  /// Lets a session in: stores its key, and its opening on the file's chain.
+  /// Admits a session: stores its key, and its opening on the file's chain.
   /// \throws StoreError if the study is closed, the session is not the next, belongs to another
   ///   study, its participant or enrolment is taken (by which session), or it would mix pilots with
-  ///   others or sessions that are seen with sessions that are felt
+  ///   others or sessions on a screen with sessions on a haptic device
   void admit(const Event& opened, const SessionKeys& keys, std::chrono::nanoseconds at);
-  /// The last event of a session that may go on.
+  /// The last event of a session that may continue.
   /// \throws StoreError if there is no such session, it is closed, its participant has withdrawn,
   ///   or the study is closed
   [[nodiscard]] Event last_of_open(int session) const;
@@ -108,21 +107,21 @@ class StoredStudy {
   /// \param closed  its last event
   /// \return whether there was a copy to erase
   bool conclude(const Event& closed, std::chrono::nanoseconds at);
-  /// Empties the log into the file, so that less is lost with a damaged log, and pages with a
-  /// station's copy of a key that was erased are gone. Does nothing if the disk fails or another
-  /// program reads. Call it outside of `change`.
+  /// Checkpoints the log into the file, which limits the loss from a damaged log and removes pages
+  /// with erased copies of keys. No effect if the disk fails or another program reads. Call it
+  /// outside of `change`.
   void empty_log() const;
 
-  /// Holds the events of a finished session against each other.
+  /// Checks the events of a finished session against each other.
   /// \throws StoreError, EventFault
   void check_whole(const BufferedEvents& session) const;
   /// \pre check_whole found no fault
   void store_whole(const BufferedEvents& session, const NewKeys& keys, std::chrono::nanoseconds at);
 
-  /// Records a withdrawal, and destroys the keys of what it does not keep.
-  /// \throws StoreError if no more is kept already, or the safety record is not to be erased yet
+  /// Records a withdrawal, and destroys the keys of what it does not retain.
+  /// \throws StoreError if no more is retained already, or the safety record must not be erased yet
   void withdraw(const WithdrawalBody& withdrawal, std::chrono::nanoseconds at);
-  /// \throws StoreError if the session may still go on or was replaced, or `by` is taken
+  /// \throws StoreError if the session may still continue or was replaced, or `by` is taken
   void replace(const ReplacementBody& replacement, std::chrono::nanoseconds at);
 
   /// \throws StoreError with the file's name before `text`
@@ -140,17 +139,18 @@ class StoredStudy {
   void require_signed(const Event& last) const;
   /// The first event about a session on the file's chain.
   [[nodiscard]] Event opening_on_file(int session) const;
-  void refuse_while_kept(int session, std::chrono::nanoseconds at) const;
+  void require_retention_over(int session, std::chrono::nanoseconds at) const;
   void check_opening(const SessionOpening& opening) const;
-  /// A database holds pilots or others, and sessions that are seen or sessions that are felt.
+  /// A database holds either pilots or others, and sessions either on a screen or on a haptic
+  /// device.
   void refuse_mixture(const SessionOpening& opening) const;
   void refuse_if_taken(const SessionOpening& opening) const;
-  /// Nobody returns after being replaced by another, or takes a number that is kept for another.
-  void refuse_if_promised(const SessionOpening& opening) const;
+  /// Refuses a participant who was replaced by another, and a number that is reserved for another.
+  void refuse_if_reserved(const SessionOpening& opening) const;
   void check_replaced(const SessionRow& row) const;
   void check_replacement(const SessionRow& row, const std::string& by) const;
-  /// Enrolment numbers that are kept for somebody, and for whom.
-  [[nodiscard]] std::map<int, std::string> promised_enrolments() const;
+  /// Reserved enrolment numbers, and for whom.
+  [[nodiscard]] std::map<int, std::string> reserved_enrolments() const;
 
   Database database_;
   mutable std::optional<StudyCommitment> commitment_;
@@ -158,8 +158,8 @@ class StoredStudy {
   mutable std::optional<std::vector<TrialRow>> trials_;
   mutable std::int64_t read_version_ = 0;  ///< SQLite's data_version of both
   std::optional<Signer> signer_;
-  HeadKeeper heads_;
-  HeadRecord known_;  ///< for a head file that is not there, and the answers so far
+  HeadWriter heads_;
+  HeadRecord known_;  ///< for a missing head file, with the answers so far
 };
 
 /// The durable sink: every event, or group of events, is one transaction.
@@ -167,7 +167,7 @@ class StoredSession final : public EventSink {
  public:
   /// \param study  must outlive this
   StoredSession(StoredStudy& study, int session, SessionKeys keys, UtcClock utc);
-  /// Goes on with a session that is stored and open.
+  /// Continues a stored, open session.
   /// \param last  its last event
   StoredSession(StoredStudy& study, const Event& last, UtcClock utc);
 
@@ -177,22 +177,22 @@ class StoredSession final : public EventSink {
  private:
   StoredSession(StoredStudy& study, ChainLink chain, SessionKeys keys, UtcClock utc);
   void refuse_if_others_wrote(int session) const;
-  /// \param rows  is brought up to date
+  /// \param rows  updated
   /// \return whether the station's copy of the session's key was erased
   bool store(const RecordedEvent& recorded, bool first, DerivedRows& rows);
 
   StoredStudy& study_;
   ChainLink chain_;
-  DerivedRows rows_;  ///< what its events come to, which says what may follow
+  DerivedRows rows_;  ///< the session's rows, which decide what may follow
   SessionKeys keys_;
   UtcClock utc_;
 };
 
 /// Finds the first fault of a database. Checks, in this order: the file's structure, its chain,
-/// every session's chain, what the file's chain says of the sessions, keys, traces, and the
-/// schema. Call it inside a transaction.
-/// \param traces  `skip` leaves structure and traces out
-/// \param reader  gets every session whose chain is intact; may be empty
+/// every session's chain, the sessions against the file's chain, keys, traces, and the schema. Call
+/// it inside a transaction.
+/// \param traces  `skip` omits structure and traces
+/// \param reader  receives every session whose chain is intact; may be empty
 [[nodiscard]] std::optional<ChainFault> find_first_fault(const Database& database,
                                                          TraceCheck traces,
                                                          const SessionReader& reader);

@@ -98,7 +98,7 @@ StudyStore StudyStore::open(const std::filesystem::path& path, Access access) {
   impl->run([&] {
     check_tables(impl->database());
     if (access == Access::read_only) return;
-    // A trigger of somebody else's could swallow what is to be recorded.
+    // A foreign trigger could suppress new events.
     if (const auto differs = schema_fault(impl->database())) {
       impl->study.refuse(differs->what + "; nothing is recorded in it" +
                          (differs->remedy.empty() ? ", run `touchtrial verify`"
@@ -116,9 +116,9 @@ void StudyStore::sign_with(const Signer& signer) {
   impl_->run([&] { impl_->study.sign_with(signer); });
 }
 
-void StudyStore::keep_heads(HeadKeeper keeper) {
+void StudyStore::set_head_writer(HeadWriter keeper) {
   HeadRecord now = record_of(*this);
-  impl_->study.keep_heads(std::move(keeper), std::move(now));
+  impl_->study.set_head_writer(std::move(keeper), std::move(now));
   impl_->study.update_heads({});
 }
 
@@ -293,7 +293,7 @@ void StudyStore::unblind(std::chrono::nanoseconds at, const std::string& reason,
     }
     if (closed && interim) {
       impl_->study.refuse(
-          "the study is closed, so that this is no interim look; unblind it without --interim");
+          "the study is closed, so this is not an interim look; unblind it without --interim");
     }
     impl_->study.append_to_file(EventKind::study_unblinded, at,
                                 to_json(UnblindingBody{.reason = reason, .interim = interim}));
@@ -305,7 +305,7 @@ void StudyStore::look_at_question(std::chrono::nanoseconds at, const std::string
     impl_->study.require_reason(reason, "unblinding");
     if (impl_->study.state().closed) {
       impl_->study.refuse(
-          "the study is closed, so that this is no interim look; unblind it without --interim");
+          "the study is closed, so this is not an interim look; unblind it without --interim");
     }
     impl_->study.append_to_file(
         EventKind::study_unblinded, at,
@@ -327,7 +327,7 @@ void StudyStore::look_at(const std::string& participant, std::chrono::nanosecond
     for (const SessionRow& row : rows) {
       if (!row.may_go_on()) continue;
       impl_->study.refuse("session " + std::to_string(row.session) + " (" + whose +
-                          ") may still go on; look at it when it has ended");
+                          ") may still continue; look at it when it has ended");
     }
     const bool interim = !impl_->study.state().closed;
     impl_->study.append_to_file(
@@ -350,20 +350,21 @@ void StudyStore::exclude(int session, std::chrono::nanoseconds at, const std::st
 }
 
 void StudyStore::withdraw(int session, std::chrono::nanoseconds at, const std::string& reason,
-                          Kept kept, const std::string& not_erased) {
+                          Retention kept, const std::string& not_erased) {
   withdraw(std::span(&session, 1), at, reason, kept, not_erased);
 }
 
 void StudyStore::withdraw(std::span<const int> sessions, std::chrono::nanoseconds at,
-                          const std::string& reason, Kept kept, const std::string& not_erased) {
+                          const std::string& reason, Retention kept,
+                          const std::string& not_erased) {
   impl_->change([&] {
     for (const int session : sessions) {
       impl_->study.withdraw(
           {.session = session, .kept = kept, .reason = reason, .not_erased = not_erased}, at);
     }
   });
-  if (kept == Kept::data) return impl_->run([&] { impl_->study.empty_log(); });
-  // The log still holds the pages with the keys.
+  if (kept == Retention::data) return impl_->run([&] { impl_->study.empty_log(); });
+  // The log still contains pages with the keys.
   if (!clear_log()) {
     impl_->study.refuse(
         "the withdrawal is recorded, but another program keeps the key in the file's -wal; close "
@@ -392,7 +393,7 @@ void StudyStore::note(int session, std::chrono::nanoseconds at, const std::strin
 void StudyStore::accept_loss(const LossBody& loss, const std::map<int, std::string>& sessions,
                              std::chrono::nanoseconds at) {
   impl_->change([&] {
-    impl_->study.require_reason(loss.reason, "going on without what is lost");
+    impl_->study.require_reason(loss.reason, "accepting a loss");
     impl_->study.append_to_file(EventKind::loss_accepted, at, to_json(loss));
     for (const auto& [session, what] : sessions) {
       static_cast<void>(impl_->study.session(session));
@@ -406,7 +407,7 @@ void StudyStore::accept_loss(const LossBody& loss, const std::map<int, std::stri
 std::optional<ChainFault> StudyStore::first_fault(TraceCheck traces,
                                                   const SessionReader& reader) const {
   return impl_->run([&] {
-    // One transaction, so that everything is from one moment even while others write.
+    // One transaction, for a consistent snapshot while others write.
     SQLite::Transaction snapshot(impl_->database().connection());
     return find_first_fault(impl_->database(), traces, reader);
   });

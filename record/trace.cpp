@@ -27,7 +27,7 @@ constexpr std::size_t kHeaderSize =
 constexpr std::size_t kMaxSamples = 10'000'000;
 constexpr unsigned kMaxPlanes = 4;
 
-/// One of the six numbers of a sample, and how it becomes whole numbers.
+/// One of the six numbers of a sample, and its quantisation.
 struct Channel {
   Vec3 TraceSample::*vector;
   double Vec3::*component;
@@ -56,7 +56,7 @@ constexpr std::array<Channel, 6> kChannels = {{
 
 constexpr std::size_t kNumbers = kChannels.size();
 
-/// Whether a sample whose numbers are 0, 1, 2, .. has them in the channels' order.
+/// Whether the memory order of a sample's numbers is the order of channels.
 constexpr bool is_in_order() {
   const TraceSample sample{{0.0, 1.0, 2.0}, {3.0, 4.0, 5.0}};
   for (std::size_t c = 0; c < kNumbers; ++c) {
@@ -69,7 +69,7 @@ constexpr bool is_in_order() {
 using Pair = double __attribute__((vector_size(2 * sizeof(double))));
 using PairOfSteps = std::int32_t __attribute__((vector_size(2 * sizeof(std::int32_t))));
 
-/// Room for numbers that are all written before they are read.
+/// Uninitialised memory, for numbers that are all written before they are read.
 template <typename Number>
 class Room {
  public:
@@ -88,7 +88,7 @@ Room<std::int32_t> quantised(std::span<const TraceSample> samples) {
   // A sample is its channels' numbers in their order.
   static_assert(sizeof(TraceSample) == kNumbers * sizeof(double));
   static_assert(is_in_order());
-  // Adding it and taking it off again rounds to whole numbers, halves to even ones.
+  // Adding and subtracting it rounds to whole numbers, halves to even.
   constexpr double kRounding = 0x1.8p52;
   const std::size_t count = samples.size();
   Room<std::int32_t> steps(kNumbers * count);
@@ -134,7 +134,7 @@ void put(Bytes& bytes, Unsigned number) {
   }
 }
 
-/// Takes bytes from the front, never beyond the end.
+/// Reads bytes from the front, never beyond the end.
 class Cursor {
  public:
   explicit Cursor(ByteView bytes) : left_(bytes) {}
@@ -186,7 +186,7 @@ Compressor make_compressor() {
   return compressor;
 }
 
-/// What a trace's channels are packed in, one after the other.
+/// The buffers for packing a trace's channels, one after the other.
 struct Packing {
   explicit Packing(std::size_t count)
       : codes(count), plane(count), frame(ZSTD_compressBound(count)) {}
@@ -207,8 +207,8 @@ void put_compressed(Bytes& bytes, Packing& packing) {
   bytes.insert(bytes.end(), frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(size));
 }
 
-/// Zigzag codes of a channel's differences. The first number and the first slope stay as they are:
-/// neither is small.
+/// Zigzag codes of a channel's differences. The first number and the first slope are not small, so
+/// they are stored unchanged.
 void take_differences(std::span<const std::int32_t> steps, int differences,
                       std::span<std::uint32_t> codes) {
   const std::size_t count = steps.size();
@@ -288,7 +288,7 @@ void restore_channel(const Channel& channel, std::span<const std::uint32_t> code
   std::int64_t slope = 0;
   for (std::size_t i = 0; i < codes.size(); ++i) {
     const std::int64_t code = unzigzag(codes[i]);
-    // The first sample is its own difference; second differences start at the second sample.
+    // The first sample is stored itself; second differences start at the second sample.
     slope = channel.differences == 2 && i > 1 ? slope + code : code;
     step += slope;
     if (step < -limit || step > limit) refuse_bytes("a sample is beyond 10 m or 100 N");
@@ -328,7 +328,8 @@ Trace decode_trace(ByteView bytes) {
     refuse_bytes("its mark is missing");
   Trace trace;
   trace.rate_hz = std::bit_cast<double>(cursor.number<std::uint64_t>());
-  if (!std::isfinite(trace.rate_hz) || trace.rate_hz <= 0.0) refuse_bytes("its rate is no rate");
+  if (!std::isfinite(trace.rate_hz) || trace.rate_hz <= 0.0)
+    refuse_bytes("its rate is not positive");
   const std::size_t count = cursor.number<std::uint32_t>();
   if (count > kMaxSamples) refuse_bytes("it claims more than 10,000,000 samples");
   require_consistent(cursor, count);

@@ -25,13 +25,12 @@ struct Trace {
 /// \throws StoreError if a sample is not finite or beyond +-10 m or +-100 N
 [[nodiscard]] Bytes encode_trace(const Trace& trace);
 
-/// \throws StoreError if the bytes are no trace, are truncated, or claim an absurd length
+/// \throws StoreError if the bytes are not a trace, are truncated, or claim an absurd length
 [[nodiscard]] Trace decode_trace(ByteView bytes);
 
-/// The padding under which traces are sealed, in bytes. It depends on the number of samples in
-/// steps of kPaddingStep alone, so that the size of a stored trace tells neither rough textures
-/// from smooth ones nor for how many seconds they were felt. Source:
-/// docs/decisions/0054-what-a-trial-shows.md.
+/// The padding under which traces are sealed, in bytes. It depends only on the number of samples in
+/// steps of kPaddingStep, so that the size of a stored trace reveals neither roughness nor the
+/// seconds of exploration. Source: docs/decisions/0054-what-a-trial-shows.md.
 [[nodiscard]] std::size_t trace_padding(std::size_t sample_count);
 
 /// Ten seconds at the servo's rate.

@@ -8,9 +8,10 @@ from scipy import interpolate, optimize, special, stats
 
 # --- What docs/thresholds.md states ---
 
-WIDTHS = (2.0, 50.0)  # dB, from F = .05 to .95
+WIDTHS = (2.0, 60.0)  # dB, from F = .05 to .95
 USUAL_WIDTH = stats.lognorm(s=0.8, scale=10)
 LAPSES = (0.0, 0.5)
+ANY_LAPSE = stats.beta(1, 3)
 USUAL_LAPSE = stats.beta(1, 10)
 BEYOND = 20.0  # dB by which thresholds are extended on either side, or the range of the levels
 LOSS = stats.chi2.ppf(0.95, 1) / 2
@@ -55,37 +56,53 @@ class Averages:
                 value += (given - right) * np.log((1 - guess) * down + lapse * up)
         most = value.max(axis=(1, 2))
         likelihood = np.exp(value - most[:, None, None])
+        any_width_weights = width_weights * width * width ** 0.5  # the nodes are of the logarithm
         usual_lapse_weights = lapse_weights * USUAL_LAPSE.pdf(lapse)
 
         def average(of_width, of_lapse):
             return interpolate.CubicSpline(self.t, most + np.log((likelihood @ of_lapse) @ of_width))
 
-        self.any = average(width_weights * width ** 0.5, lapse_weights)
-        self.usual_lapses = average(width_weights * width ** 0.5, usual_lapse_weights)
+        self.any = average(any_width_weights, lapse_weights * ANY_LAPSE.pdf(lapse))
+        self.usual_lapses = average(any_width_weights, usual_lapse_weights)
         self.usual = average(width_weights * width * USUAL_WIDTH.pdf(width), usual_lapse_weights)
 
-    def interval(self, log):
-        """The first and last threshold that lose no more than LOSS."""
+    def top(self, log):
         peaks = [x for x in log.derivative().roots(extrapolate=False) if np.isfinite(x)]
-        limit = log([self.t[0], self.t[-1], *peaks]).max() - LOSS
+        return log([self.t[0], self.t[-1], *peaks]).max()
+
+    def rise(self):
+        """How much more likelihood than LOSS usual observers lose who feel all levels, or none: the less of both."""
+        return self.top(self.usual) - LOSS - max(self.usual([self.t[0], self.t[-1]]))
+
+    def interval(self, log):
+        """The first and last threshold that lose no more than LOSS; infinite where the extended levels end."""
+        limit = self.top(log) - LOSS
         inside = np.flatnonzero(log(self.t) >= limit)
         first, last = inside[0], inside[-1]
 
         def crossing(i):
             return optimize.brentq(lambda t: log(t) - limit, self.t[i], self.t[i + 1], xtol=1e-10)
 
-        return (self.t[0] if first == 0 else crossing(first - 1),
-                self.t[-1] if last == self.t.size - 1 else crossing(last))
+        return (-math.inf if first == 0 else crossing(first - 1),
+                math.inf if last == self.t.size - 1 else crossing(last))
+
+    def border(self, number, first, last):
+        """The least of the differences in the likelihoods' logarithms that decide a state."""
+        limits = [(log, self.top(log) - LOSS) for log in (self.any, self.usual_lapses)]
+        ends = [abs(log(x) - limit) for log, limit in limits for x in (first, last, self.t[0], self.t[-1])]
+        numbers = [abs(self.usual(number) - self.usual(x)) for x in (first, last)]
+        return min(abs(self.rise()), *ends, *numbers)
 
     def likeliest(self, low, high):
         """The usual observers' threshold in between."""
+        low, high = max(low, self.t[0]), min(high, self.t[-1])
         peaks = self.usual.derivative().roots(extrapolate=False)
         return max([low, high, *peaks[(peaks > low) & (peaks < high)]], key=self.usual)
 
 
 def estimate(counts, levels, guess, shape):
-    """A track's number and interval, or its side; the bounds with which it counts in means; and how far the nearest end
-    or number lies from a level that decides between them."""
+    """A track's number and interval, or its side; the bounds with which it counts in means; the likelihoods; and how
+    little of a likelihood's logarithm decides between two states."""
     averages = Averages(counts, levels, guess, shape)
     ends, usual_ends = averages.interval(averages.any), averages.interval(averages.usual_lapses)
     number = averages.likeliest(*ends)
@@ -94,9 +111,13 @@ def estimate(counts, levels, guess, shape):
     def inside(x):
         return first <= x <= last
 
-    low, high = (end if inside(end) else None for end in ends)
-    state = "no" if None not in (low, high) else "above" if usual_ends[0] > last else \
-        "below" if usual_ends[1] < first else "undetermined"
+    low, high = (end if math.isfinite(end) else None for end in ends)
+    if first < number < last and averages.rise() > 0:
+        state = "no"
+    else:
+        low, high = (end if inside(end) else None for end in ends)
+        state = "above" if max(ends[0], usual_ends[0]) >= last else \
+            "below" if ends[1] <= first else "undetermined"
     if state == "above":
         low, high = last, None
     if state == "below":
@@ -104,10 +125,10 @@ def estimate(counts, levels, guess, shape):
     if not inside(number):
         bounds = (last, math.inf) if number > last else (-math.inf, first)
     else:
-        bounds = (number, number) if any(map(inside, usual_ends)) else (-math.inf, math.inf)
-    border = min(abs(x - level) for x in (*ends, *usual_ends, number) for level in (first, last))
+        bounds = (number, number) if state == "no" or any(map(inside, usual_ends)) else (-math.inf, math.inf)
     return {"level": number if state == "no" else None, "low": low, "high": high, "censored": state,
-            "at_least": bounds[0], "at_most": bounds[1], "border": border}
+            "at_least": bounds[0], "at_most": bounds[1], "averages": averages,
+            "border": averages.border(number, first, last)}
 
 
 # --- Means over people ---
@@ -162,7 +183,7 @@ class CensoredNormal:
 
 # --- Estimates that the program prints ---
 
-TOLERANCE_DB = 0.02
+TOLERANCE = 0.02  # of a likelihood's logarithm: where it is flat, an end may lie far off
 MEAN_TOLERANCE_DB = 1e-4  # from the same thresholds
 
 
@@ -171,7 +192,7 @@ class Comparison:
 
     def __init__(self):
         self.n = self.at_border = 0
-        self.largest = {}
+        self.largest, self.farthest = {}, {}
         self.other_states = []
 
     def add(self, name, theirs, ours):
@@ -181,19 +202,22 @@ class Comparison:
                   if stated != found and not (is_number(stated) and is_number(found))]
         if theirs["censored"] != ours["censored"]:
             others.append(f"{name} is '{theirs['censored']}', not '{ours['censored']}'")
-        if others and ours["border"] < TOLERANCE_DB:
+        if others and ours["border"] < TOLERANCE:
             self.at_border += 1
             return
         self.other_states += others
         for what, (stated, found) in pairs.items():
             if is_number(stated) and is_number(found):
-                self.largest[what] = max(self.largest.get(what, (0.0, "")), (abs(stated - found), name))
+                log = ours["averages"].any if what in ("low", "high") else ours["averages"].usual
+                apart = float(abs(log(stated) - log(found)))
+                self.largest[what] = max(self.largest.get(what, (0.0, "")), (apart, name))
+                self.farthest[what] = max(self.farthest.get(what, 0.0), abs(stated - found))
 
     def tell(self, say, name):
-        say(name, self.n > 0 and not self.other_states and all(d <= TOLERANCE_DB for d, _ in self.largest.values()),
-            f"{self.n} tracks, dB apart at most: "
-            + ", ".join(f"{what} {d:.1e} ({of})" for what, (d, of) in self.largest.items())
-            + f"; {self.at_border} states within {TOLERANCE_DB} dB of a border"
+        say(name, self.n > 0 and not self.other_states and all(d <= TOLERANCE for d, _ in self.largest.values()),
+            f"{self.n} tracks, log-likelihoods apart at most: "
+            + ", ".join(f"{what} {d:.1e} ({of}; {self.farthest[what]:.1e} dB)" for what, (d, of) in self.largest.items())
+            + f"; {self.at_border} states within {TOLERANCE} of a border"
             + "".join("; " + text for text in self.other_states[:5]))
 
 

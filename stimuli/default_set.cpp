@@ -40,7 +40,7 @@ StimulusEntry entry_from(const Json& json) {
   StimulusEntry entry;
   entry.label = json.at("label").get<std::string>();
   const auto kind = stimulus_kind_from_name(json.at("kind").get<std::string>());
-  if (!kind) throw FileError("\"kind\" is none of texture, object, material, practice, flat");
+  if (!kind) throw FileError("\"kind\" is not one of texture, object, material, practice, flat");
   entry.kind = *kind;
   entry.exemplar = json.at("exemplar").get<int>();
   entry.file = json.at("file").get<std::string>();
@@ -96,7 +96,7 @@ std::vector<StimulusEntry> chosen_entries(const StimuliChoice& choice) {
   return entries;
 }
 
-/// \param is_earlier  the file is that of an earlier set, also if its mark is gone, as in a copy
+/// \param is_earlier  the file is from an earlier set, even if its mark is missing, as in a copy
 void write_stimulus(const std::filesystem::path& folder, StimulusEntry& entry, bool is_earlier) {
   const GreyImage picture =
       generate_stimulus(entry.label, entry.seed, entry.size_px, entry.exemplar);
@@ -109,7 +109,7 @@ void write_stimulus(const std::filesystem::path& folder, StimulusEntry& entry, b
   entry.pixels_sha256 = sha256(picture.samples());
 }
 
-/// The manifest of an earlier set in the folder; empty if there is none, or another's file.
+/// The manifest of an earlier set in the folder; empty if there is none or it is a foreign file.
 StimulusManifest earlier_set(const std::filesystem::path& folder) {
   const auto manifest = folder / kStimulusManifestFile;
   require_output_place(manifest);
@@ -120,7 +120,7 @@ StimulusManifest earlier_set(const std::filesystem::path& folder) {
   }
 }
 
-/// Whether an earlier set wrote the file, and nobody changed it since.
+/// Whether the file is from an earlier set and unchanged since.
 bool is_of(const StimulusManifest& earlier, const std::string& file,
            const std::filesystem::path& folder) {
   const auto entry = std::ranges::find(earlier.entries, file, &StimulusEntry::file);

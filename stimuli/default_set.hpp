@@ -1,5 +1,5 @@
-/// \file The default pictures as files in a folder, and manifest.json, which says what they are and
-/// how to make them again.
+/// \file The default pictures as files in a folder, and manifest.json, which describes them and how
+///   to reproduce them.
 #pragma once
 
 #include "core/hash.hpp"
@@ -60,19 +60,19 @@ struct StimuliChoice {
   int size_px = kDefaultStimulusSizePx;
   /// Exemplars of each label; empty: as many as the shipped set has. A flat label has one only.
   std::optional<int> exemplars;
-  /// Pictures of this kind alone; empty: of every kind.
+  /// Only pictures of this kind; empty: of every kind.
   std::optional<StimulusKind> kind{};
 };
 
 /// Makes every recipe of the chosen kind and writes it as <label>.png, further exemplars as
 /// exemplars/<label>-<number>.png, and manifest.json last. Each file replaces an older one of the
-/// same set only when it is complete. Then removes the pictures that only the older set had, unless
-/// somebody has changed them. Other files in the folder stay.
+/// same set only when it is complete. Then removes unchanged pictures that only the older set had.
+/// Other files in the folder are unchanged.
 /// \param folder  is made if it does not exist
 /// \return the manifest that was written; its entries are in the order of `stimulus_recipes()`,
 ///   exemplars of a label together
 /// \throws FileError if the folder or a file cannot be written, an older manifest cannot be read,
-///   or a picture that it does not list is in the way
+///   or a foreign file has a picture's name
 /// \throws UsageError if the size or the number of exemplars is out of range
 StimulusManifest generate_default_stimuli(const std::filesystem::path& folder,
                                           const StimuliChoice& choice = {},

@@ -1,5 +1,5 @@
-/// \file The default pictures: irregular, and made by this program from a seed, so that no study
-/// depends on somebody's photographs. Each is a height map in the light of one lamp.
+/// \file The default pictures: irregular, and made by this program from a seed, so that studies do
+///   not depend on third-party photographs. Each is a height map lit by one lamp.
 #pragma once
 
 #include "core/plane.hpp"
@@ -20,12 +20,12 @@ inline constexpr int kMinStimulusSizePx = 16;
 inline constexpr int kMaxStimulusSizePx = 4096;
 /// The largest number of exemplars of a label.
 inline constexpr int kMaxStimulusExemplars = 1000;
-/// Increases whenever a seed gives another picture than before.
+/// Increased at every change of the pictures that a seed gives.
 inline constexpr int kGeneratorVersion = 2;
 
 /// The use of a picture. An object lies on a plain ground; all others fill the picture.
 enum class StimulusKind {
-  texture,   ///< a class to tell from others
+  texture,   ///< a class to distinguish from others
   object,    ///< an outline with a texture on it
   material,  ///< the material of an object, without its outline
   practice,  ///< a texture that is not a class, to get used to the device

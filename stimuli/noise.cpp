@@ -57,7 +57,7 @@ double Noise::fractal(double x, double y, int octaves) const noexcept {
   for (int octave = 0; octave < octaves; ++octave) {
     sum += strength * at(x, y);
     strength *= 0.5;
-    // Not quite a doubling, and a shift, so that the lattices of two octaves never line up.
+    // Slightly off a factor of two, with a shift, so that the lattices of octaves never align.
     x = 2.03 * x + 17.3;
     y = 2.03 * y + 31.7;
   }

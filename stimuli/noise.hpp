@@ -1,6 +1,7 @@
 /// \file Irregularity: gradient noise and cells, identical on every machine for the same seed.
 /// Sources: K. Perlin, "Improving noise", 2002; S. Worley, "A cellular texture basis function",
-/// 1996. They use only additions, products and square roots, which every processor rounds alike.
+/// 1996. They use only additions, products and square roots, which all processors round
+///   identically.
 #pragma once
 
 #include "core/vec.hpp"

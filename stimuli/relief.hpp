@@ -1,5 +1,5 @@
-/// \file From a height map to a photograph of it: one lamp, shadows, dark hollows, development;
-/// also of an object on a plain ground.
+/// \file Renders a height map as a photograph: one lamp, shadows, dark hollows, development; also
+///   an object on a plain ground.
 #pragma once
 
 #include "core/plane.hpp"
@@ -141,7 +141,7 @@ struct StillLife {
 /// Lays an object on a flat, even ground.
 /// \param object  object(x, y) with x and y in 0 .. kObjectUnits; heights in the same units
 template <typename Object>
-[[nodiscard]] StillLife laid_out(const Object& object, int size_px, const View& view) {
+[[nodiscard]] StillLife placed_object(const Object& object, int size_px, const View& view) {
   const double scale = size_px / kObjectUnits;
   StillLife scene{Relief(size_px), Plane<double>(kOversampling * size_px, kOversampling * size_px)};
   for (int y = 0; y < scene.relief.side(); ++y) {
@@ -158,11 +158,11 @@ template <typename Object>
 }
 
 /// A picture of an object on the ground.
-/// \param object  as in laid_out
+/// \param object  as in placed_object
 template <typename Object>
 [[nodiscard]] GreyImage object_picture(const Specimen& specimen, int size_px, const Object& object,
                                        const Lamp& lamp, const Print& print) {
-  return photographed(specimen, laid_out(object, size_px, object_view(specimen)), lamp, print);
+  return photographed(specimen, placed_object(object, size_px, object_view(specimen)), lamp, print);
 }
 
 }  // namespace touchtrial::stimuli

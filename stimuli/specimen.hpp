@@ -19,7 +19,7 @@ class Specimen {
   /// Seed of this piece's noise.
   [[nodiscard]] std::uint64_t noise_seed() const noexcept { return noise_seed_; }
 
-  /// A departure between -spread and spread, 0 for exemplar 1. Successive exemplars spread evenly,
+  /// A deviation between -spread and spread, 0 for exemplar 1. Successive exemplars spread evenly,
   /// so that five of them cover the range.
   [[nodiscard]] double shift(std::string_view trait, double spread) const;
   /// A factor between 1 / (1 + spread) and 1 + spread, 1 for exemplar 1.

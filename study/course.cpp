@@ -56,7 +56,7 @@ void Course::spoil() {
   }
 }
 
-BlockRestart Course::drawn_again(int block) const {
+BlockRestart Course::redrawn_block(int block) const {
   const auto number = [](const Trial& trial) { return trial.place.trial; };
   const int last = number(*std::ranges::max_element(schedule_.trials, {}, number));
   const auto before = restarts_.find(block);

@@ -52,7 +52,7 @@ class Course {
   [[nodiscard]] std::optional<int> block_to_restart() const noexcept { return to_restart_; }
   /// Draws the next restart of a block without changing the course. The new trials get the numbers
   /// after all existing ones.
-  [[nodiscard]] BlockRestart drawn_again(int block) const;
+  [[nodiscard]] BlockRestart redrawn_block(int block) const;
   /// Replaces the rest of the block by the restarted block, which comes before everything else.
   void restart(const BlockRestart& again);
   /// Whether a trial's number became invalid when its block was restarted.

@@ -113,7 +113,7 @@ using Progress = std::function<void(int done, int of)>;
 /// nothing to do leaves the pack's files untouched. Whether a picture or a field has changed, its
 /// content tells. The pack's bytes depend only on key, study and images, not on the number of
 /// threads. Images of more than PrepareOptions::large_image_px pixels are processed one after
-/// another, so that the memory for a large image (docs/benchmarks/memory.md) is needed only once,
+/// another, so that the memory for a large image (docs/benchmarks/README.md) is needed only once,
 /// whatever the number of threads.
 /// \param lock  of the pack's folder, to prepare
 /// \throws StudyError if an image cannot be read, with its place in the study

@@ -90,6 +90,8 @@ struct Protocol {
   int min_methods = 1;
   bool adaptive = false;    ///< answers decide what comes next
   bool all_methods = true;  ///< participants get all of the study's methods; if not, only the first
+  /// The schema of that object, as annotated_section() makes it; null: it has none.
+  std::string (*section_schema)() = nullptr;
   /// The registered questions that its analysis answers; a study cannot register another.
   std::span<const Estimand> estimands{};
 };

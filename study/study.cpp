@@ -4,6 +4,7 @@
 #include "core/files.hpp"
 #include "core/text.hpp"
 #include "study/protocol.hpp"
+#include "study/study_schema.hpp"
 #include "study/study_sections.hpp"
 
 #include <algorithm>
@@ -39,35 +40,25 @@ std::string read_plain_name(const JsonValue& place) {
 
 namespace {
 
-/// The protocol that the file names.
-const Protocol& read_protocol(const JsonValue& place) {
-  std::vector<std::string_view> names;
-  for (const Protocol* one : protocols()) names.push_back(one->name);
-  return *protocols()[place.choice(names)];
-}
-
-/// The keys of every study, and the sections of all protocols, so that the error for another
-/// protocol's section can name that protocol.
-std::vector<std::string_view> keys_of_studies() {
-  std::vector<std::string_view> keys = {
-      "study",   "protocol",     "classes",  "methods", "rendering", "trials", "practice",
-      "session", "registration", "blinding", "seed",    "visits",    "groups"};
+/// Reads the sections of protocols, of which the study's own makes its task.
+void describe_tasks(ObjectIo& io, Study& study) {
   for (const Protocol* one : protocols()) {
-    if (!one->section.empty()) keys.push_back(one->section);
-  }
-  return keys;
-}
-
-std::shared_ptr<const Task> read_task(const JsonObject& root, const Protocol& protocol) {
-  for (const Protocol* other : protocols()) {
-    if (other->section.empty() || other->section == protocol.section) continue;
-    if (const auto member = root.find(other->section)) {
-      member->refuse("belongs to the protocol " + std::string(other->name) +
-                     "; remove it, or choose that protocol");
+    const auto same = [one](const Protocol* other) { return other->section == one->section; };
+    if (one->section.empty() || *std::ranges::find_if(protocols(), same) != one) continue;
+    std::vector<std::string_view> owners;
+    for (const Protocol* other : protocols()) {
+      if (same(other)) owners.push_back(other->name);
     }
+    io.only_for("protocol", owners, std::span(&one->section, 1),
+                "belongs to the protocol " + std::string(one->name) +
+                    "; remove it, or choose that protocol");
+    io.member(one->section, {}, false, [&](ValueIo& value) {
+      value.own(
+          one->section_schema == nullptr ? R"({"type": "object"})" : one->section_schema(),
+          [&study](const JsonValue& place) { study.task = study.protocol->read(place); },
+          [] { return "{}"; });
+    });
   }
-  if (protocol.section.empty()) return protocol.read(std::nullopt);
-  return protocol.read(root.find(protocol.section));
 }
 
 void check_trials(const JsonValue& place, const Study& study) {
@@ -156,34 +147,85 @@ void check_visits(const JsonValue& place, const Study& study) {
   }
 }
 
+/// Sections that say what participants do besides trials.
+void describe_plans(ObjectIo& io, Study& study) {
+  const auto describe_plan = [](ObjectIo& keys, auto& plan) { describe(keys, plan); };
+  io.part("trials", study.trials, {"the trials of a participant, see below"}, describe_plan);
+  io.part(
+      "practice", study.practice,
+      {.meaning = "textures on which participants learn the task, see below", .otherwise = "none"},
+      describe_plan);
+  io.part("session", study.session, {"the other parts of a session with a person, see below"},
+          describe_plan);
+  io.part("visits", study.visits,
+          {.meaning = "how often each participant comes, see below", .otherwise = "one visit"},
+          describe_plan);
+  io.part("groups", study.groups,
+          {.meaning = "into which participants are dealt, see below", .otherwise = "none"},
+          describe_plan);
+  io.member("registration",
+            {.meaning = "what is deposited before the first participant, see below",
+             .otherwise = "empty"},
+            true, [&study](ValueIo& value) {
+              value.object([&study](ObjectIo& keys) {
+                const bool has_methods = !study.methods.empty();
+                describe(keys, study.registration,
+                         has_methods ? usual_test_of(study) : RegisteredTest::t);
+              });
+            });
+}
+
+void describe_protocol(ObjectIo& io, Study& study) {
+  std::vector<std::string_view> names;
+  for (const Protocol* one : protocols()) names.push_back(one->name);
+  std::size_t at = 0;
+  io.member("protocol",
+            {.meaning = "`classification`: which texture was presented? `comparison`: the same "
+                        "question with several methods. `threshold`: how weak a texture, or how "
+                        "small a difference, can still be felt? `rating`: how well does a texture "
+                        "fit its picture?",
+             .required = true},
+            true, [&](ValueIo& value) { value.choice(at, names); });
+  io.rule([&](const JsonValue& /*place*/, const JsonObject& /*object*/) {
+    study.protocol = protocols().at(at);
+  });
+}
+
+void describe_study(ObjectIo& io, Study& study) {
+  io.text("study", study.name, kPlainName,
+          {.meaning = "name, used in tables and file names", .required = true});
+  describe_protocol(io, study);
+  describe_tasks(io, study);
+  describe_classes(io, study.classes, study.protocol == nullptr ? 1 : study.protocol->min_classes,
+                   kMaxImagesOfClass,
+                   {.meaning = "the textures that participants tell apart, see below",
+                    .required = true,
+                    .range = "2 to 64 entries (`threshold` and `rating`: 1 to 64)"});
+  describe_methods(io, study.methods,
+                   {.meaning = "how textures are extracted from images, see below",
+                    .required = true,
+                    .range = "1 to 8 entries (`threshold`: 1), each label once"});
+  RenderingSection rendering{study.rendering, study.device, study.level};
+  io.part("rendering", rendering, {"how a texture becomes force, see below"},
+          [](ObjectIo& keys, RenderingSection& section) { describe(keys, section); });
+  study.rendering = rendering.options;
+  study.device = rendering.device;
+  study.level = rendering.level;
+  describe_plans(io, study);
+  io.choice("blinding", study.double_blind, kBlindingNames,
+            {"`double`: neither participant nor experimenter knows what is presented; "
+             "`participant`: the experimenter sets something by hand, and may know. It is stated, "
+             "and changes nothing that the program shows"});
+  io.member("seed",
+            {.meaning = "decides simulations and control textures; never what people get",
+             .range = "0 to 2^53"},
+            true, [&study](ValueIo& value) { value.integer(study.seed, 0, kMaxSeed); });
+}
+
 Study read_study(const JsonValue& place) {
-  const JsonObject root = place.object(keys_of_studies());
   Study study;
-  study.name = read_plain_name(root.at("study"));
-  study.protocol = &read_protocol(root.at("protocol"));
-  study.task = read_task(root, *study.protocol);
-  study.classes = read_classes(root.at("classes"), study.protocol->min_classes);
-  study.methods = read_methods(root.at("methods"));
-  if (const auto member = root.find("rendering")) {
-    ReadRendering read = read_rendering(*member);
-    study.rendering = read.options;
-    study.device = std::move(read.device);
-    study.level = std::move(read.level);
-  }
-  if (const auto member = root.find("trials")) study.trials = read_trials(*member);
-  if (const auto member = root.find("practice")) study.practice = read_practice(*member);
-  if (const auto member = root.find("session")) study.session = read_session(*member);
-  if (const auto member = root.find("visits")) study.visits = read_visits(*member);
-  if (const auto member = root.find("groups")) study.groups = read_groups(*member);
-  if (const auto member = root.find("registration")) {
-    study.registration = read_registration(*member, usual_test_of(study));
-  }
-  if (const auto member = root.find("blinding")) {
-    study.double_blind = member->choice(kBlindingNames);
-  }
-  if (const auto member = root.find("seed")) {
-    study.seed = static_cast<std::uint64_t>(member->integer(0, kMaxSeed));
-  }
+  read_described(place, [&study](ObjectIo& io) { describe_study(io, study); });
+  if (!study.task) study.task = study.protocol->read(std::nullopt);
   check_trials(place, study);
   study.task->check(place, study);
   study.methods = study.task->fields(study).methods;
@@ -250,6 +292,16 @@ bool Study::decides(int visit) const {
       break;
   }
   return true;
+}
+
+std::string study_schema() {
+  Study usual;
+  usual.registration.analysis.emplace();
+  return annotated_schema(
+      "Touchtrial study",
+      "What is presented, how it is rendered, and in which trials. docs/study-file.md explains "
+      "every key.",
+      "", [&usual](ObjectIo& io) { describe_study(io, usual); });
 }
 
 Study parse_study(std::string_view text, const std::filesystem::path& folder,

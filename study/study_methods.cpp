@@ -4,7 +4,7 @@
 #include "study/study_sections.hpp"
 
 #include <algorithm>
-#include <utility>
+#include <span>
 
 namespace touchtrial::study {
 namespace {
@@ -35,119 +35,133 @@ const std::vector<MethodKey>& method_keys() {
   return keys;
 }
 
-std::vector<std::string_view> known_keys() {
-  std::vector<std::string_view> keys = {"name", "label", "control"};
-  for (const MethodKey& entry : method_keys()) keys.push_back(entry.key);
-  return keys;
+std::vector<std::string_view> names_of(const std::vector<engine::Method>& methods) {
+  std::vector<std::string_view> names;
+  for (const engine::Method method : methods) names.push_back(name_of(method));
+  return names;
 }
 
-bool belongs_to(engine::Method method, const MethodKey& entry) {
-  return std::find(entry.methods.begin(), entry.methods.end(), method) != entry.methods.end();
-}
-
-/// "the method fixed", "the methods adaptive and fixed"
-std::string owners_of(const MethodKey& entry) {
-  return (entry.methods.size() == 1 ? "the method " : "the methods ") +
-         listed(entry.methods, " and ", [](engine::Method method) { return name_of(method); });
-}
-
-engine::Method read_name(const JsonValue& place) {
+/// The word for the method, then which keys are for which methods.
+void describe_name(ObjectIo& io, engine::Method& method) {
   const std::vector<std::string> names = engine::method_names();
   const std::vector<std::string_view> views(names.begin(), names.end());
-  const std::size_t chosen = place.choice(std::span<const std::string_view>(views));
-  const auto method = engine::method_from_name(names[chosen]);
-  if (!method) place.refuse("is not a method of this version; choose another");
-  return *method;
-}
-
-void refuse_foreign_keys(const JsonObject& object, engine::Method method) {
+  auto at = static_cast<std::size_t>(std::ranges::find(views, name_of(method)) - views.begin());
+  io.member("name", {.meaning = "the extraction method", .required = true}, true,
+            [&](ValueIo& value) { value.choice(at, views); });
+  method = engine::method_from_name(names.at(at)).value();
   for (const MethodKey& entry : method_keys()) {
-    const auto member = object.find(entry.key);
-    if (!member || belongs_to(method, entry)) continue;
-    member->refuse("belongs to " + owners_of(entry) + ", not to " + std::string(name_of(method)) +
-                   "; remove it");
+    const std::vector<std::string_view> owners = names_of(entry.methods);
+    io.only_for("name", owners, std::span(&entry.key, 1),
+                (owners.size() == 1 ? "belongs to the method " : "belongs to the methods ") +
+                    listed(owners, " and ") + ", not to " + std::string(name_of(method)) +
+                    "; remove it");
   }
 }
 
-/// Reads a list, or the word "auto".
-void read_components(const JsonValue& place, engine::TvGaborOptions& options) {
-  constexpr std::size_t kMost = 64;
-  constexpr std::array<std::string_view, 1> kWords = {"auto"};
-  options.automatic =
-      place.is_text() && place.choice(std::span<const std::string_view>(kWords)) == 0;
-  if (options.automatic) return;
-  options.components.clear();
-  for (const JsonValue& item : place.items(1, kMost)) {
-    const JsonObject object = item.object({"frequency", "direction"});
-    options.components.push_back(
-        {object.at("frequency").number({.low = 0.0, .high = 0.5, .open_low = true}),
-         object.at("direction").number({.low = -360.0, .high = 360.0})});
+void describe_component(ObjectIo& io, engine::GaborComponent& component) {
+  io.number("frequency", component.frequency_cycles_per_px,
+            {.low = 0.0, .high = 0.5, .open_low = true},
+            {.meaning = "of the wave", .required = true, .unit = "cycles per pixel"});
+  io.number("direction", component.direction_deg, {.low = -360.0, .high = 360.0},
+            {.meaning = "of the wave, from the x axis", .required = true, .unit = "degrees"});
+}
+
+/// A list, or the word "auto".
+void describe_components(ValueIo& io, engine::TvGaborOptions& options) {
+  constexpr auto kWords = std::to_array<Named<bool>>({{"auto", true}});
+  const ValueIo::Form forms[] = {{[](const JsonValue& place) { return place.is_text(); },
+                                  [&](ValueIo& value) {
+                                    options.automatic = true;
+                                    value.choice(options.automatic, kWords);
+                                  }},
+                                 {{}, [&](ValueIo& value) {
+                                    options.automatic = false;
+                                    value.list(options.components, {.fewest = 1, .most = 64},
+                                               [](ValueIo& item, engine::GaborComponent& one) {
+                                                 item.part(one, describe_component);
+                                               });
+                                  }}};
+  io.either(options.automatic ? 0 : 1, forms);
+}
+
+/// The text of a key's meaning with the methods that have it.
+class Meanings {
+ public:
+  /// \param key  one of method_keys()
+  About of(std::string_view key, std::string_view meaning, std::string_view unit = {}) {
+    const auto entry = std::ranges::find(method_keys(), key, &MethodKey::key);
+    text_ = std::string(meaning) + " (" + listed(names_of(entry->methods)) + ")";
+    const bool is_of_method = std::ranges::count(entry->methods, method_) > 0;
+    return {.meaning = text_, .written = is_of_method, .unit = unit};
   }
+  explicit Meanings(engine::Method method) : method_(method) {}
+
+ private:
+  engine::Method method_;
+  std::string text_;
+};
+
+void describe_tv_gabor(ObjectIo& io, engine::TvGaborOptions& options, Meanings& about) {
+  using Options = engine::TvGaborOptions;
+  io.number("lambda", options.lambda, {.low = Options::kMinLambda, .high = Options::kMaxLambda},
+            about.of("lambda", "weight of the texture norm"));
+  About components = about.of("components",
+                              "the oscillations that count as texture; `auto` takes the strongest "
+                              "ones of each image");
+  components.range = "1 to 64 entries, or `auto`";
+  components.otherwise = "four at 0.25, 0, 45, 90, 135 degrees";
+  io.member("components", components, true,
+            [&options](ValueIo& value) { describe_components(value, options); });
+  io.number("gap", options.gap, {.low = 0.0, .high = 1.0, .open_low = true},
+            about.of("gap", "relative primal-dual gap at which the solver stops"));
+  io.integer("max_steps", options.max_steps, 1, 1'000'000,
+             about.of("max_steps",
+                      "number of steps after which the solver gives up; `prepare` then warns"));
 }
 
-template <typename Choice, std::size_t size>
-void read_choice(const JsonObject& object, std::string_view key,
-                 const std::array<Named<Choice>, size>& names, Choice& choice) {
-  if (const auto member = object.find(key)) choice = member->choice(names);
-}
-
-void read_method_number(const JsonObject& object, std::string_view key, const NumberRange& range,
-                        double& number) {
-  if (const auto member = object.find(key)) number = member->number(range);
-}
-
-void read_integer(const JsonObject& object, std::string_view key, int low, int high, int& number) {
-  if (const auto member = object.find(key)) {
-    number = static_cast<int>(member->integer(low, high));
-  }
-}
-
-engine::TvGaborOptions read_tv_gabor(const JsonObject& object) {
-  engine::TvGaborOptions options;
-  read_method_number(
-      object, "lambda",
-      {.low = engine::TvGaborOptions::kMinLambda, .high = engine::TvGaborOptions::kMaxLambda},
-      options.lambda);
-  if (const auto member = object.find("components")) read_components(*member, options);
-  read_method_number(object, "gap", {.low = 0.0, .high = 1.0, .open_low = true}, options.gap);
-  read_integer(object, "max_steps", 1, 1'000'000, options.max_steps);
-  return options;
-}
-
-StudyMethod read_method(const JsonValue& place) {
+void describe_parameters(ObjectIo& io, engine::ExtractionOptions& options) {
   using Options = engine::ExtractionOptions;
-  const std::vector<std::string_view> known = known_keys();
-  const JsonObject object = place.object(std::span<const std::string_view>(known));
-  StudyMethod options;
-  options.method = read_name(object.at("name"));
-  refuse_foreign_keys(object, options.method);
-  read_integer(object, "radius", 1, Options::kMaxRadius, options.radius);
-  read_method_number(object, "order", {.low = 0.0, .high = 1.0, .open_high = true}, options.order);
-  read_choice(object, "norm", engine::kNormNames, options.norm);
-  read_choice(object, "gradient", engine::kGradientNames, options.gradient);
-  read_choice(object, "combine", engine::kCombineNames, options.combine);
-  read_integer(object, "levels", 1, Options::kMaxLevels, options.levels);
-  read_method_number(object, "sigma_px",
-                     {.low = 0.0, .high = Options::kMaxSigma_px, .open_low = true},
-                     options.sigma_px);
-  read_method_number(object, "threshold", {.low = 0.0, .high = 255.0}, options.threshold_grey);
-  read_method_number(object, "divisor", {.low = Options::kMinDivisor, .high = Options::kMaxDivisor},
-                     options.divisor);
-  options.tv_gabor = read_tv_gabor(object);
-  read_choice(object, "control", engine::kControlNames, options.control);
-  const auto label = object.find("label");
-  options.label = label ? read_plain_name(*label) : default_label(options);
-  return options;
+  Meanings about(options.method);
+  io.integer(
+      "radius", options.radius, 1, Options::kMaxRadius,
+      about.of("radius", "radius K of the mask, or of the median's window, which is 2 K + 1 wide",
+               "pixels"));
+  io.number("order", options.order, {.low = 0.0, .high = 1.0, .open_high = true},
+            about.of("order", "fractional order v; 0 gives no texture"));
+  io.choice("norm", options.norm, engine::kNormNames,
+            about.of("norm", "normalisation of the mask; `sum` is strong where v is near 1"));
+  io.choice("gradient", options.gradient, engine::kGradientNames,
+            about.of("gradient", "operator that measures the slope of the sub-bands"));
+  io.choice("combine", options.combine, engine::kCombineNames,
+            about.of("combine", "how the slopes of all sub-bands become one number"));
+  io.integer("levels", options.levels, 1, Options::kMaxLevels,
+             about.of("levels", "levels of sub-bands"));
+  io.number("sigma_px", options.sigma_px,
+            {.low = 0.0, .high = Options::kMaxSigma_px, .open_low = true},
+            about.of("sigma_px", "standard deviation of the Gaussian blur that is subtracted"));
+  io.number("threshold", options.threshold_grey, {.low = 0.0, .high = 255.0},
+            about.of("threshold", "differences from the median up to this count as no texture",
+                     "grey levels"));
+  io.number("divisor", options.divisor, {.low = Options::kMinDivisor, .high = Options::kMaxDivisor},
+            about.of("divisor", "divisor of the norm of the gradient"));
+  describe_tv_gabor(io, options.tv_gabor, about);
 }
 
-nlohmann::json components_json(const engine::TvGaborOptions& options) {
-  if (options.automatic) return "auto";
-  nlohmann::json list = nlohmann::json::array();
-  for (const engine::GaborComponent& component : options.components) {
-    list.push_back(
-        {{"frequency", component.frequency_cycles_per_px}, {"direction", component.direction_deg}});
-  }
-  return list;
+void describe(ObjectIo& io, StudyMethod& method) {
+  describe_name(io, method.method);
+  describe_parameters(io, method);
+  io.choice("control", method.control, engine::kControlNames,
+            {.meaning = "`phase-scrambled` presents a texture with the spectrum of the method's "
+                        "texture but none of its structure",
+             .written = method.control != engine::Control::none});
+  io.rule([&method](const JsonValue& /*place*/, const JsonObject& /*object*/) {
+    method.label = default_label(method);
+  });
+  io.text("label", method.label, kPlainName,
+          {.meaning = "its name in tables and files, unique as labels of classes are; required "
+                      "where two entries have the same method",
+           .written = method.label != default_label(method),
+           .otherwise = "the name and the control"});
 }
 
 }  // namespace
@@ -159,53 +173,43 @@ std::string default_label(const engine::ExtractionOptions& method) {
   return label;
 }
 
-std::vector<StudyMethod> read_methods(const JsonValue& place) {
-  std::vector<StudyMethod> methods;
-  for (const JsonValue& item : place.items(1, kMaxMethods)) {
-    StudyMethod method = read_method(item);
-    if (std::ranges::count(methods, method.label, &StudyMethod::label) > 0) {
-      item.refuse(in_quotes(method.label) +
-                  " is there twice; list it once, or give one of the two another label");
+void describe_methods(ObjectIo& io, std::vector<StudyMethod>& methods, const About& about) {
+  io.list("methods", methods, {.fewest = 1, .most = kMaxMethods}, about,
+          [](ValueIo& value, StudyMethod& method) {
+            value.object([&method](ObjectIo& keys) { describe(keys, method); });
+          });
+  io.rule([&methods](const JsonValue& place, const JsonObject& /*object*/) {
+    for (std::size_t i = 1; i < methods.size(); ++i) {
+      const std::string at = "/methods/" + std::to_string(i);
+      const std::string& label = methods[i].label;
+      const std::span before = std::span(methods).first(i);
+      if (std::ranges::count(before, label, &StudyMethod::label) > 0) {
+        place.refuse_below(at, in_quotes(label) +
+                                   " is there twice; list it once, or give one of "
+                                   "the two another label");
+      }
+      for (const StudyMethod& other : before) {
+        refuse_same_label(place, at, label, other.label, "method");
+      }
     }
-    for (const StudyMethod& other : methods) {
-      refuse_same_label(item, method.label, other.label, "method");
-    }
-    methods.push_back(std::move(method));
-  }
-  return methods;
+  });
 }
 
 engine::ExtractionOptions parse_method(std::string_view text, const std::string& source) {
-  return read_method(parse_strict_json(text, source));
-}
-
-nlohmann::json to_json(const engine::ExtractionOptions& method) {
-  const nlohmann::json all = {{"radius", method.radius},
-                              {"order", method.order},
-                              {"norm", name_in(engine::kNormNames, method.norm)},
-                              {"gradient", name_in(engine::kGradientNames, method.gradient)},
-                              {"combine", name_in(engine::kCombineNames, method.combine)},
-                              {"levels", method.levels},
-                              {"sigma_px", method.sigma_px},
-                              {"threshold", method.threshold_grey},
-                              {"divisor", method.divisor},
-                              {"lambda", method.tv_gabor.lambda},
-                              {"components", components_json(method.tv_gabor)},
-                              {"gap", method.tv_gabor.gap},
-                              {"max_steps", method.tv_gabor.max_steps}};
-  nlohmann::json object = {{"name", name_of(method.method)}};
-  for (const MethodKey& entry : method_keys()) {
-    if (belongs_to(method.method, entry)) object[std::string(entry.key)] = all.at(entry.key);
-  }
-  if (method.control != engine::Control::none)
-    object["control"] = name_in(engine::kControlNames, method.control);
-  return object;
+  StudyMethod method;
+  read_described(parse_strict_json(text, source), [&](ObjectIo& io) { describe(io, method); });
+  return method;
 }
 
 nlohmann::json to_json(const StudyMethod& method) {
-  nlohmann::json object = to_json(static_cast<const engine::ExtractionOptions&>(method));
-  if (method.label != default_label(method)) object["label"] = method.label;
-  return object;
+  StudyMethod copy = method;
+  const Description description = [&copy](ObjectIo& io) { describe(io, copy); };
+  return written_section(description, [](ObjectIo& /*io*/) {});
+}
+
+nlohmann::json to_json(const engine::ExtractionOptions& method) {
+  StudyMethod labelled{method, default_label(method)};
+  return to_json(labelled);
 }
 
 }  // namespace touchtrial::study

@@ -17,148 +17,198 @@ bool is_plain(const std::string& text, std::string_view ending = {}) {
 }
 
 /// A name or a path; whether there is such a file is said where one is needed.
-std::string read_curve(const JsonValue& place) {
-  const std::string& curve = place.text();
-  const bool is_name = std::ranges::any_of(
-      engine::kThresholdCurves, [&](auto known) { return curve == engine::name_of(known); });
-  if (!is_name && !is_plain(curve, ".db")) {
-    place.refuse("must be israr_2006, tan_1994, or the database of a detection study, NAME.db");
-  }
-  return curve;
-}
-
-WantedLevel read_level(const JsonValue& place) {
-  const JsonObject object = place.object({"level_db", "curve"});
-  return {.db = object.at("level_db").number({.low = 0.0, .high = WantedLevel::kMaxDb}),
-          .curve = read_curve(object.at("curve"))};
-}
-
-engine::Gains read_explicit_gains(const JsonValue& place, engine::ModelKind model) {
-  const NumberRange range{.low = 0.0, .high = 10.0};
-  if (model == engine::ModelKind::surface) {
-    return {.height_mm = place.object({"height_mm"}).at("height_mm").number(range)};
-  }
-  const JsonObject object = place.object({"tangential_n", "normal_n"});
-  return {.tangential_n = object.at("tangential_n").number(range),
-          .normal_n = object.at("normal_n").number(range)};
-}
-
-void read_gains(const JsonValue& place, ReadRendering& read) {
-  constexpr auto kNames = std::to_array<Named<int>>({{"budget", 0}});
-  if (place.is_text()) {
-    static_cast<void>(place.choice(kNames));
-    return;
-  }
-  const auto keys = nlohmann::json::parse(place.any_object());
-  if (keys.contains("level_db") || keys.contains("curve")) {
-    read.level = read_level(place);
-  } else {
-    read.options.gains = read_explicit_gains(place, read.options.model);
-  }
-}
-
-int read_neighbourhood(const JsonValue& place) {
-  const auto side = static_cast<int>(place.integer(3, 31));
-  if (side % 2 == 0) place.refuse("is " + std::to_string(side) + ", must be odd");
-  return side;
-}
-
-void read_number(const JsonObject& object, std::string_view key, const NumberRange& range,
-                 double& number) {
-  if (const auto member = object.find(key)) number = member->number(range);
-}
-
-void read_wall(const JsonObject& object, engine::RenderingOptions& options) {
-  read_number(object, "pitch_mm", {.low = 0.001, .high = 10.0}, options.pitch_mm);
-  read_number(object, "stiffness_n_per_mm", {.low = 0.0, .high = 100.0, .open_low = true},
-              options.stiffness_n_per_mm);
-  read_number(object, "damping_n_s_per_mm", {.low = 0.0, .high = 1.0}, options.damping_n_s_per_mm);
-  read_number(object, "max_force_n", {.low = 0.0, .high = 100.0, .open_low = true},
-              options.max_force_n);
-}
-
-void read_friction(const JsonObject& object, engine::RenderingOptions& options) {
-  const auto friction = object.find("friction");
-  if (!friction) return;
-  options.friction = friction->number({.low = 0.0, .high = 10.0});
-  if (options.model == engine::ModelKind::paper && options.friction != 0.0) {
-    friction->refuse(
-        "must be 0: the rendering model paper has no friction; leave it out or give \"model\": "
-        "\"surface\"");
-  }
-}
-
-void read_touchdown_ramp(const JsonObject& object, engine::RenderingOptions& options) {
-  const auto ramp = object.find("touchdown_ramp_n");
-  if (!ramp) return;
-  options.touchdown_ramp_n = ramp->number({.low = 0.0, .high = 1.0});
-  if (options.model == engine::ModelKind::surface && options.touchdown_ramp_n != 0.0) {
-    ramp->refuse(
-        "must be 0: the lateral force of the rendering model surface grows with the load by "
-        "itself; leave it out or give \"model\": \"paper\"");
-  }
-}
-
-nlohmann::json gains_json(const engine::RenderingOptions& rendering) {
-  if (!rendering.gains) return "budget";
-  if (rendering.model == engine::ModelKind::surface)
-    return {{"height_mm", rendering.gains->height_mm}};
-  return {{"tangential_n", rendering.gains->tangential_n}, {"normal_n", rendering.gains->normal_n}};
-}
+constexpr TextRule kCurve{
+    .check =
+        [](const JsonValue& place) {
+          const std::string& curve = place.text();
+          const bool is_name = std::ranges::any_of(engine::kThresholdCurves, [&](auto known) {
+            return curve == engine::name_of(known);
+          });
+          if (!is_name && !is_plain(curve, ".db")) {
+            place.refuse(
+                "must be israr_2006, tan_1994, or the database of a detection study, NAME.db");
+          }
+        },
+    .max_length = 200,
+    .pattern = R"(^(israr_2006|tan_1994|.+\.db)$)",
+    .in_words = "`israr_2006`, `tan_1994`, `NAME.db`"};
 
 /// A name or a path; whether there is such a model is said where one is needed.
-std::string read_device(const JsonValue& place) {
-  const std::string& device = place.text();
-  if (!is_plain(device)) {
-    place.refuse("must be a model's name, as touchtrial device models lists them, or a file's");
-  }
-  return device;
+constexpr TextRule kDevice{
+    .check =
+        [](const JsonValue& place) {
+          if (is_plain(place.text())) return;
+          place.refuse(
+              "must be a model's name, as touchtrial device models lists them, or a file's");
+        },
+    .min_length = 1,
+    .max_length = 200,
+    .in_words = "a product's or a model's name, or a file"};
+
+constexpr NumberRange kGain{.low = 0.0, .high = 10.0};
+constexpr NumberRange kStiffness{.low = 0.0, .high = 100.0, .open_low = true};
+
+void describe_level(ObjectIo& io, WantedLevel& level) {
+  io.number(
+      "level_db", level.db, {.low = 0.0, .high = WantedLevel::kMaxDb},
+      {.meaning = "of the weakest stimulus, above the detection threshold on `device`, beside "
+                  "the blank plane",
+       .required = true});
+  io.text("curve", level.curve, kCurve,
+          {.meaning = "a published curve of thresholds, or the unblinded database of a detection "
+                      "study of pilots, relative to the study's folder, with key and pack in reach",
+           .required = true});
 }
 
-void read_texture(const JsonObject& object, ReadRendering& read) {
-  engine::RenderingOptions& options = read.options;
-  read_number(object, "filter_mm", {.low = 0.0, .high = 10.0}, options.filter_mm);
-  read_number(object, "texture_stiffness_n_per_mm", {.low = 0.0, .high = 100.0, .open_low = true},
-              options.texture_stiffness_n_per_mm);
-  read_number(object, "reference_grey", {.low = 0.0, .high = 255.0}, options.reference_grey);
-  if (const auto member = object.find("gains")) read_gains(*member, read);
-  if (const auto member = object.find("equalise")) {
-    options.equalise = member->choice(kEqualiseNames);
-    if (options.equalise == engine::Equalise::level && !read.level) {
-      member->refuse("is level, but /gains states none; give gains level_db and curve, or rms");
+void describe_surface_gains(ObjectIo& io, engine::Gains& gains) {
+  io.number("height_mm", gains.height_mm, kGain,
+            {.meaning = "`surface`: alpha; 0 gives a smooth plane",
+             .required = true,
+             .unit = "mm per grey level"});
+}
+
+void describe_paper_gains(ObjectIo& io, engine::Gains& gains) {
+  io.number("tangential_n", gains.tangential_n, kGain,
+            {.meaning = "`paper`: k_t; 0 here and in `normal_n` gives a smooth plane",
+             .required = true,
+             .unit = "N per (grey level per pixel)"});
+  io.number("normal_n", gains.normal_n, kGain,
+            {.meaning = "`paper`: c", .required = true, .unit = "N per grey level"});
+}
+
+bool states_level(const JsonValue& place) {
+  if (!place.is_object()) return false;
+  const JsonObject gains(place);
+  return gains.find("level_db").has_value() || gains.find("curve").has_value();
+}
+
+/// The word "budget", a level, or the gains of the model.
+void describe_gains(ValueIo& io, RenderingSection& rendering) {
+  constexpr auto kWords = std::to_array<Named<bool>>({{"budget", true}});
+  const auto& [options, device, level] = rendering;
+  const bool is_surface = options.model == engine::ModelKind::surface;
+  const auto gains = [&rendering](ValueIo& value, const auto& describe_them) {
+    engine::Gains of_all = rendering.options.gains.value_or(engine::Gains{});
+    value.part(of_all, describe_them);
+    rendering.options.gains = of_all;
+  };
+  const ValueIo::Form forms[] = {{[](const JsonValue& place) { return place.is_text(); },
+                                  [&](ValueIo& value) {
+                                    bool by_budget = true;
+                                    value.choice(by_budget, kWords);
+                                  }},
+                                 {states_level,
+                                  [&](ValueIo& value) {
+                                    WantedLevel wanted;
+                                    value.part(wanted, describe_level);
+                                    rendering.level = wanted;
+                                  }},
+                                 {[is_surface](const JsonValue& /*place*/) { return is_surface; },
+                                  [&](ValueIo& value) { gains(value, describe_surface_gains); }},
+                                 {{}, [&](ValueIo& value) { gains(value, describe_paper_gains); }}};
+  io.either(!options.gains ? 0 : is_surface ? 2 : 3, forms);
+}
+
+/// What one of the models alone has.
+void describe_of_models(ObjectIo& io, engine::RenderingOptions& options) {
+  io.number(
+      "friction", options.friction, {.low = 0.0, .high = 10.0},
+      {"`surface`: coefficient of the bristle friction. `paper` has none and accepts only 0"});
+  io.number("touchdown_ramp_n", options.touchdown_ramp_n, {.low = 0.0, .high = 1.0},
+            {.meaning = "`paper`: load up to which the lateral force grows in proportion to the "
+                        "load; 0: whole from the touchdown on. `surface`, whose lateral force "
+                        "grows with the load anyway, accepts only 0",
+             .if_changed = true});
+  io.rule([&options](const JsonValue& place, const JsonObject& /*object*/) {
+    if (options.model == engine::ModelKind::paper && options.friction != 0.0) {
+      place.refuse_below("/friction",
+                         "must be 0: the rendering model paper has no friction; leave it out or "
+                         "give \"model\": \"surface\"");
     }
-  }
-  if (const auto member = object.find("neighbourhood")) {
-    options.neighbourhood = read_neighbourhood(*member);
-  }
+    if (options.model == engine::ModelKind::surface && options.touchdown_ramp_n != 0.0) {
+      place.refuse_below("/touchdown_ramp_n",
+                         "must be 0: the lateral force of the rendering model surface grows with "
+                         "the load by itself; leave it out or give \"model\": \"paper\"");
+    }
+  });
+}
+
+void describe_wall(ObjectIo& io, engine::RenderingOptions& options) {
+  io.number("pitch_mm", options.pitch_mm, {.low = 0.001, .high = 10.0},
+            {"size of a pixel: a 500-pixel image is 100 mm wide at 0.2"});
+  io.number("stiffness_n_per_mm", options.stiffness_n_per_mm, kStiffness,
+            {"stiffness of the wall"});
+  io.number("damping_n_s_per_mm", options.damping_n_s_per_mm, {.low = 0.0, .high = 1.0},
+            {"damping of the wall"});
+  io.number("max_force_n", options.max_force_n, kStiffness,
+            {"limit of the total force; at most the device's largest force"});
+}
+
+void describe_texture(ObjectIo& io, RenderingSection& rendering) {
+  engine::RenderingOptions& options = rendering.options;
+  io.number("filter_mm", options.filter_mm, {.low = 0.0, .high = 10.0},
+            {"standard deviation of the reconstruction filter; 0: no filter, as in the paper"});
+  io.number("texture_stiffness_n_per_mm", options.texture_stiffness_n_per_mm, kStiffness,
+            {"stiffness budget, from which the gains are computed"});
+  io.number("reference_grey", options.reference_grey, {.low = 0.0, .high = 255.0},
+            {.meaning = "`paper`: grey level that adds no normal force; 0 is the paper's literal "
+                        "reading, with a warning. No effect under `surface`",
+             .unit = "grey levels"});
+  io.member("gains",
+            {.meaning = "the largest gains within the budget; those of a level; or explicit ones",
+             .range = "`budget`, or as below"},
+            true, [&rendering](ValueIo& value) { describe_gains(value, rendering); });
+  io.choice("equalise", options.equalise, kEqualiseNames,
+            {"`rms` gives every stimulus the same rms force, without effect on explicit gains; "
+             "`level` gives every stimulus the level that `gains` states"});
+  io.integer("neighbourhood", options.neighbourhood, 3, 31,
+             {.meaning = "`paper`: side of the neighbourhood from which the tangential force is "
+                         "computed. No effect under `surface`",
+              .unit = "pixels",
+              .range = "3 to 31, odd"});
+  io.rule([&rendering](const JsonValue& place, const JsonObject& /*object*/) {
+    const engine::RenderingOptions& read = rendering.options;
+    if (read.equalise == engine::Equalise::level && !rendering.level) {
+      place.refuse_below("/equalise",
+                         "is level, but /gains states none; give gains level_db and curve, or rms");
+    }
+    if (read.neighbourhood % 2 == 0) {
+      place.refuse_below("/neighbourhood",
+                         "is " + std::to_string(read.neighbourhood) + ", must be odd");
+    }
+  });
 }
 
 }  // namespace
 
-ReadRendering read_rendering(const JsonValue& place) {
-  const JsonObject object =
-      place.object({"model", "pitch_mm", "stiffness_n_per_mm", "damping_n_s_per_mm", "filter_mm",
-                    "texture_stiffness_n_per_mm", "gains", "equalise", "reference_grey", "friction",
-                    "neighbourhood", "touchdown_ramp_n", "max_force_n", "device"});
-  ReadRendering read;
-  engine::RenderingOptions& options = read.options;
-  if (const auto model = object.find("model")) options.model = model->choice(kModelNames);
-  read_friction(object, options);
-  read_touchdown_ramp(object, options);
-  read_wall(object, options);
-  read_texture(object, read);
-  if (const auto member = object.find("device")) read.device = read_device(*member);
-  if (read.level && read.device.empty()) {
+void describe(ObjectIo& io, RenderingSection& rendering) {
+  io.choice("model", rendering.options.model, kModelNames,
+            {"the rendering model: tangential forces beside a wall, or the gradient of one "
+             "potential"});
+  describe_of_models(io, rendering.options);
+  describe_wall(io, rendering.options);
+  describe_texture(io, rendering);
+  io.text("device", rendering.device, kDevice,
+          {.meaning = "the device that the study is for: a product with a model "
+                      "([which](devices/README.md)), a [device model](devices/models.md), or a "
+                      "model's file, relative to the study's; [levels](perception.md) are stated "
+                      "for it, simulated hands hold it, `device fit` takes it, and `gains` of a "
+                      "level depend on it. None: simulated hands hold an ideal device, which "
+                      "nobody sells",
+           .written = false,
+           .otherwise = "none"});
+  io.rule([&rendering](const JsonValue& place, const JsonObject& /*object*/) {
+    if (!rendering.level || !rendering.device.empty()) return;
     place.refuse_below("/gains", "states a level, which needs the device: add \"device\"");
-  }
-  return read;
+  });
 }
 
 engine::RenderingOptions parse_rendering(std::string_view text, const std::string& source) {
   const JsonValue place = parse_strict_json(text, source);
-  const ReadRendering read = read_rendering(place);
-  if (read.level) place.refuse_below("/gains", "states a level, which only a study has");
-  return read.options;
+  RenderingSection rendering;
+  read_described(place, [&](ObjectIo& io) { describe(io, rendering); });
+  if (rendering.level) place.refuse_below("/gains", "states a level, which only a study has");
+  return rendering.options;
 }
 
 std::string written_rendering(const engine::RenderingOptions& rendering) {
@@ -168,21 +218,7 @@ std::string written_rendering(const engine::RenderingOptions& rendering) {
 }
 
 nlohmann::json to_json(const engine::RenderingOptions& rendering) {
-  nlohmann::json object = {{"model", name_in(kModelNames, rendering.model)},
-                           {"pitch_mm", rendering.pitch_mm},
-                           {"stiffness_n_per_mm", rendering.stiffness_n_per_mm},
-                           {"damping_n_s_per_mm", rendering.damping_n_s_per_mm},
-                           {"filter_mm", rendering.filter_mm},
-                           {"texture_stiffness_n_per_mm", rendering.texture_stiffness_n_per_mm},
-                           {"gains", gains_json(rendering)},
-                           {"equalise", name_in(kEqualiseNames, rendering.equalise)},
-                           {"reference_grey", rendering.reference_grey},
-                           {"friction", rendering.friction},
-                           {"neighbourhood", rendering.neighbourhood},
-                           {"max_force_n", rendering.max_force_n}};
-  // Left out where there is none, so that studies without it keep their seals.
-  if (rendering.touchdown_ramp_n != 0.0) object["touchdown_ramp_n"] = rendering.touchdown_ramp_n;
-  return object;
+  return to_json(RenderingSection{.options = rendering, .device = {}, .level = {}});
 }
 
 }  // namespace touchtrial::study

@@ -5,254 +5,236 @@
 #include "core/text.hpp"
 
 #include <algorithm>
-#include <set>
 
 namespace touchtrial::study {
 namespace {
 
 constexpr std::size_t kLongestPath = 1024;  // bytes
 
-std::string read_label(const JsonValue& place) {
-  const std::string& label = place.text();
-  const std::string fault = fault_of_label(label);
-  if (!fault.empty()) place.refuse(fault + "; give another label");
-  return label;
-}
+constexpr TextRule kLabel{
+    .check =
+        [](const JsonValue& place) {
+          const std::string fault = fault_of_label(place.text());
+          if (!fault.empty()) place.refuse(fault + "; give another label");
+        },
+    .min_length = 1,
+    .max_length = 64,
+    .pattern = R"(^[^\u0000-\u0020\u007f-\u009f]([^\u0000-\u001f\u007f-\u009f]*)"
+               R"([^\u0000-\u0020\u007f-\u009f])?$)",
+    .in_words =
+        "1 to 64 bytes of UTF-8, no control characters, no space at either end, unique; two labels "
+        "may not look alike: differ by capitals, blanks, hyphens, the encoding of accents, the "
+        "width of letters, or the alphabet of letters that are alike (a Cyrillic or Greek o) "
+        "alone; no word of Latin letters with one of another alphabet; no word that other programs "
+        "take for a missing value (NA), and no =, +, - or @ in front"};
 
-std::string read_image(const JsonValue& place) {
+void check_image(const JsonValue& place) {
   const std::string& path = place.text();
   if (path.empty()) place.refuse("is empty; give the path of an image");
   if (path.size() > kLongestPath) {
     place.refuse("is longer than " + std::to_string(kLongestPath) + " bytes; shorten the path");
   }
   if (has_control_character(path)) place.refuse("has a control character; rename the image");
-  return path;
 }
 
-std::vector<std::filesystem::path> read_images(const JsonValue& place, std::size_t most) {
-  std::vector<std::filesystem::path> images;
-  std::set<std::string> seen;
-  for (const JsonValue& item : place.items(1, most)) {
-    const std::string path = read_image(item);
-    if (!seen.insert(path).second) {
-      item.refuse(in_quotes(path) + " is there twice; list each image of a class once");
+constexpr TextRule kImage{.check = check_image,
+                          .min_length = 1,
+                          .max_length = kLongestPath,
+                          .pattern = R"(^[^\u0000-\u001f\u007f-\u009f]+$)"};
+
+void describe_class(ObjectIo& io, StudyClass& one, std::size_t most_images) {
+  io.text("label", one.label, kLabel, {.meaning = "name of the texture", .required = true});
+  io.list("images", one.images, {.fewest = 1, .most = most_images, .unique = true},
+          {.meaning = "the exemplars of the class; paths are relative to the study file",
+           .required = true},
+          [](ValueIo& value, std::filesystem::path& image) {
+            std::string path = image.string();
+            value.text(path, kImage);
+            image = path;
+          });
+  io.rule([&one](const JsonValue& place, const JsonObject& /*object*/) {
+    for (auto image = one.images.begin(); image != one.images.end(); ++image) {
+      if (std::find(one.images.begin(), image, *image) == image) continue;
+      place.refuse_below(
+          "/images/" + std::to_string(image - one.images.begin()),
+          in_quotes(image->string()) + " is there twice; list each image of a class once");
     }
-    images.emplace_back(path);
-  }
-  return images;
-}
-
-void read_count(const JsonObject& object, std::string_view key, int low, int high, int& count) {
-  if (const auto member = object.find(key)) count = static_cast<int>(member->integer(low, high));
-}
-
-/// Reads what follows an interrupted presentation, and how long a session can be resumed.
-void read_resumption(const JsonObject& object, TrialOptions& options) {
-  constexpr double kYear_h = 8760.0;
-  if (const auto member = object.find("on_interruption")) {
-    options.on_interruption = member->choice(kOnInterruptionNames);
-  }
-  if (const auto member = object.find("resume_within_h")) {
-    options.resume_within_h = member->number({.low = 0.0, .high = kYear_h, .open_low = true});
-  }
-}
-
-}  // namespace
-
-namespace {
-
-void read_bound(const JsonObject& object, std::string_view key, double high, double& bound) {
-  if (const auto member = object.find(key)) bound = member->number({.low = 0.0, .high = high});
+  });
 }
 
 constexpr double kLongest_s = 3600.0;
-constexpr double kLongest_mm = 1e6;
+constexpr NumberRange kTime_s{.low = 0.0, .high = kLongest_s};
+constexpr NumberRange kPath_mm{.low = 0.0, .high = 1e6};
 
-ValidityRule read_validity(const JsonValue& place) {
-  constexpr double kLargest_n = 100.0;
-  const JsonObject object = place.object({"exploring_s", "contact_s", "path_mm", "least_median_n",
-                                          "largest_median_n", "saturated_share"});
-  ValidityRule rule;
-  read_bound(object, "exploring_s", kLongest_s, rule.least_exploring_s);
-  read_bound(object, "contact_s", kLongest_s, rule.least_contact_s);
-  read_bound(object, "path_mm", kLongest_mm, rule.least_path_mm);
-  read_bound(object, "least_median_n", kLargest_n, rule.least_median_n);
-  read_bound(object, "largest_median_n", kLargest_n, rule.largest_median_n);
-  if (const auto member = object.find("saturated_share")) {
-    rule.saturated_share = member->number({.low = 0.0, .high = 1.0, .open_low = true});
-  }
-  return rule;
+void describe_validity(ObjectIo& io, ValidityRule& rule) {
+  constexpr NumberRange kMedian_n{.low = 0.0, .high = 100.0};
+  io.number("exploring_s", rule.least_exploring_s, kTime_s,
+            {"exploration from landing to the last sample, at least"});
+  io.number("contact_s", rule.least_contact_s, kTime_s, {"contact, at least"});
+  io.number("path_mm", rule.least_path_mm, kPath_mm, {"path in contact, at least"});
+  io.number("least_median_n", rule.least_median_n, kMedian_n, {"smallest median force in contact"});
+  io.number("largest_median_n", rule.largest_median_n, kMedian_n,
+            {"largest median force in contact"});
+  io.number("saturated_share", rule.saturated_share, {.low = 0.0, .high = 1.0, .open_low = true},
+            {"share of the samples in contact at the force limit that makes a trial invalid"});
 }
 
-LeastTouch read_least_touch(const JsonValue& place) {
-  const JsonObject object = place.object({"contact_s", "path_mm"});
-  LeastTouch touch;
-  read_bound(object, "contact_s", kLongest_s, touch.contact_s);
-  read_bound(object, "path_mm", kLongest_mm, touch.path_mm);
-  return touch;
+void describe_least_touch(ObjectIo& io, LeastTouch& touch) {
+  io.number("contact_s", touch.contact_s, kTime_s,
+            {"time at the plane (at most 3 mm above it), at least"});
+  io.number("path_mm", touch.path_mm, kPath_mm,
+            {"way along it, at least; 0 here and in `contact_s`: no touch needed"});
+}
+
+/// How presentations are ordered and repeated.
+void describe_order(ObjectIo& io, TrialOptions& trials) {
+  io.integer("catch", trials.catch_trials, 0, 1000,
+             {"unscored presentations of a plane without texture, at random places among the "
+              "others, see [Catch trials](#catch-trials)"});
+  io.integer("lead_in", trials.lead_in, 0, 100,
+             {"presentations at the start of each block that are not scored"});
+  io.choice("blocks", trials.blocks, kBlocksNames,
+            {"`by-method`: a block for each method, in a balanced order, so that the period must "
+             "be adjusted for; `mixed`: all methods in one block. Write `mixed` in new studies, "
+             "see [Blocks and schedules](#blocks-and-schedules)"});
+  io.integer("max_run", trials.max_run, 0, kMaxScoredTrials,
+             {.meaning = "largest number of presentations of one class in a row within a block; 0: "
+                         "no limit. See [Orders](#orders)",
+              .if_changed = true});
+  io.number("rove_db", trials.rove_db, {0.0, 40.0},
+            {.meaning = "each presentation's gain is drawn from a range so wide, which ends at the "
+                        "prepared gain, so that strength alone does not tell classes or methods "
+                        "([roving](perception.md#a-studys-level)). A threshold study has [its "
+                        "own](thresholds.md#the-study-files-threshold)",
+             .if_changed = true});
+}
+
+/// What follows an interrupted presentation, and how long a session can be resumed.
+void describe_resumption(ObjectIo& io, TrialOptions& trials) {
+  constexpr double kYear_h = 8760.0;
+  io.choice("on_interruption", trials.on_interruption, kOnInterruptionNames,
+            {.meaning = "what happens to a presentation that a device fault, a comfort stop or the "
+                        "end of the program interrupted. `repeat`: it is repeated at the end (in "
+                        "the protocol `threshold`, at the end of its block); `leave-out`: it is "
+                        "left out; `restart-block`: its whole block is void and is repeated in a "
+                        "new order",
+             .if_changed = true});
+  io.number("resume_within_h", trials.resume_within_h,
+            {.low = 0.0, .high = kYear_h, .open_low = true},
+            {.meaning = "how long a session that broke off can be resumed", .if_changed = true});
 }
 
 }  // namespace
 
-void refuse_same_label(const JsonValue& place, const std::string& label, const std::string& other,
-                       const std::string& of) {
+nlohmann::json written_section(const Description& section, const Description& usual) {
+  return nlohmann::json::parse(written_as_described(section, usual));
+}
+
+void refuse_same_label(const JsonValue& place, const std::string& pointer, const std::string& label,
+                       const std::string& other, const std::string& of) {
   if (label == other) {
-    place.refuse(in_quotes(label) + " is the label of another " + of + "; labels must be unique");
+    place.refuse_below(
+        pointer, in_quotes(label) + " is the label of another " + of + "; labels must be unique");
   }
   if (skeleton_of(label) == skeleton_of(other)) {
-    place.refuse(in_quotes(label) + " and " + in_quotes(other) +
-                 " look alike; give one of them another name");
+    place.refuse_below(pointer, in_quotes(label) + " and " + in_quotes(other) +
+                                    " look alike; give one of them another name");
   }
 }
 
-std::vector<StudyClass> read_classes(const JsonValue& place, int fewest, std::size_t most_images) {
-  std::vector<StudyClass> classes;
-  for (const JsonValue& item : place.items(static_cast<std::size_t>(fewest), kMaxClasses)) {
-    const JsonObject object = item.object({"label", "images"});
-    StudyClass study_class{read_label(object.at("label")),
-                           read_images(object.at("images"), most_images)};
-    for (const StudyClass& other : classes) {
-      refuse_same_label(object.at("label"), study_class.label, other.label, "class");
+void describe_classes(ObjectIo& io, std::vector<StudyClass>& classes, int fewest,
+                      std::size_t most_images, const About& about) {
+  io.list("classes", classes, {.fewest = static_cast<std::size_t>(fewest), .most = kMaxClasses},
+          about, [most_images](ValueIo& value, StudyClass& one) {
+            value.object([&](ObjectIo& keys) { describe_class(keys, one, most_images); });
+          });
+  io.rule([&classes](const JsonValue& place, const JsonObject& /*object*/) {
+    for (std::size_t i = 1; i < classes.size(); ++i) {
+      for (std::size_t other = 0; other < i; ++other) {
+        refuse_same_label(place, "/classes/" + std::to_string(i) + "/label", classes[i].label,
+                          classes[other].label, "class");
+      }
     }
-    classes.push_back(std::move(study_class));
-  }
-  return classes;
+  });
 }
 
-TrialOptions read_trials(const JsonValue& place) {
-  const JsonObject object =
-      place.object({"repeats", "order", "explore_limit_s", "on_timeout", "practice", "break_every",
-                    "break_after_min", "catch", "lead_in", "blocks", "max_run", "rove_db",
-                    "on_interruption", "resume_within_h", "validity", "answer_after"});
-  TrialOptions options;
-  read_count(object, "repeats", 1, 1000, options.repeats);
-  read_count(object, "break_every", 0, 10'000, options.break_every);
-  read_count(object, "practice", 0, 100, options.practice);
-  read_count(object, "catch", 0, 1000, options.catch_trials);
-  read_count(object, "lead_in", 0, 100, options.lead_in);
-  read_count(object, "max_run", 0, kMaxScoredTrials, options.max_run);
-  if (const auto member = object.find("explore_limit_s")) {
-    options.explore_limit_s = member->number({.low = 0.0, .high = 3600.0, .open_low = true});
-  }
-  if (const auto member = object.find("rove_db")) options.rove_db = member->number({0.0, 40.0});
-  if (const auto member = object.find("break_after_min")) {
-    options.break_after_min = member->number({0.0, 240.0});
-  }
-  if (const auto member = object.find("order")) options.order = member->choice(kTrialOrderNames);
-  if (const auto member = object.find("on_timeout")) {
-    options.on_timeout = member->choice(kOnTimeoutNames);
-  }
-  if (const auto member = object.find("blocks")) options.blocks = member->choice(kBlocksNames);
-  read_resumption(object, options);
-  if (const auto member = object.find("validity")) options.validity = read_validity(*member);
-  if (const auto member = object.find("answer_after")) {
-    options.answer_after = read_least_touch(*member);
-  }
-  return options;
+void describe(ObjectIo& io, TrialOptions& trials) {
+  io.integer("repeats", trials.repeats, 1, 1000,
+             {"presentations of each class (and presented method) per participant"});
+  io.choice("order", trials.order, kTrialOrderNames, {"see [Orders](#orders)"});
+  io.number("explore_limit_s", trials.explore_limit_s,
+            {.low = 0.0, .high = kLongest_s, .open_low = true},
+            {"time limit for exploring a presentation"});
+  io.choice("on_timeout", trials.on_timeout, kOnTimeoutNames,
+            {"`fade`: the force fades and the participant still answers; `no-response`: the trial "
+             "ends without an answer and counts as wrong"});
+  io.integer("practice", trials.practice, 0, 100,
+             {"presentations in a practice round; needs the section `practice`"});
+  io.integer("break_every", trials.break_every, 0, 10'000,
+             {.meaning = "trials between breaks; 0: no breaks", .unit = "trials"});
+  io.number("break_after_min", trials.break_after_min, {0.0, 240.0},
+            {.meaning = "time between breaks, from the first trial after one; 0: no breaks by time",
+             .if_changed = true});
+  describe_order(io, trials);
+  describe_resumption(io, trials);
+  io.part("validity", trials.validity,
+          {.meaning = "when a trial is valid; fixed before outcomes are seen", .if_changed = true},
+          describe_validity);
+  io.part("answer_after", trials.answer_after,
+          {.meaning = "what the hand does before a presentation can be answered, unless time is up",
+           .if_changed = true},
+          describe_least_touch);
 }
 
-nlohmann::json to_json(const TrialOptions& trials) {
-  nlohmann::json text = {{"repeats", trials.repeats},
-                         {"order", name_in(kTrialOrderNames, trials.order)},
-                         {"explore_limit_s", trials.explore_limit_s},
-                         {"on_timeout", name_in(kOnTimeoutNames, trials.on_timeout)},
-                         {"practice", trials.practice},
-                         {"break_every", trials.break_every},
-                         {"catch", trials.catch_trials},
-                         {"lead_in", trials.lead_in},
-                         {"blocks", name_in(kBlocksNames, trials.blocks)}};
-  const TrialOptions usual;
-  if (trials.max_run != usual.max_run) text["max_run"] = trials.max_run;
-  if (trials.rove_db != usual.rove_db) text["rove_db"] = trials.rove_db;
-  if (trials.break_after_min != usual.break_after_min) {
-    text["break_after_min"] = trials.break_after_min;
-  }
-  if (trials.on_interruption != usual.on_interruption) {
-    text["on_interruption"] = name_in(kOnInterruptionNames, trials.on_interruption);
-  }
-  if (trials.resume_within_h != usual.resume_within_h) {
-    text["resume_within_h"] = trials.resume_within_h;
-  }
-  if (const ValidityRule& rule = trials.validity; rule != usual.validity) {
-    text["validity"] = {{"exploring_s", rule.least_exploring_s},
-                        {"contact_s", rule.least_contact_s},
-                        {"path_mm", rule.least_path_mm},
-                        {"least_median_n", rule.least_median_n},
-                        {"largest_median_n", rule.largest_median_n},
-                        {"saturated_share", rule.saturated_share}};
-  }
-  if (const LeastTouch& touch = trials.answer_after; touch != usual.answer_after) {
-    text["answer_after"] = {{"contact_s", touch.contact_s}, {"path_mm", touch.path_mm}};
-  }
-  return text;
+void describe(ObjectIo& io, PracticePlan& practice) {
+  describe_classes(io, practice.classes, 2, 1,
+                   {.meaning = "the textures, one image each; neither a label nor an image may be "
+                               "one of the study's",
+                    .required = true});
+  io.integer("criterion", practice.criterion, 0, 100,
+             {"number of correct answers in a round that ends practice, at most `trials.practice`; "
+              "0: one whole round"});
+  io.integer("rounds", practice.rounds, 1, 10,
+             {"largest number of rounds; a participant who has not reached the criterion after "
+              "them is flagged and continues"});
 }
 
-PracticePlan read_practice(const JsonValue& place) {
-  const JsonObject object = place.object({"classes", "criterion", "rounds"});
-  PracticePlan practice;
-  practice.classes = read_classes(object.at("classes"), 2, 1);
-  if (const auto member = object.find("criterion")) {
-    practice.criterion = static_cast<int>(member->integer(0, 100));
-  }
-  if (const auto member = object.find("rounds")) {
-    practice.rounds = static_cast<int>(member->integer(1, 10));
-  }
-  return practice;
-}
-
-nlohmann::json to_json(const PracticePlan& practice) {
-  nlohmann::json classes = nlohmann::json::array();
-  for (const StudyClass& shown : practice.classes) {
-    classes.push_back({{"label", shown.label}, {"images", {shown.images.front().string()}}});
-  }
-  return {{"classes", classes}, {"criterion", practice.criterion}, {"rounds", practice.rounds}};
-}
-
-VisitPlan read_visits(const JsonValue& place) {
+void describe(ObjectIo& io, VisitPlan& visits) {
   constexpr double kMaxDays = 3650.0;
-  const JsonObject object = place.object({"count", "least_days", "most_days", "methods"});
-  VisitPlan visits;
-  visits.count = static_cast<int>(object.at("count").integer(2, 100));
-  if (const auto member = object.find("least_days")) {
-    visits.least_days = member->number({.low = 0.0, .high = kMaxDays});
-  }
-  if (const auto member = object.find("most_days")) {
-    visits.most_days = member->number({.low = 0.0, .high = kMaxDays, .open_low = true});
-    if (*visits.most_days < visits.least_days) {
-      member->refuse("is less than \"least_days\", so that no visit could come; raise it");
-    }
-  }
-  if (const auto member = object.find("methods")) {
-    visits.methods = member->choice(kVisitMethodsNames);
-  }
-  return visits;
+  io.integer("count", visits.count, 2, 100,
+             {.meaning = "number of visits of each participant", .required = true});
+  io.number("least_days", visits.least_days, {.low = 0.0, .high = kMaxDays},
+            {"between the beginnings of two visits; an earlier visit is refused"});
+  io.number("most_days", visits.most_days, {.low = 0.0, .high = kMaxDays, .open_low = true},
+            {.meaning = "between the beginnings of two visits, at least `least_days`; a later "
+                        "visit is warned of, and recorded as the deviation `visit-late`",
+             .otherwise = "any"});
+  io.rule([&visits](const JsonValue& place, const JsonObject& /*object*/) {
+    if (!visits.most_days || *visits.most_days >= visits.least_days) return;
+    place.refuse_below("/most_days",
+                       "is less than \"least_days\", so that no visit could come; raise it");
+  });
+  io.choice("methods", visits.methods, kVisitMethodsNames,
+            {"`all`: every visit presents all methods, in the participant's one order, with new "
+             "orders of trials; `divided`: in that order, as many of the methods at each visit. "
+             "Needs blocks by method, and a multiple of `count` methods"});
 }
 
-nlohmann::json to_json(const VisitPlan& visits) {
-  nlohmann::json text = {{"count", visits.count},
-                         {"least_days", visits.least_days},
-                         {"methods", name_in(kVisitMethodsNames, visits.methods)}};
-  if (visits.most_days) text["most_days"] = *visits.most_days;
-  return text;
-}
-
-GroupPlan read_groups(const JsonValue& place) {
+void describe(ObjectIo& io, GroupPlan& groups) {
   constexpr std::size_t kMaxGroups = 16;
-  const JsonObject object = place.object({"labels", "open"});
-  GroupPlan groups;
-  for (const JsonValue& item : object.at("labels").items(2, kMaxGroups)) {
-    std::string label = read_plain_name(item);
-    if (std::ranges::count(groups.labels, label) > 0) {
-      item.refuse(in_quotes(label) + " is the label of another group; labels must be unique");
+  io.list("labels", groups.labels, {.fewest = 2, .most = kMaxGroups, .unique = true},
+          {.meaning = "names of the groups, each once", .required = true},
+          [](ValueIo& value, std::string& label) { value.text(label, kPlainName); });
+  io.rule([&groups](const JsonValue& place, const JsonObject& /*object*/) {
+    const std::vector<std::string>& labels = groups.labels;
+    for (auto label = labels.begin(); label != labels.end(); ++label) {
+      if (std::find(labels.begin(), label, *label) == label) continue;
+      place.refuse_below(
+          "/labels/" + std::to_string(label - labels.begin()),
+          in_quotes(*label) + " is the label of another group; labels must be unique");
     }
-    groups.labels.push_back(std::move(label));
-  }
-  if (const auto member = object.find("open")) groups.open = member->truth();
-  return groups;
-}
-
-nlohmann::json to_json(const GroupPlan& groups) {
-  return {{"labels", groups.labels}, {"open", groups.open}};
+  });
+  io.truth("open", groups.open, {"whether the experimenter is told who is in which group"});
 }
 
 }  // namespace touchtrial::study

@@ -1,12 +1,15 @@
-/// \file The sections of the study file: the words that they use, functions that read them, and
-/// functions that write them as JSON. Include only from source files.
+/// \file The sections of the study file: their keys, the words that they use, and functions that
+/// write them as JSON. Include only from source files.
 #pragma once
 
-#include "core/strict_json.hpp"
+#include "core/describe.hpp"
+#include "study/languages.hpp"
 #include "study/study.hpp"
 
 #include <array>
 #include <cstddef>
+#include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -83,11 +86,48 @@ inline constexpr auto kSpendingNames = std::to_array<Named<Spending>>(
 /// \throws StudyError if the text is too long, or has another control character
 [[nodiscard]] std::string read_paragraphs(const JsonValue& place, std::size_t longest);
 
-/// Reads a line in one or more of the program's languages.
+/// A line of 1 to `longest` bytes.
+template <std::size_t longest>
+inline constexpr TextRule kLine{
+    .check = [](const JsonValue& place) { static_cast<void>(read_line(place, longest)); },
+    .min_length = 1,
+    .max_length = longest};
+/// The same, or nothing.
+template <std::size_t longest>
+inline constexpr TextRule kLineOrNothing{.check =
+                                             [](const JsonValue& place) {
+                                               if (!place.text().empty())
+                                                 static_cast<void>(read_line(place, longest));
+                                             },
+                                         .max_length = longest};
+template <std::size_t longest>
+inline constexpr TextRule kParagraphs{
+    .check = [](const JsonValue& place) { static_cast<void>(read_paragraphs(place, longest)); },
+    .max_length = longest};
+
+/// "German", "French, a draft"
+[[nodiscard]] std::string_view words_for_language(std::string_view code);
+
+/// A key for each of the program's languages.
+/// \param describe  (ValueIo&, Value&)
+template <typename Value, typename Describe>
+void describe_by_language(ObjectIo& io, std::map<std::string, Value>& values,
+                          const Describe& describe) {
+  for (const std::string_view code : language_codes()) {
+    std::optional<Value> value;
+    if (const auto found = values.find(std::string(code)); found != values.end()) {
+      value = found->second;
+    }
+    io.optional(code, value, {.meaning = words_for_language(code)}, describe);
+    if (value) values[std::string(code)] = *value;
+  }
+}
+/// A line in one or more languages.
+void describe_translated(ValueIo& io, Translated& text);
+/// \param pointer  where `text` is, from the place of a rule
 /// \throws StudyError if the study's language is missing
-[[nodiscard]] Translated read_translated(const JsonValue& place, const std::string& language);
-/// The same in any languages.
-[[nodiscard]] Translated read_translated(const JsonValue& place);
+void require_language(const JsonValue& place, const std::string& pointer, const Translated& text,
+                      const std::string& language);
 
 /// Upper limits of a study. They keep schedules, packs and pictures small enough for one
 /// participant, one disk and one screen.
@@ -102,31 +142,37 @@ inline constexpr int kMaxScoredTrials = 10'000;
 /// \throws StudyError if the text is not such a name
 [[nodiscard]] std::string read_plain_name(const JsonValue& place);
 
+inline constexpr TextRule kPlainName{
+    .check = [](const JsonValue& place) { static_cast<void>(read_plain_name(place)); },
+    .pattern = "^[0-9A-Za-z_-]{1,64}$",
+    .in_words = "1 to 64 of `0-9 A-Z a-z _ -`"};
+
 /// Refuses a label that another one equals or looks like (skeleton_of).
+/// \param pointer  where the label is
 /// \param of  what has labels: "class"
 /// \throws StudyError with the place
-void refuse_same_label(const JsonValue& place, const std::string& label, const std::string& other,
-                       const std::string& of);
+void refuse_same_label(const JsonValue& place, const std::string& pointer, const std::string& label,
+                       const std::string& other, const std::string& of);
 
-/// These functions read one section each.
-/// \throws StudyError with the place of a value that they do not accept
-/// \param fewest  classes
-[[nodiscard]] std::vector<StudyClass> read_classes(const JsonValue& place, int fewest,
-                                                   std::size_t most_images = kMaxImagesOfClass);
-[[nodiscard]] std::vector<StudyMethod> read_methods(const JsonValue& place);
-struct ReadRendering {
+/// What "rendering" says.
+struct RenderingSection {
   engine::RenderingOptions options;
   std::string device;                ///< Study::device
   std::optional<WantedLevel> level;  ///< Study::level
 };
-[[nodiscard]] ReadRendering read_rendering(const JsonValue& place);
-[[nodiscard]] TrialOptions read_trials(const JsonValue& place);
-[[nodiscard]] PracticePlan read_practice(const JsonValue& place);
-[[nodiscard]] SessionPlan read_session(const JsonValue& place);
-[[nodiscard]] VisitPlan read_visits(const JsonValue& place);
-[[nodiscard]] GroupPlan read_groups(const JsonValue& place);
+
+/// These functions describe the sections, and refuse values that contradict each other.
+void describe_classes(ObjectIo& io, std::vector<StudyClass>& classes, int fewest,
+                      std::size_t most_images, const About& about);
+void describe_methods(ObjectIo& io, std::vector<StudyMethod>& methods, const About& about);
+void describe(ObjectIo& io, RenderingSection& rendering);
+void describe(ObjectIo& io, TrialOptions& trials);
+void describe(ObjectIo& io, PracticePlan& practice);
+void describe(ObjectIo& io, SessionPlan& session);
+void describe(ObjectIo& io, VisitPlan& visits);
+void describe(ObjectIo& io, GroupPlan& groups);
 /// \param usual_test  of a difference in this study
-[[nodiscard]] Registration read_registration(const JsonValue& place, RegisteredTest usual_test);
+void describe(ObjectIo& io, Registration& registration, RegisteredTest usual_test);
 /// Checks that the registered analysis is one of this study.
 /// \param file  the whole study file
 void check_registration(const JsonValue& file, const Study& study);
@@ -137,24 +183,17 @@ void check_registration(const JsonValue& file, const Study& study);
 /// only if these differ from their defaults, as the session has "texts", "text_scale" and
 /// "high_contrast", and a registration has the keys of its analysis only if it has one, so that
 /// studies sealed before these keys existed keep their seals. Equal options give equal JSON.
+[[nodiscard]] nlohmann::json written_section(const Description& section, const Description& usual);
+template <typename Section>
+[[nodiscard]] nlohmann::json to_json(const Section& section) {
+  Section copy = section;
+  Section usual;
+  return written_section([&](ObjectIo& io) { describe(io, copy); },
+                         [&](ObjectIo& io) { describe(io, usual); });
+}
 [[nodiscard]] nlohmann::json to_json(const engine::ExtractionOptions& method);
 [[nodiscard]] nlohmann::json to_json(const StudyMethod& method);
 [[nodiscard]] nlohmann::json to_json(const engine::RenderingOptions& rendering);
-[[nodiscard]] nlohmann::json to_json(const TrialOptions& trials);
-[[nodiscard]] nlohmann::json to_json(const PracticePlan& practice);
-[[nodiscard]] nlohmann::json to_json(const SessionPlan& session);
-[[nodiscard]] nlohmann::json to_json(const VisitPlan& visits);
-[[nodiscard]] nlohmann::json to_json(const GroupPlan& groups);
 [[nodiscard]] nlohmann::json to_json(const Registration& registration);
-
-/// Reads the questions of the study file.
-/// \param language  the study's language, in which every text must exist
-/// \throws StudyError with the place of a value that is not accepted
-[[nodiscard]] std::vector<Question> read_questions(const JsonValue& place,
-                                                   const std::string& language);
-
-/// The questions in the form of the study file, with every key explicit except empty "options" and
-/// bounds that are not given.
-[[nodiscard]] nlohmann::json to_json(const std::vector<Question>& questions);
 
 }  // namespace touchtrial::study

@@ -9,6 +9,8 @@ namespace touchtrial::study {
 namespace {
 
 constexpr std::size_t kLongestQuestion = 500;  // bytes
+constexpr std::size_t kLongestPage = 4000;     // bytes
+constexpr std::size_t kLongestName = 64;       // bytes
 
 void check_length(const JsonValue& place, const std::string& text, std::size_t longest) {
   if (text.size() <= longest) return;
@@ -16,126 +18,162 @@ void check_length(const JsonValue& place, const std::string& text, std::size_t l
                std::to_string(longest) + "; shorten it");
 }
 
-constexpr std::size_t kMaxQuestions = 50;
-constexpr std::size_t kMaxOptions = 20;
+constexpr TextRule kPage{.check =
+                             [](const JsonValue& place) {
+                               const std::string page = read_paragraphs(place, kLongestPage);
+                               if (page.empty())
+                                 place.refuse("is empty; write a page, or remove it");
+                               check_markup(place, page);
+                             },
+                         .min_length = 1,
+                         .max_length = kLongestPage};
 
-void read_options(const JsonObject& object, const std::string& language, Question& question) {
-  const auto options = object.find("options");
-  if (question.kind != QuestionKind::choice) {
-    if (options) options->refuse("belongs to a question of the kind choice; remove it");
-    return;
-  }
-  for (const JsonValue& option : object.at("options").items(2, kMaxOptions)) {
-    question.options.push_back(read_translated(option, language));
-  }
+void describe_bounds(ObjectIo& io, Question& question) {
+  constexpr NumberRange kAny{.low = -1e9, .high = 1e9};
+  constexpr auto kKeys = std::to_array<std::string_view>({"min", "max"});
+  constexpr auto kOwner = std::to_array<std::string_view>({"number"});
+  io.only_for("kind", kOwner, kKeys, "belongs to a question of the kind number; remove it");
+  io.number("min", question.min, kAny,
+            {"the smallest number that is accepted, which the screen shows; for `number` alone"});
+  io.number("max", question.max, kAny, {"the largest number that is accepted"});
+  io.rule([&question](const JsonValue& place, const JsonObject& /*object*/) {
+    if (!question.min || !question.max || *question.min <= *question.max) return;
+    place.refuse_below("/max", "is " + number_text(*question.max) + ", less than min, " +
+                                   number_text(*question.min) + "; no number is between them");
+  });
 }
 
-void read_range(const JsonObject& object, Question& question) {
-  constexpr double kLargest = 1e9;
-  const auto read = [&](const char* key, std::optional<double>& bound) {
-    const auto member = object.find(key);
-    if (!member) return;
-    if (question.kind != QuestionKind::number) {
-      member->refuse("belongs to a question of the kind number; remove it");
+void describe_options(ObjectIo& io, Question& question, const std::string& language) {
+  constexpr auto kKey = std::to_array<std::string_view>({"options"});
+  constexpr auto kOwner = std::to_array<std::string_view>({"choice"});
+  io.only_for("kind", kOwner, kKey, "belongs to a question of the kind choice; remove it");
+  io.list("options", question.options, {.fewest = 2, .most = 20},
+          {.meaning = "the possible answers, by language; for `choice` alone, which needs them",
+           .written = !question.options.empty(),
+           .otherwise = "none"},
+          describe_translated);
+  io.rule([&](const JsonValue& place, const JsonObject& object) {
+    if (question.kind == QuestionKind::choice) static_cast<void>(object.at("options"));
+    for (std::size_t i = 0; i < question.options.size(); ++i) {
+      require_language(place, "/options/" + std::to_string(i), question.options[i], language);
     }
-    bound = member->number({.low = -kLargest, .high = kLargest});
-    if (question.min && question.max && *question.min > *question.max) {
-      member->refuse("is " + number_text(*bound) + ", less than min, " +
-                     number_text(*question.min) + "; no number is between them");
-    }
-  };
-  read("min", question.min);
-  read("max", question.max);
+  });
 }
 
-Question read_question(const JsonValue& place, const std::string& language) {
-  const JsonObject object =
-      place.object({"id", "kind", "text", "options", "required", "min", "max"});
-  Question question;
-  question.id = read_plain_name(object.at("id"));
-  question.kind = object.at("kind").choice(kQuestionKindNames);
-  question.text = read_translated(object.at("text"), language);
-  read_options(object, language, question);
-  read_range(object, question);
-  if (const auto member = object.find("required")) question.required = member->truth();
-  return question;
+void describe_question(ObjectIo& io, Question& question, const std::string& language) {
+  io.text("id", question.id, kPlainName,
+          {.meaning = "its name in tables, unique", .required = true});
+  io.choice("kind", question.kind, kQuestionKindNames,
+            {.meaning = "one of the options, a number, or free text", .required = true});
+  io.member("text", {.meaning = "the question, by language", .required = true}, true,
+            [&question](ValueIo& value) { describe_translated(value, question.text); });
+  io.rule([&](const JsonValue& place, const JsonObject& /*object*/) {
+    require_language(place, "/text", question.text, language);
+  });
+  describe_options(io, question, language);
+  io.truth("required", question.required, {"whether the participant must answer it"});
+  describe_bounds(io, question);
 }
 
-constexpr std::size_t kMaxPages = 20;
-constexpr std::size_t kLongestPage = 4000;  // bytes
-constexpr std::size_t kMaxItems = 50;
-constexpr std::size_t kLongestItem = 200;  // bytes
-constexpr std::size_t kLongestName = 64;   // bytes
-
-void read_truth(const JsonObject& object, std::string_view key, bool& truth) {
-  if (const auto member = object.find(key)) truth = member->truth();
-}
-
-std::vector<std::string> read_pages(const JsonValue& place) {
-  std::vector<std::string> pages;
-  for (const JsonValue& item : place.items(1, kMaxPages)) {
-    pages.push_back(read_paragraphs(item, kLongestPage));
-    if (pages.back().empty()) item.refuse("is empty; write a page, or remove it");
-    check_markup(item, pages.back());
-  }
-  return pages;
-}
-
-void read_instructions(const JsonValue& place, SessionPlan& session) {
-  const JsonObject object = place.object(language_codes());
-  for (const std::string_view code : language_codes()) {
-    if (const auto member = object.find(code)) {
-      session.instructions[std::string(code)] = read_pages(*member);
-    }
-  }
-  if (!session.instructions.empty() && !session.instructions.contains(session.language)) {
+void describe_instructions(ObjectIo& io, SessionPlan& session) {
+  describe_by_language(
+      io, session.instructions, [](ValueIo& value, std::vector<std::string>& pages) {
+        value.list(pages, {.fewest = 1, .most = 20},
+                   [](ValueIo& page, std::string& text) { page.text(text, kPage); });
+      });
+  io.rule([&session](const JsonValue& place, const JsonObject& /*object*/) {
+    if (session.instructions.empty() || session.instructions.contains(session.language)) return;
     place.refuse_below("/" + session.language, "is missing, the study's language; add its pages");
-  }
+  });
 }
 
-void read_own_texts(const JsonValue& place, SessionPlan& session) {
-  const JsonObject object = place.object(language_codes());
-  for (const std::string_view code : language_codes()) {
-    const auto member = object.find(code);
-    if (!member) continue;
-    Texts texts = read_texts(*member);
-    if (!texts.empty()) session.texts[std::string(code)] = std::move(texts);
-  }
+void describe_own_texts(ObjectIo& io, SessionPlan& session) {
+  describe_by_language(io, session.texts, [](ValueIo& value, Texts& texts) {
+    value.own(R"({"type": "object"})",
+              [&texts](const JsonValue& place) { texts = read_texts(place); },
+              [&texts] { return nlohmann::json(texts).dump(); });
+  });
+  std::erase_if(session.texts, [](const auto& own) { return own.second.empty(); });
 }
 
-MaskingPlan read_masking(const JsonValue& place) {
-  const JsonObject object = place.object({"wanted", "level_dbfs"});
-  MaskingPlan masking;
-  read_truth(object, "wanted", masking.wanted);
-  if (const auto member = object.find("level_dbfs")) {
-    masking.level_dbfs = member->number({.low = -90.0, .high = 0.0});
-  }
-  return masking;
+/// What the participant reads.
+void describe_texts(ObjectIo& io, SessionPlan& session) {
+  const std::vector<std::string_view>& codes = language_codes();
+  auto language =
+      static_cast<std::size_t>(std::ranges::find(codes, session.language) - codes.begin());
+  io.member("language",
+            {"language of everything that the participant reads, see [Texts and "
+             "languages](running-sessions.md#texts-and-languages)"},
+            true, [&](ValueIo& value) {
+              value.choice(language, codes);
+              session.language = codes.at(language);
+            });
+  io.part("instructions", session,
+          {.meaning = "the pages that the participant reads, by language; none: the program's own. "
+                      "With bold words and [pictures](running-sessions.md#a-studys-own-texts)",
+           .range = "by language"},
+          describe_instructions);
+  io.part("texts", session,
+          {.meaning = "single [texts](running-sessions.md#a-studys-own-texts) of the participant's "
+                      "screens in place of the program's",
+           .if_changed = true,
+           .range = "by language, section and key"},
+          describe_own_texts);
+  io.number("text_scale", session.text_scale, {.low = 1.0, .high = kMaxTextScale},
+            {.meaning = "size of the letters on the participant's screens", .if_changed = true});
+  io.truth("high_contrast", session.high_contrast,
+           {.meaning = "whether these screens are black on white", .if_changed = true});
 }
 
-int read_confidence(const JsonValue& place) {
-  constexpr int kMaxLevels = 9;
-  const auto levels = static_cast<int>(place.integer(0, kMaxLevels));
-  if (levels == 1) place.refuse("is 1, must be 0 (not asked) or from 2 to 9 levels");
-  return levels;
+void describe_masking(ObjectIo& io, MaskingPlan& masking) {
+  io.truth("wanted", masking.wanted,
+           {"whether masking noise is played; a session without it is then a recorded deviation"});
+  io.number("level_dbfs", masking.level_dbfs, {.low = -90.0, .high = 0.0},
+            {"root mean square relative to full scale; the laboratory measures the level in dBA"});
 }
 
-std::vector<std::string> read_day_sheet(const JsonValue& place) {
-  std::vector<std::string> sheet;
-  for (const JsonValue& item : place.items(0, kMaxItems)) {
-    std::string line = read_line(item, kLongestItem);
-    if (std::ranges::count(sheet, line) > 0) {
-      item.refuse(in_quotes(line) + " is there twice; list it once");
+/// What a day's session begins with.
+void describe_day(ObjectIo& io, SessionPlan& session) {
+  io.list("day_sheet", session.day_sheet, {.most = 50, .unique = true},
+          {"items to tick before a session, in addition to the program's own"},
+          [](ValueIo& value, std::string& item) { value.text(item, kLine<200>); });
+  io.rule([&session](const JsonValue& place, const JsonObject& /*object*/) {
+    const std::vector<std::string>& sheet = session.day_sheet;
+    for (auto item = sheet.begin(); item != sheet.end(); ++item) {
+      if (std::find(sheet.begin(), item, *item) == item) continue;
+      place.refuse_below("/day_sheet/" + std::to_string(item - sheet.begin()),
+                         in_quotes(*item) + " is there twice; list it once");
     }
-    sheet.push_back(std::move(line));
-  }
-  return sheet;
+  });
+  io.text("consent_version", session.consent_version, kLineOrNothing<kLongestName>,
+          {"version of the consent form that participants sign"});
+  io.text("ethics_number", session.ethics_number, kLineOrNothing<kLongestName>,
+          {"number of the ethics committee's approval"});
 }
 
-/// Reads a version or a number, as a line that may be empty.
-void read_name(const JsonObject& object, std::string_view key, std::string& name) {
-  const auto member = object.find(key);
-  if (member && !member->text().empty()) name = read_line(*member, kLongestName);
+void describe_closing(ObjectIo& io, SessionPlan& session) {
+  io.list(
+      "closing_questions", session.closing_questions, {.most = 50},
+      {.meaning = "questions at the end, in addition to the program's own",
+       .range = "0 to 50 entries"},
+      [&session](ValueIo& value, Question& question) {
+        value.object([&](ObjectIo& keys) { describe_question(keys, question, session.language); });
+      });
+  io.rule([&session](const JsonValue& place, const JsonObject& /*object*/) {
+    const std::vector<Question>& questions = session.closing_questions;
+    for (std::size_t i = 0; i < questions.size(); ++i) {
+      const auto here = questions.begin() + static_cast<std::ptrdiff_t>(i);
+      if (std::find_if(questions.begin(), here,
+                       [&](const Question& other) { return other.id == here->id; }) == here) {
+        continue;
+      }
+      place.refuse_below(
+          "/closing_questions/" + std::to_string(i) + "/id",
+          in_quotes(here->id) + " is the id of another question; ids must be unique");
+    }
+  });
+  io.truth("closing", session.closing,
+           {"whether participants answer the program's own closing questions"});
 }
 
 }  // namespace
@@ -162,104 +200,52 @@ std::string read_paragraphs(const JsonValue& place, std::size_t longest) {
   return text;
 }
 
-Translated read_translated(const JsonValue& place) {
-  const JsonObject object = place.object(language_codes());
-  Translated text;
-  for (const std::string_view code : language_codes()) {
-    if (const auto member = object.find(code)) {
-      text[std::string(code)] = read_line(*member, kLongestQuestion);
+std::string_view words_for_language(std::string_view code) {
+  static const std::map<std::string_view, std::string> kWords = [] {
+    std::map<std::string_view, std::string> words;
+    for (const std::string_view one : language_codes()) {
+      const Language& language = language_of(one);
+      words[one] = language.name + (language.draft ? ", a draft" : "");
     }
-  }
-  return text;
+    return words;
+  }();
+  return kWords.at(code);
 }
 
-Translated read_translated(const JsonValue& place, const std::string& language) {
-  Translated text = read_translated(place);
-  if (!text.contains(language)) {
-    place.refuse_below("/" + language, "is missing, the study's language; add it");
-  }
-  return text;
+void describe_translated(ValueIo& io, Translated& text) {
+  io.object([&text](ObjectIo& keys) {
+    describe_by_language(keys, text, [](ValueIo& value, std::string& line) {
+      value.text(line, kLine<kLongestQuestion>);
+    });
+  });
 }
 
-std::vector<Question> read_questions(const JsonValue& place, const std::string& language) {
-  std::vector<Question> questions;
-  for (const JsonValue& item : place.items(0, kMaxQuestions)) {
-    Question question = read_question(item, language);
-    if (std::ranges::count(questions, question.id, &Question::id) > 0) {
-      item.refuse_below(
-          "/id", in_quotes(question.id) + " is the id of another question; ids must be unique");
-    }
-    questions.push_back(std::move(question));
-  }
-  return questions;
+void require_language(const JsonValue& place, const std::string& pointer, const Translated& text,
+                      const std::string& language) {
+  if (text.contains(language)) return;
+  place.refuse_below(pointer + "/" + language, "is missing, the study's language; add it");
 }
 
-nlohmann::json to_json(const std::vector<Question>& questions) {
-  nlohmann::json list = nlohmann::json::array();
-  for (const Question& question : questions) {
-    nlohmann::json item = {{"id", question.id},
-                           {"kind", name_in(kQuestionKindNames, question.kind)},
-                           {"text", question.text},
-                           {"required", question.required}};
-    if (!question.options.empty()) item["options"] = question.options;
-    if (question.min) item["min"] = *question.min;
-    if (question.max) item["max"] = *question.max;
-    list.push_back(std::move(item));
-  }
-  return list;
-}
-
-SessionPlan read_session(const JsonValue& place) {
-  const JsonObject object =
-      place.object({"language", "instructions", "texts", "text_scale", "high_contrast", "sight",
-                    "masking", "handedness", "confidence", "day_sheet", "consent_version",
-                    "ethics_number", "closing_questions", "closing"});
-  SessionPlan session;
-  if (const auto member = object.find("language")) {
-    session.language = language_codes()[member->choice(language_codes())];
-  }
-  if (const auto member = object.find("instructions")) read_instructions(*member, session);
-  if (const auto member = object.find("texts")) read_own_texts(*member, session);
-  if (const auto member = object.find("text_scale")) {
-    session.text_scale = member->number({.low = 1.0, .high = kMaxTextScale});
-  }
-  read_truth(object, "high_contrast", session.high_contrast);
-  if (const auto member = object.find("sight")) session.sight = member->choice(kSightNames);
-  if (const auto member = object.find("masking")) session.masking = read_masking(*member);
-  read_truth(object, "handedness", session.handedness);
-  if (const auto member = object.find("confidence")) {
-    session.confidence_levels = read_confidence(*member);
-  }
-  if (const auto member = object.find("day_sheet")) session.day_sheet = read_day_sheet(*member);
-  read_name(object, "consent_version", session.consent_version);
-  read_name(object, "ethics_number", session.ethics_number);
-  if (const auto member = object.find("closing_questions")) {
-    session.closing_questions = read_questions(*member, session.language);
-  }
-  read_truth(object, "closing", session.closing);
-  return session;
-}
-
-nlohmann::json to_json(const SessionPlan& session) {
-  nlohmann::json instructions = nlohmann::json::object();
-  for (const auto& [language, pages] : session.instructions) instructions[language] = pages;
-  nlohmann::json text = {
-      {"language", session.language},
-      {"instructions", instructions},
-      {"sight", name_in(kSightNames, session.sight)},
-      {"masking", {{"wanted", session.masking.wanted}, {"level_dbfs", session.masking.level_dbfs}}},
-      {"handedness", session.handedness},
-      {"confidence", session.confidence_levels},
-      {"day_sheet", session.day_sheet},
-      {"consent_version", session.consent_version},
-      {"ethics_number", session.ethics_number},
-      {"closing_questions", to_json(session.closing_questions)},
-      {"closing", session.closing}};
-  const SessionPlan usual;
-  if (session.texts != usual.texts) text["texts"] = session.texts;
-  if (session.text_scale != usual.text_scale) text["text_scale"] = session.text_scale;
-  if (session.high_contrast) text["high_contrast"] = true;
-  return text;
+void describe(ObjectIo& io, SessionPlan& session) {
+  describe_texts(io, session);
+  io.choice("sight", session.sight, kSightNames,
+            {"`curtain`: hand and device are hidden and pictures are visible; `blindfold`: the "
+             "participant sees nothing, learns the labels by heart and speaks the answers, which "
+             "the experimenter enters"});
+  io.part("masking", session.masking, {"noise that covers the device's sound"}, describe_masking);
+  io.truth("handedness", session.handedness,
+           {"whether participants answer the handedness inventory"});
+  io.integer("confidence", session.confidence_levels, 0, 9,
+             {.meaning = "number of levels of confidence to choose from with each answer; 0: "
+                         "confidence is not asked for",
+              .unit = "levels",
+              .range = "0, 2 to 9"});
+  io.rule([&session](const JsonValue& place, const JsonObject& /*object*/) {
+    if (session.confidence_levels != 1) return;
+    place.refuse_below("/confidence", "is 1, must be 0 (not asked) or from 2 to 9 levels");
+  });
+  describe_day(io, session);
+  describe_closing(io, session);
 }
 
 }  // namespace touchtrial::study

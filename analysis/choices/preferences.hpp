@@ -1,6 +1,6 @@
 /// \file Whether participants prefer an answer whatever they felt: by person, because people who
-/// prefer different answers cancel out in a mean. Sources: docs/statistics.md, "Anybody" and
-/// "Preferences".
+/// prefer different answers cancel out in a mean. Sources: docs/statistics.md, "Any participant"
+/// and "Preferences".
 #pragma once
 
 #include "analysis/choices/answers.hpp"

@@ -120,7 +120,10 @@ void put_registered_choice(const PrimaryQuestion& question, int classes,
                            std::span<const CrossoverPerson> people, PrimaryResult& result) {
   result.p = primary_p(question, classes, people);
   result.bound = bound_of(question, people);
-  if (question.test != study::RegisteredTest::crossover) return;
+  if (question.test != study::RegisteredTest::crossover) {
+    result.statistic = analysis::t_statistic(differences_of(people), result.null);
+    return;
+  }
   result.crossover =
       crossover_estimate(people, result.null, question.sides, question.interval_level());
   result.permutation = crossover_permutation(people, result.null, question.sides);

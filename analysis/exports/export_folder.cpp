@@ -118,7 +118,7 @@ std::set<std::string> unmarked_files(const fs::path& folder, const FolderMark& f
 /// Removes a file, and then the folders above it that are empty.
 /// \throws FileError, naming the file, if it cannot be removed
 void remove_obsolete(const fs::path& folder, const std::string& name) {
-  make_way(folder / name);
+  clear_output_place(folder / name);
   std::error_code error;
   fs::remove(folder / name, error);
   if (error) {

@@ -143,7 +143,7 @@ std::vector<std::filesystem::path> export_csv(const record::StudyStore& store,
   return write_export(folder, {commitment.study, commitment.study_id, "csv"}, files);
 }
 
-std::vector<std::filesystem::path> export_said(
+std::vector<std::filesystem::path> export_typed_text(
     const record::StudyStore& store, const Outcomes& outcomes, const std::filesystem::path& folder,
     const std::vector<record::PersonalRecord>& consents) {
   const record::StudyCommitment& commitment = store.commitment();

@@ -41,10 +41,9 @@ std::vector<std::filesystem::path> export_csv(
 /// Writes said_tables beside those of the protocol's `export_model`.
 /// \return the files, in the order written
 /// \throws FileError if the folder or a file cannot be written
-std::vector<std::filesystem::path> export_said(const record::StudyStore& store,
-                                               const Outcomes& outcomes,
-                                               const std::filesystem::path& folder,
-                                               const std::vector<record::PersonalRecord>& consents);
+std::vector<std::filesystem::path> export_typed_text(
+    const record::StudyStore& store, const Outcomes& outcomes, const std::filesystem::path& folder,
+    const std::vector<record::PersonalRecord>& consents);
 
 /// Writes events.csv and one file for each flight record. Contains the sessions whose outcomes may
 /// be shown, without those of participants whose data were erased. Requires unblinding, because the

@@ -48,7 +48,7 @@ class ChainReading {
         return decide(event, record.excluded_afterwards);
       }
       case EventKind::participant_withdrawn:
-        if (record::withdrawal_from_json(event.body).kept == record::Kept::data) return;
+        if (record::withdrawal_from_json(event.body).kept == record::Retention::data) return;
         return decide(event, record.erased_afterwards);
       case EventKind::participant_replaced:
         return decide(event, record.replaced_afterwards);

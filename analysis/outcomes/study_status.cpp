@@ -168,7 +168,7 @@ void add_about_people(const StudyStatus& status, const StatusSources& sources,
                return one.state == "to come" && one.in_place_of == one.participant;
              }),
       "the session was restarted, and is to come");
-  for (const VisitToCome& one : status.visits_to_come) {
+  for (const UpcomingVisit& one : status.upcoming_visits) {
     left.push_back(fmt::format("{}: visit {} of {} is to come{}{}", one.participant, one.visit,
                                status.visits, one.from ? ", from " + utc_words(*one.from) : "",
                                one.until ? " to " + utc_words(*one.until) : ""));
@@ -310,7 +310,7 @@ nlohmann::ordered_json person_json(const PersonStatus& one) {
 
 }  // namespace
 
-std::vector<VisitToCome> visits_to_come(const record::StudyStore& store) {
+std::vector<UpcomingVisit> upcoming_visits(const record::StudyStore& store) {
   const Prescription prescription = prescription_from_json(store.commitment().configuration);
   if (prescription.visits < 2 || store.state().closed) return {};
   std::map<int, std::chrono::nanoseconds> opened;
@@ -330,12 +330,12 @@ std::vector<VisitToCome> visits_to_come(const record::StudyStore& store) {
     const record::SessionRow*& known = last[row.participant];
     if (known == nullptr || known->visit < row.visit) known = &row;
   }
-  std::vector<VisitToCome> visits;
+  std::vector<UpcomingVisit> visits;
   for (const auto& [participant, row] : last) {
     const bool may_come = row->state == record::SessionState::completed && !row->excluded &&
                           !row->withdrawn && row->visit < prescription.visits;
     if (!may_come) continue;
-    VisitToCome& next = visits.emplace_back();
+    UpcomingVisit& next = visits.emplace_back();
     next.participant = participant;
     next.visit = row->visit + 1;
     if (row->simulated) continue;
@@ -344,7 +344,7 @@ std::vector<VisitToCome> visits_to_come(const record::StudyStore& store) {
       next.until = after(opened[row->session], *prescription.most_days);
     }
   }
-  std::ranges::stable_sort(visits, {}, &VisitToCome::from);
+  std::ranges::stable_sort(visits, {}, &UpcomingVisit::from);
   return visits;
 }
 
@@ -396,7 +396,7 @@ StudyStatus status_of(const record::StudyStore& store, const StatusSources& sour
     add_people_to_come(sources, consents, rows, status.people);
   }
   status.orders = order_blocks(rows, commitment, sources, collection.prescription);
-  status.visits_to_come = visits_to_come(store);
+  status.upcoming_visits = upcoming_visits(store);
   add_about_people(status, sources, status.left);
   add_about_study(status, status.left);
   return status;
@@ -433,14 +433,14 @@ std::string status_json(const StudyStatus& status, const std::vector<NextCommand
   object["complete"] = status.complete;
   object["people"] = nlohmann::ordered_json::array();
   for (const PersonStatus& one : status.people) object["people"].push_back(person_json(one));
-  object["visits_to_come"] = nlohmann::ordered_json::array();
-  for (const VisitToCome& one : status.visits_to_come) {
+  object["upcoming_visits"] = nlohmann::ordered_json::array();
+  for (const UpcomingVisit& one : status.upcoming_visits) {
     nlohmann::ordered_json visit{{"participant", one.participant}, {"visit", one.visit}};
     visit["from"] = nullptr;
     if (one.from) visit["from"] = utc_text(*one.from);
     visit["until"] = nullptr;
     if (one.until) visit["until"] = utc_text(*one.until);
-    object["visits_to_come"].push_back(std::move(visit));
+    object["upcoming_visits"].push_back(std::move(visit));
   }
   object["orders"] = nullptr;
   if (status.orders) {

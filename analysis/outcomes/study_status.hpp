@@ -15,7 +15,7 @@
 namespace touchtrial::analysis {
 
 /// A visit of a participant who has completed the one before and may come again.
-struct VisitToCome {
+struct UpcomingVisit {
   std::string participant;
   int visit = 2;
   /// By the study's least and most days between visits; nothing in virtual time. `until` also if
@@ -32,7 +32,7 @@ struct VisitToCome {
 /// The next visits of all participants, the earliest first; empty if the study has one visit, or
 /// takes no sessions any more.
 /// \throws StoreError as prescription_from_json
-[[nodiscard]] std::vector<VisitToCome> visits_to_come(const record::StudyStore& store);
+[[nodiscard]] std::vector<UpcomingVisit> upcoming_visits(const record::StudyStore& store);
 
 /// What is known of a study beside its database.
 struct StatusSources {
@@ -86,7 +86,7 @@ struct StudyStatus {
   /// Participants with a session that counts, of each visit that the study needs.
   int complete = 0;
   std::vector<PersonStatus> people{};  ///< sessions by number, then participants to come
-  std::vector<VisitToCome> visits_to_come{};
+  std::vector<UpcomingVisit> upcoming_visits{};
   std::optional<OrderBlocks>
       orders{};  ///< if orders differ and the numbers of one station are known
   std::vector<std::string>

@@ -116,42 +116,33 @@ Picture methods_picture(std::span<const PaperPicture> pictures) {
       alt_of(tiles), tiles);
 }
 
-std::vector<LegendEntry> legend_of_orders(std::span<const MeasuredPicture> pictures) {
-  std::vector<LegendEntry> legend;
+/// One number of each picture's textures over the fixed order.
+Panel orders_panel(std::span<const MeasuredPicture> pictures, std::string label,
+                   double engine::OrderFigures::*number) {
+  Panel panel;
+  panel.x = {.label = "fixed order", .low = 0.0, .high = 1.0, .step = 0.2};
+  panel.y = {.label = std::move(label)};
+  panel.layers = {
+      {.kind = LayerKind::rule,
+       .name = fmt::format("orders {:g} to {:g}", kPublishedLowestOrder, kPublishedHighestOrder),
+       .rows = {{.low = kPublishedLowestOrder, .high = kPublishedHighestOrder}},
+       .colour = std::string(kFaint)}};
   for (std::size_t i = 0; i < pictures.size(); ++i) {
-    legend.push_back(
-        mark_entry(series_mark(i), series_colour(i), fitted(pictures[i].name, kCellWidth)));
-  }
-  legend.push_back({LegendEntry::Kind::dashes, std::string(kFaint), 0, "adaptive texture"});
-  legend.push_back(
-      {LegendEntry::Kind::field, std::string(kFaint), 0,
-       fmt::format("orders {:g} to {:g}", kPublishedLowestOrder, kPublishedHighestOrder)});
-  return legend;
-}
-
-std::string data_of_orders(std::span<const MeasuredPicture> pictures) {
-  std::string data;
-  for (std::size_t i = 0; i < pictures.size(); ++i) {
-    std::vector<std::vector<double>> rows;
+    Layer line{.kind = LayerKind::line,
+               .name = fitted(pictures[i].name, kCellWidth),
+               .colour = series_colour(i),
+               .in_key = true};
     for (const engine::OrderFigures& one : pictures[i].evaluation.orders) {
-      rows.push_back(
-          {one.order, one.entropy, one.ms_ssim, pictures[i].evaluation.adaptive.entropy});
+      line.rows.push_back({.x = one.order, .y = one.*number});
     }
-    data += data_block(fmt::format("orders{}", i), rows);
+    Layer marks = line;
+    marks.kind = LayerKind::points;
+    marks.glyph = series_glyph(i);
+    marks.in_key = false;
+    panel.layers.push_back(std::move(line));
+    panel.layers.push_back(std::move(marks));
   }
-  return data;
-}
-
-std::string curves_of_orders(std::size_t count, int column) {
-  std::string plot = "plot ";
-  for (std::size_t i = 0; i < count; ++i) {
-    plot += fmt::format("{}$orders{} using 1:{} with linespoints lc rgb '{}' pt {} ps 0.5 lw 1.2",
-                        i == 0 ? "" : ", ", i, column, series_colour(i), series_mark(i));
-    if (column != 2) continue;
-    plot += fmt::format(", $orders{} using 1:4 with lines dt (6, 5) lw 1.2 lc rgb '{}'", i,
-                        series_colour(i));
-  }
-  return plot + "\n";
+  return panel;
 }
 
 }  // namespace
@@ -162,16 +153,21 @@ PaperPictures paper_pictures(std::span<const PaperPicture> pictures,
 }
 
 Figure order_figure(std::span<const MeasuredPicture> pictures) {
-  Sheet sheet{16.0, 7.5, false};
-  const Legend legend(sheet, 1.5, legend_of_orders(pictures));
-  sheet.height_cm = 6.7 + legend.room_cm();
-  const Legend placed(sheet, 1.5, legend_of_orders(pictures));
-  const Margins left{1.5, 8.4, placed.room_cm() + 0.2, 1.1};
-  const Margins right{9.6, 0.4, placed.room_cm() + 0.2, 1.1};
-  Figure figure = figure_on(sheet, "paper-sweep");
+  Figure figure = figure_named("paper-sweep", "", false, kPage_cm);
+  figure.across = 2;
+  figure.panels = {
+      orders_panel(pictures, "entropy, nats", &engine::OrderFigures::entropy),
+      orders_panel(pictures, "MS-SSIM with the adaptive texture", &engine::OrderFigures::ms_ssim)};
+  figure.panels[1].y.high = 1.01;
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    Layer adaptive = dashed_rule(pictures[i].evaluation.adaptive.entropy, "");
+    adaptive.colour = series_colour(i);
+    figure.panels[0].layers.push_back(std::move(adaptive));
+  }
   figure.caption =
       "Entropy of textures over the fixed order, and MS-SSIM of each with the adaptive texture, "
-      "as in the paper's Fig. 3. Dashed: entropy of the adaptive texture.";
+      "as in the paper's Fig. 3. Dashed: entropy of the adaptive texture; grey: the "
+      "orders that the paper names.";
   figure.alt = "Entropy and MS-SSIM over the fixed order.";
   for (const MeasuredPicture& one : pictures) {
     const engine::OrderFigures& closest = engine::closest_order(one.evaluation);
@@ -180,18 +176,6 @@ Figure order_figure(std::span<const MeasuredPicture> pictures) {
         "adaptive texture {:.3f} nats.",
         one.name, closest.order, closest.ms_ssim, one.evaluation.adaptive.entropy);
   }
-  const std::string axis = fmt::format(
-      "set xrange [0:1]\nset xtics 0.2\nset xlabel 'fixed order' offset 0, 0.6\n"
-      "set object 900 rectangle from {}, graph 0 to {}, graph 1 behind fs solid 0.25 noborder fc "
-      "rgb '{}'\n",
-      kPublishedLowestOrder, kPublishedHighestOrder, kFaint);
-  figure.script =
-      data_of_orders(pictures) + sheet_head(sheet) + placed.script() + "set multiplot\n" +
-      panel_at(sheet, left) + axis + "set ylabel 'entropy, nats' offset 1.5\n" +
-      curves_of_orders(pictures.size(), 2) + "unset label\nunset arrow\nunset object\n" +
-      panel_at(sheet, right) + axis +
-      "set ylabel 'MS-SSIM with the adaptive texture' offset 1.5\nset yrange [:1.01]\n" +
-      curves_of_orders(pictures.size(), 3) + "unset multiplot\n";
   return figure;
 }
 

@@ -1,6 +1,8 @@
 #include "analysis/planning/level_report.hpp"
 
+#include "analysis/report/methods.hpp"
 #include "core/strict_json.hpp"
+#include "core/text.hpp"
 #include "protocols/simulation/felt_floor.hpp"
 #include "protocols/simulation/subject_model.hpp"
 #include "study/protocol.hpp"
@@ -8,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include <boost/math/distributions/normal.hpp>
@@ -356,7 +359,40 @@ Json json_of_all(const study::Study& study, const StimulusLevels& levels) {
           {"by_level_alone", json_by_level_alone(study, levels)}};
 }
 
-/// Results with another section.
+/// For the methods: on each device, from the weakest stimulus by one curve to the strongest by any.
+std::string levels_sentence(const StimulusLevels& levels) {
+  std::vector<std::string> ranges;
+  for (const std::string& device : devices_of(levels)) {
+    double low_db = std::numeric_limits<double>::max();
+    double high_db = std::numeric_limits<double>::lowest();
+    for (const PlaneLevels& one : levels.levels) {
+      const LevelRange range = simulation::range_on(one, device);
+      low_db = std::min(low_db, range.low_db);
+      high_db = std::max(high_db, range.high_db);
+    }
+    ranges.push_back(range_cell(low_db, high_db) + " dB on " + device);
+  }
+  if (ranges.empty() || levels.stimuli.empty()) return {};
+  return fmt::format(
+      "By the models of a hand and of the device, stimuli stood above the level at which they are "
+      "told from the blank plane in 79 % of three intervals by {}, {}.",
+      listed(ranges),
+      levels.provisional ? "over two published curves of thresholds for vibration"
+                         : "by thresholds measured in this laboratory");
+}
+
+/// The section with all but its warnings folded.
+analysis::Section folded(analysis::Section section) {
+  std::vector<analysis::Block> shown;
+  for (analysis::Block& block : section.blocks) {
+    const bool warns = std::holds_alternative<analysis::Warnings>(block);
+    (warns ? shown : section.more).push_back(std::move(block));
+  }
+  section.blocks = std::move(shown);
+  return section;
+}
+
+/// Results with another section, which stands before the methods.
 class ResultsAndMore : public analysis::Results {
  public:
   ResultsAndMore(std::unique_ptr<const analysis::Results> results, analysis::Section section)
@@ -370,7 +406,8 @@ class ResultsAndMore : public analysis::Results {
   analysis::Document document(const analysis::Provenance& provenance,
                               const analysis::Pictures& pictures) const override {
     analysis::Document document = results_->document(provenance, pictures);
-    document.sections.push_back(section_);
+    const auto methods = std::ranges::find(document.sections, "methods", &analysis::Section::id);
+    document.sections.insert(methods, section_);
     return document;
   }
 
@@ -383,10 +420,16 @@ class LevelledResults final : public ResultsAndMore {
  public:
   LevelledResults(std::unique_ptr<const analysis::Results> results, study::Study study,
                   StimulusLevels levels)
-      : ResultsAndMore(std::move(results), levels_section(study, levels)),
+      : ResultsAndMore(std::move(results), folded(levels_section(study, levels))),
         study_(std::move(study)),
         levels_(std::move(levels)) {}
 
+  analysis::Document document(const analysis::Provenance& provenance,
+                              const analysis::Pictures& pictures) const override {
+    analysis::Document document = ResultsAndMore::document(provenance, pictures);
+    analysis::add_to_stimuli(document, levels_sentence(levels_));
+    return document;
+  }
   std::string json() const override {
     Json object = Json::parse(ResultsAndMore::json());
     object["levels"] = json_of_all(study_, levels_);

@@ -22,6 +22,10 @@ constexpr std::array kPublications = {
     Publication{Source::cochran, "cochran1950",
                 "Cochran WG (1950). The comparison of percentages in matched samples. Biometrika "
                 "37(3/4), 256-266."},
+    Publication{Source::cumming_finch, "cumming2001",
+                "Cumming G, Finch S (2001). A primer on the understanding, use, and "
+                "calculation of confidence intervals that are based on central and noncentral "
+                "distributions. Educational and Psychological Measurement 61(4), 532-574."},
     Publication{Source::davison_hinkley, "davison1997",
                 "Davison AC, Hinkley DV (1997). Bootstrap Methods and their Application. Cambridge "
                 "University Press."},
@@ -51,6 +55,10 @@ constexpr std::array kPublications = {
     Publication{Source::holm, "holm1979",
                 "Holm S (1979). A simple sequentially rejective multiple test procedure. "
                 "Scandinavian Journal of Statistics 6(2), 65-70."},
+    Publication{Source::hu_song, "hu2022",
+                "Hu H, Song A (2022). Haptic texture rendering of 2D image based on adaptive "
+                "fractional differential method. Applied Sciences 12(23), 12346.",
+                true},
     Publication{Source::hyndman_fan, "hyndman1996",
                 "Hyndman RJ, Fan Y (1996). Sample quantiles in statistical packages. The American "
                 "Statistician 50(4), 361-365."},
@@ -61,9 +69,25 @@ constexpr std::array kPublications = {
                 "IntHout J, Ioannidis JPA, Borm GF (2014). The Hartung-Knapp-Sidik-Jonkman method "
                 "for random effects meta-analysis is straightforward and considerably outperforms "
                 "the standard DerSimonian-Laird method. BMC Medical Research Methodology 14, 25."},
+    Publication{Source::kaernbach, "kaernbach1991",
+                "Kaernbach C (1991). Simple adaptive testing with the weighted up-down method. "
+                "Perception & Psychophysics 49(3), 227-229.",
+                true},
+    Publication{Source::kontsevich_tyler, "kontsevich1999",
+                "Kontsevich LL, Tyler CW (1999). Bayesian adaptive estimation of psychometric "
+                "slope and threshold. Vision Research 39(16), 2729-2737.",
+                true},
     Publication{Source::kuhn, "kuhn1955",
                 "Kuhn HW (1955). The Hungarian method for the assignment problem. Naval Research "
                 "Logistics Quarterly 2(1-2), 83-97."},
+    Publication{Source::lan_demets, "lan1983",
+                "Lan KKG, DeMets DL (1983). Discrete sequential boundaries for clinical trials. "
+                "Biometrika 70(3), 659-663.",
+                true},
+    Publication{Source::levitt, "levitt1971",
+                "Levitt H (1971). Transformed up-down methods in psychoacoustics. Journal of the "
+                "Acoustical Society of America 49(2B), 467-477.",
+                true},
     Publication{
         Source::lin, "lin1991",
         "Lin J (1991). Divergence measures based on the Shannon entropy. IEEE Transactions on "
@@ -89,6 +113,10 @@ constexpr std::array kPublications = {
         "Phipson B, Smyth GK (2010). Permutation p-values should never be zero: calculating "
         "exact p-values when permutations are randomly drawn. Statistical Applications in "
         "Genetics and Molecular Biology 9(1), article 39."},
+    Publication{Source::prins, "prins2013",
+                "Prins N (2013). The psi-marginal adaptive method: how to give nuisance parameters "
+                "the attention they deserve (no more, no less). Journal of Vision 13(7), 3.",
+                true},
     Publication{
         Source::robins_breslow_greenland, "robins1986",
         "Robins J, Breslow N, Greenland S (1986). Estimators of the Mantel-Haenszel variance "
@@ -96,6 +124,10 @@ constexpr std::array kPublications = {
         "311-323."},
     Publication{Source::senn, "senn2002",
                 "Senn S (2002). Cross-over Trials in Clinical Research, second edition. Wiley."},
+    Publication{Source::shrout_fleiss, "shrout1979",
+                "Shrout PE, Fleiss JL (1979). Intraclass correlations: uses in assessing rater "
+                "reliability. Psychological Bulletin 86(2), 420-428.",
+                true},
     Publication{Source::student, "student1908",
                 "Student (1908). The probable error of a mean. Biometrika 6(1), 1-25."},
     Publication{Source::tan_reed_durlach, "tan2010",
@@ -110,12 +142,24 @@ constexpr std::array kPublications = {
         "Townsend JT, Landon DE (1982). An experimental and theoretical investigation of the "
         "constant-ratio rule and other models of visual letter confusion. Journal of "
         "Mathematical Psychology 25(2), 119-162."},
+    Publication{Source::veale, "veale2014",
+                "Veale JF (2014). Edinburgh Handedness Inventory - Short Form: a revised version "
+                "based on confirmatory factor analysis. Laterality 19(2), 164-177.",
+                true},
     Publication{Source::viechtbauer, "viechtbauer2007",
                 "Viechtbauer W (2007). Confidence intervals for the amount of heterogeneity in "
                 "meta-analysis. Statistics in Medicine 26(1), 37-52."},
     Publication{Source::wagner, "wagner1993",
                 "Wagner HL (1993). On measuring performance in category judgment studies of "
                 "nonverbal behavior. Journal of Nonverbal Behavior 17(1), 3-28."},
+    Publication{Source::watson, "watson2017",
+                "Watson AB (2017). QUEST+: a general multidimensional Bayesian adaptive "
+                "psychometric method. Journal of Vision 17(3), 10.",
+                true},
+    Publication{Source::wichmann_hill, "wichmann2001",
+                "Wichmann FA, Hill NJ (2001). The psychometric function: I. Fitting, sampling, and "
+                "goodness of fit. Perception & Psychophysics 63(8), 1293-1313.",
+                true},
     Publication{Source::wilson, "wilson1927",
                 "Wilson EB (1927). Probable inference, the law of succession, and statistical "
                 "inference. Journal of the American Statistical Association 22(158), 209-212."},

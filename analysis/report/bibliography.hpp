@@ -12,6 +12,7 @@ enum class Source {
   brown_cai_dasgupta,
   clopper_pearson,
   cochran,
+  cumming_finch,
   davison_hinkley,
   fagerland,
   fischer_whitney,
@@ -21,10 +22,15 @@ enum class Source {
   hesterberg,
   hills_armitage,
   holm,
+  hu_song,
   hyndman_fan,
   ince,
   inthout,
+  kaernbach,
+  kontsevich_tyler,
   kuhn,
+  lan_demets,
+  levitt,
   lin,
   luce,
   mantel_haenszel,
@@ -32,14 +38,19 @@ enum class Source {
   miller_jackknife,
   paule_mandel,
   phipson_smyth,
+  prins,
   robins_breslow_greenland,
   senn,
+  shrout_fleiss,
   student,
   tan_reed_durlach,
   tobin,
   townsend_landon,
+  veale,
   viechtbauer,
   wagner,
+  watson,
+  wichmann_hill,
   wilson,
 };
 
@@ -47,6 +58,7 @@ struct Publication {
   Source source{};
   std::string_view key;   ///< "brown2001": the name in results.json
   std::string_view text;  ///< authors, year, title, journal or publisher; ASCII, without an address
+  bool of_methods = false;  ///< only methods name it: it is not in results.json
 };
 
 /// All publications, in ascending order of their keys, which is also the order of Source.

@@ -20,6 +20,14 @@ nlohmann::ordered_json interval_json(const std::optional<Interval>& interval) {
   return interval_json(*interval);
 }
 
+nlohmann::ordered_json statistic_json(const std::optional<TStatistic>& statistic) {
+  if (!statistic) return nullptr;
+  return {{"t", figure_json(statistic->t)},
+          {"degrees_of_freedom", statistic->degrees_of_freedom},
+          {"d", figure_json(statistic->d)},
+          {"interval", interval_json(statistic->interval)}};
+}
+
 nlohmann::ordered_json quartiles_json(const Quartiles& quartiles) {
   return {{"n", quartiles.n},
           {"lower_quartile", figure_json(quartiles.lower)},
@@ -88,7 +96,8 @@ nlohmann::ordered_json references_object() {
   nlohmann::ordered_json all = nlohmann::ordered_json::object();
   for (const Publication& one : publications()) {
     // Only the cues cite Lin, and they name the publication themselves.
-    if (one.source != Source::lin) all[std::string(one.key)] = std::string(one.text);
+    if (one.source != Source::lin && !one.of_methods)
+      all[std::string(one.key)] = std::string(one.text);
   }
   return all;
 }

@@ -4,6 +4,7 @@
 
 #include "analysis/outcomes/quality.hpp"
 #include "analysis/statistics/descriptive.hpp"
+#include "analysis/statistics/mean_test.hpp"
 #include "analysis/statistics/proportion.hpp"
 #include "core/strict_json.hpp"
 #include "engine/metrics/glcm.hpp"
@@ -25,6 +26,9 @@ struct StudyHead;
 [[nodiscard]] nlohmann::ordered_json interval_json(const Interval& interval);
 /// [low, high], or null if there is no interval.
 [[nodiscard]] nlohmann::ordered_json interval_json(const std::optional<Interval>& interval);
+
+/// t, degrees_of_freedom, and d with its interval; null without a t.
+[[nodiscard]] nlohmann::ordered_json statistic_json(const std::optional<TStatistic>& statistic);
 
 /// \return the interval around a share of trials, or nothing if there are no trials
 [[nodiscard]] std::optional<Interval> known(const Interval& interval, const Proportion& of);

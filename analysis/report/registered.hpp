@@ -65,10 +65,11 @@ struct PrimaryResult {
   double level = 0.05;  ///< that p must not exceed; less than alpha at an interim look or after one
   double interval_level = 0.95;  ///< 1 - alpha, or 1 - 2 alpha with a margin
   std::optional<double> smallest_effect{};
-  std::optional<double> margin{};        ///< of non-inferiority, whose null is -margin, or equality
-  std::optional<double> p{};             ///< of the registered choice
-  std::optional<double> bound{};         ///< one-sided: the lower limit that goes with the test
-  std::vector<PrimaryChoice> choices{};  ///< the registered one first
+  std::optional<double> margin{};  ///< of non-inferiority, whose null is -margin, or equality
+  std::optional<double> p{};       ///< of the registered choice
+  std::optional<TStatistic> statistic{};  ///< of the registered choice, if there is a t
+  std::optional<double> bound{};          ///< one-sided: the lower limit that goes with the test
+  std::vector<PrimaryChoice> choices{};   ///< the registered one first
   /// Of the registered choice, if the test is the period-adjusted one.
   std::optional<CrossoverEstimate> crossover{};
   std::optional<CrossoverPermutation> permutation{};

@@ -155,6 +155,7 @@ Json primary_object(const StudyHead& head) {
               {"test", primary.test},
               {"null", figure_json(primary.null)},
               {"p", figure_json(primary.p)},
+              {"statistic", statistic_json(primary.statistic)},
               {"p_note", unadjusted.empty() ? Json(nullptr) : Json(unadjusted)},
               {"alpha", primary.alpha},
               {"level", primary.level},

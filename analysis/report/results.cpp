@@ -50,11 +50,42 @@ class QuestionAlone final : public Results {
   QualityReport quality_;
 };
 
+/// Results whose page ends with the methods.
+class ResultsAndMethods final : public Results {
+ public:
+  ResultsAndMethods(std::unique_ptr<const Results> results, Section methods)
+      : results_(std::move(results)), methods_(std::move(methods)) {}
+
+  const StudyHead& head() const override { return results_->head(); }
+  std::string json() const override { return results_->json(); }
+  std::vector<Figure> figures(const std::string& stamp) const override {
+    return results_->figures(stamp);
+  }
+  Document document(const Provenance& provenance, const Pictures& pictures) const override {
+    Document document = results_->document(provenance, pictures);
+    document.sections.push_back(methods_);
+    return document;
+  }
+
+ private:
+  std::unique_ptr<const Results> results_;
+  Section methods_;
+};
+
 }  // namespace
 
 std::unique_ptr<const Results> question_alone(const Results& results,
                                               const record::StudyStore& store) {
   return std::make_unique<QuestionAlone>(results.head(), store);
+}
+
+std::unique_ptr<const Results> with_methods(std::unique_ptr<const Results> results,
+                                            const Outcomes& outcomes, const ReportOptions& wishes,
+                                            const ProtocolMethods& protocol) {
+  if (!wishes.page || wishes.source == nullptr) return results;
+  const RecordedStudy recorded = recorded_study(wishes.source->store, wishes.source->key);
+  Section methods = methods_section(results->head(), outcomes, recorded, protocol);
+  return std::make_unique<ResultsAndMethods>(std::move(results), std::move(methods));
 }
 
 std::vector<Figure> Results::figures(const std::string&) const {

@@ -6,6 +6,7 @@
 #include "analysis/exports/trial_tables.hpp"
 #include "analysis/outcomes/outcomes.hpp"
 #include "analysis/report/figures/figure.hpp"
+#include "analysis/report/methods.hpp"
 #include "analysis/report/page/study_document.hpp"
 
 #include <filesystem>
@@ -24,7 +25,7 @@ struct TraceSource {
 };
 
 /// What a user wants in a report besides its tables.
-struct ReportWishes {
+struct ReportOptions {
   enum class Traces { if_few, yes, no };
 
   const TraceSource* source = nullptr;  ///< null: sections that need traces are omitted
@@ -53,6 +54,13 @@ class Results {
                                           const Pictures& pictures) const = 0;
 };
 
+/// Results whose page ends with the study's methods, if a page is wished for and its source known.
+/// \param outcomes  from which the results were made
+[[nodiscard]] std::unique_ptr<const Results> with_methods(std::unique_ptr<const Results> results,
+                                                          const Outcomes& outcomes,
+                                                          const ReportOptions& wishes,
+                                                          const ProtocolMethods& protocol);
+
 /// The answer to the registered question and how the study was collected: what a registered look
 /// shows of results, whatever the protocol.
 /// \param store  has what is in clear, for the quality of the data
@@ -75,7 +83,7 @@ class ProtocolAnalysis {
   /// \throws UsageError, naming the wish, if the protocol cannot fulfil one
   /// \throws VerificationError if a trace does not open
   [[nodiscard]] virtual std::unique_ptr<const Results> results(
-      const Outcomes& outcomes, const ReportWishes& wishes) const = 0;
+      const Outcomes& outcomes, const ReportOptions& wishes) const = 0;
   /// Tables that `export --format csv` writes in addition to those of every study.
   [[nodiscard]] virtual std::vector<ResultTable> tables(const Outcomes& outcomes) const;
   /// Columns that tables of trials have in addition, for instance what an adaptive order chose.

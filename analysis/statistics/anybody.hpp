@@ -1,7 +1,7 @@
 /// \file Whether anybody does what each participant was tested for. A number pooled over people
 /// hides a few who do much among many who do nothing, the smallest of many p hides many who do a
-/// little; this test looks at both. Sources: docs/statistics.md, "Anybody"; Holm 1979; Fisher 1932,
-/// Statistical Methods for Research Workers; Phipson, Smyth 2010.
+/// little; this test looks at both. Sources: docs/statistics.md, "Any participant"; Holm 1979;
+/// Fisher 1932, Statistical Methods for Research Workers; Phipson, Smyth 2010.
 #pragma once
 
 #include <span>

@@ -301,4 +301,13 @@ std::optional<double> censored_p(std::span<const Bounds> people, double null, Si
   return 2.0 * cdf(complement(distribution, t));
 }
 
+std::optional<TStatistic> known_t_statistic(std::span<const Bounds> people) {
+  std::vector<double> values;
+  for (const Bounds& one : people) {
+    if (!one.exact()) return std::nullopt;
+    values.push_back(one.low);
+  }
+  return t_statistic(values);
+}
+
 }  // namespace touchtrial::analysis

@@ -61,4 +61,7 @@ struct CensoredMean {
 [[nodiscard]] std::optional<double> censored_p(std::span<const Bounds> people, double null,
                                                Sides sides);
 
+/// Student's t of that mean, if everybody's value is known.
+[[nodiscard]] std::optional<TStatistic> known_t_statistic(std::span<const Bounds> people);
+
 }  // namespace touchtrial::analysis

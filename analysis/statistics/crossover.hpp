@@ -1,5 +1,5 @@
 /// \file A crossover of two methods in two periods: the difference of the methods apart from that
-/// of the periods. Sources: docs/statistics.md, "Two methods, one after the other"; Hills, Armitage
+/// of the periods. Sources: docs/statistics.md, "Two methods in blocks"; Hills, Armitage
 /// 1979; Senn 2002.
 #pragma once
 

@@ -224,7 +224,8 @@ MethodComparison compare_methods(std::span<const PairedAccuracy> participants, s
   const MeanEstimate mean = participant_mean(differences, {-1.0, 1.0});
   return {mean.participants,       mean.mean,
           mean.interval,           sign_flip_p(differences),
-          decibels(first, second), bootstrap_mean(differences, index, draws)};
+          decibels(first, second), bootstrap_mean(differences, index, draws),
+          t_statistic(differences)};
 }
 
 std::optional<double> sign_flip_p(std::span<const double> differences, Sides sides) {

@@ -26,11 +26,12 @@ struct PairedAccuracy {
 /// How much better the first method is than the second.
 struct MethodComparison {
   int participants = 0;
-  std::optional<double> difference;     ///< mean over participants of first minus second
-  Interval interval{-1.0, 1.0};         ///< MeanEstimate::interval, within [-1, 1]
-  std::optional<double> p;              ///< sign_flip_p of the differences
-  std::optional<double> db;             ///< decibels of the two means
-  std::optional<Interval> bootstrap{};  ///< bootstrap_mean of the differences
+  std::optional<double> difference;       ///< mean over participants of first minus second
+  Interval interval{-1.0, 1.0};           ///< MeanEstimate::interval, within [-1, 1]
+  std::optional<double> p;                ///< sign_flip_p of the differences
+  std::optional<double> db;               ///< decibels of the two means
+  std::optional<Interval> bootstrap{};    ///< bootstrap_mean of the differences
+  std::optional<TStatistic> statistic{};  ///< of the differences
 
   /// As MeanEstimate::known_interval.
   [[nodiscard]] std::optional<Interval> known_interval() const noexcept {

@@ -54,7 +54,7 @@ std::string HeadCheck::words() const {
   if (!lacks.empty()) return "NOT AS IT WAS LEFT: " + lacks;
   if (!vouched) return gone.empty() ? "no head file was compared" : gone;
   return fmt::format("up to head {} (event {}, {} acknowledged), by {}{}",
-                     record::spoken_head(*vouched), vouched->file.length,
+                     record::head_digits(*vouched), vouched->file.length,
                      counted(vouched->acknowledged, "answer"), counted(compared, "head file"),
                      gone.empty() ? "" : "; " + gone);
 }

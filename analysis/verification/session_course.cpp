@@ -150,7 +150,7 @@ void SessionCourse::restart_block(const record::Event& event) {
                             "study does not restart blocks",
                             body.block));
   }
-  const study::BlockRestart again = course_.drawn_again(body.block);
+  const study::BlockRestart again = course_.redrawn_block(body.block);
   if (body.first_trial != again.first_trial()) {
     fail(event, fmt::format("block {} was restarted with trial {}, not {}", body.block,
                             body.first_trial, again.first_trial()));

@@ -24,7 +24,7 @@ constexpr double kNewtonsPerGram = 0.001 * device::kStandardGravityMS2;
 /// Longer than a run, so that it never ends before its last sample.
 constexpr double kMoreTimeS = 2.0;
 
-/// Suspends this program for two seconds, three seconds from now, by a shell of its own.
+/// Suspends this program for two seconds, three seconds from now, through a separate shell.
 class Suspension {
  public:
   Suspension() {
@@ -48,8 +48,8 @@ class Suspension {
   bool has_child_ = false;
 };
 
-/// A handle that hangs on a spring with a weight may stand still to the last bit. Encoders that
-/// are frozen end the acceptance by themselves: the handle does not follow a push.
+/// A handle that hangs on a spring with a weight may be motionless to the last bit. Frozen encoders
+/// end the acceptance anyway, because the handle does not follow a push.
 device::SafetyLimits limits_of(device::HapticDevice& device, const device::DeviceUse& use) {
   device::SafetyLimits limits =
       device::limits_on(device.info(), device::stricter_of({}, use.limits));
@@ -73,7 +73,7 @@ std::optional<double> newtons_in(const std::string& line) {
   return *mass_g * kNewtonsPerGram;
 }
 
-const char* hanging_on(device::DeviceAxis axis) {
+const char* instruction_for(device::DeviceAxis axis) {
   switch (axis) {
     case device::DeviceAxis::x:
       return "Lead a string horizontally to the right, over a pulley at the handle's height, and "
@@ -107,9 +107,9 @@ AcceptanceTerminal::AcceptanceTerminal(const std::string& driver,
     : device_(device::open_device(driver, settings)),
       limits_(limits_of(*device_, settings.use_of(driver))),
       run_(with_motors(*device_), limits_, device::kServoRateHz, false) {
-  tell(
-      "Before each step this program says what it will do. Enter goes on, s leaves the step out, "
-      "q ends.\nCtrl-C switches the force off at once, at any time.\n");
+  show(
+      "Each step is described before it starts. Enter continues, s skips the step, q ends.\nCtrl-C "
+      "switches the force off at once, at any time.\n");
   run_.wait_until_ready(kReadyLimitS);
   require_going_on();
   info_ = device_->info();
@@ -147,12 +147,12 @@ device::Consent AcceptanceTerminal::ready(const device::Prompt& prompt) {
   while (true) {
     const std::string answer = answer_to("\n" + prompt.text + "\n[Enter, s, q] ");
     if (answer.empty()) {
-      device_->rearm();  // a fault of the run before halted it
+      device_->rearm();  // a fault of the previous run halted it
       return device::Consent::go;
     }
     if (answer == "s") return device::Consent::skip;
     if (answer == "q") throw AcceptanceStopped{};
-    tell("press Enter to go on, or type s to leave this out, or q to end\n");
+    show("press Enter to continue, s to skip this, or q to end\n");
   }
 }
 
@@ -161,7 +161,7 @@ std::optional<double> AcceptanceTerminal::weight_n(device::DeviceAxis axis, doub
   const std::string range =
       fmt::format("{:.0f} to {:.0f} g, or {:.2f} to {:.2f} N", least_n / kNewtonsPerGram,
                   std::floor(most_n / kNewtonsPerGram), least_n, most_n);
-  tell(fmt::format("\nAxis {}. {}\n", device::name_of(axis), hanging_on(axis)));
+  show(fmt::format("\nAxis {}. {}\n", device::name_of(axis), instruction_for(axis)));
   while (true) {
     const std::string line = answer_to(fmt::format(
         "weight in g, or reading of a spring scale in N as in 1.2N ({}; s: none): ", range));
@@ -171,7 +171,7 @@ std::optional<double> AcceptanceTerminal::weight_n(device::DeviceAxis axis, doub
         force_n && *force_n >= least_n * (1.0 - 1e-9) && *force_n <= most_n) {
       return force_n;
     }
-    tell("that is not a weight in this range\n");
+    show("that is not a weight in this range\n");
   }
 }
 
@@ -181,17 +181,17 @@ std::optional<double> AcceptanceTerminal::temperature_c(const std::string& quest
     if (line.empty()) return std::nullopt;
     const auto value = number_in<double>(line);
     if (value && *value > -50.0 && *value < 200.0) return value;
-    tell("that is not a temperature\n");
+    show("that is not a temperature\n");
   }
 }
 
-std::string AcceptanceTerminal::saw(const std::string& question) {
+std::string AcceptanceTerminal::ask_observation(const std::string& question) {
   const std::string answer = one_line(answer_to(question));
   if (answer == "q") throw AcceptanceStopped{};
   return answer;
 }
 
-void AcceptanceTerminal::tell(const std::string& text) {
+void AcceptanceTerminal::show(const std::string& text) {
   std::cerr << text << (text.ends_with('\n') || text.ends_with(' ') ? "" : "\n") << std::flush;
 }
 
@@ -204,7 +204,7 @@ int in_own_process(const std::function<int()>& work) {
   const pid_t process = ::fork();
   if (process <= 0) return work();
   acceptance_process.store(process);
-  // The terminal sends these to both.
+  // The terminal sends these signals to both processes.
   for (const int signal : {SIGINT, SIGQUIT, SIGTSTP}) {
     static_cast<void>(std::signal(signal, SIG_IGN));
   }

@@ -1,4 +1,4 @@
-/// \file A device on a cable and the person at the terminal, as acceptance and bring-up need them.
+/// \file A connected device and the person at the terminal, for acceptance and bring-up.
 #pragma once
 
 #include "app/run/attended_run.hpp"
@@ -40,8 +40,8 @@ class AcceptanceTerminal final : public device::AcceptanceBench, public device::
   [[nodiscard]] std::optional<double> weight_n(device::DeviceAxis axis, double least_n,
                                                double most_n) override;
   [[nodiscard]] std::optional<double> temperature_c(const std::string& question) override;
-  [[nodiscard]] std::string saw(const std::string& question) override;
-  void tell(const std::string& text) override;
+  [[nodiscard]] std::string ask_observation(const std::string& question) override;
+  void show(const std::string& text) override;
 
  private:
   void require_going_on() const;
@@ -53,8 +53,8 @@ class AcceptanceTerminal final : public device::AcceptanceBench, public device::
   device::DeviceInfo info_;
 };
 
-/// Does the work in a process of its own: when that is suspended, the shell, which waits for this
-/// one, does not take the terminal away. Called before there are threads.
+/// Does the work in a child process: when that is suspended, the shell still waits for this process
+/// and does not take over the terminal. Called before there are threads.
 /// \return the exit code, in both processes
 int in_own_process(const std::function<int()>& work);
 

@@ -21,7 +21,7 @@
 namespace touchtrial::app {
 namespace {
 
-/// The group of commands that were put into none.
+/// The parser's group of commands without a group.
 constexpr const char* kParsersOwnGroup = "Subcommands";
 
 /// \param unwanted  text that a value must not contain
@@ -96,7 +96,7 @@ int run_command(const std::vector<std::string>& words) {
   Action action;
   add_commands(program, action);
   program.parse(
-      std::vector<std::string>(words.rbegin(), words.rend()));  // the parser takes the last first
+      std::vector<std::string>(words.rbegin(), words.rend()));  // the parser expects reverse order
   return action();
 }
 
@@ -119,7 +119,7 @@ CLI::Option* add_database_argument(CLI::App& command, std::filesystem::path& dat
 
 CLI::Option* add_accept_loss_option(CLI::App& command, std::string& reason) {
   return command.add_option("--accept-loss", reason,
-                            "Go on without what the database lost, and why; recorded");
+                            "Accept the database's loss and continue, with the reason; recorded");
 }
 
 CLI::Option* add_key_option(CLI::App& command, std::filesystem::path& key,
@@ -158,9 +158,8 @@ void add_subject_option(CLI::App& command, std::filesystem::path& subject) {
 
 void add_on_option(CLI::App& command, std::string& model) {
   command.add_option("--on", model,
-                     "Device that simulated hands hold: a name of touchtrial device models, a "
-                     "product, or a model's "
-                     "file (default: the study's, or an ideal device, which nobody sells)");
+                     "Device that simulated hands hold: a name from touchtrial device models, a "
+                     "product, or a model file (default: the study's, or an ideal device)");
 }
 
 CLI::Validator place_validator() {
@@ -174,8 +173,7 @@ CLI::Option* add_driver_argument(CLI::App& command, const std::string& name, std
     text = device::device_driver(text).name;
     return std::string();
   };
-  return command
-      .add_option(name, driver, "Device or its driver, as touchtrial device list names it")
+  return command.add_option(name, driver, "Device or driver, as listed by touchtrial device list")
       ->transform(CLI::Validator(
           to_driver, fmt::format("{{{}}}", fmt::join(device::device_names(), ",")), ""));
 }
@@ -236,7 +234,7 @@ void add_jobs_option(CLI::App& command, int& jobs) {
 }
 
 void add_yes_flag(CLI::App& command, bool& yes) {
-  command.add_flag("--yes", yes, "Do not ask whether to go on; needed without a terminal");
+  command.add_flag("--yes", yes, "Do not ask for confirmation; needed without a terminal");
 }
 
 CLI::Option* add_force_flag(CLI::App& command) {
@@ -244,9 +242,9 @@ CLI::Option* add_force_flag(CLI::App& command) {
     spdlog::warn("{}: is kept as {}", file.string(), kept.string());
   };
   return command.add_flag_callback(
-      "--force", [=] { keep_files_in_the_way(notice); },
-      "Write also where files are in the way that this program did not write, or that somebody "
-      "changed since; they are kept as NAME.1, NAME.2 and so on");
+      "--force", [=] { move_foreign_files_aside(notice); },
+      "Write even if files exist that this program did not write or that were changed since; they "
+      "are renamed to NAME.1, NAME.2 and so on");
 }
 
 CLI::Option* add_json_flag(CLI::App& command, bool& json) {

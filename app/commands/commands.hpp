@@ -1,7 +1,7 @@
 /// \file The commands, and the arguments and options that several of them share. Each command adds
-/// itself to the parser and sets the action that runs when parsing succeeds. Commands parse, call
-/// the rooms below, and print; they compute nothing themselves. Private to app: it shows the
-/// parser's type.
+///   itself to the parser and sets the action that runs when parsing succeeds. Commands parse, call
+///   the folders below, and print; they compute nothing themselves. Private to app: it exposes the
+///   parser's type.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ using Action = std::function<int()>;
 /// The exit code of data that fail verification.
 inline constexpr int kNotVerified = 3;
 
-/// A command, and its arguments, which live as long as it.
+/// A command with its arguments, which live as long as the command.
 template <typename Arguments>
 struct Command {
   CLI::App& command;
@@ -47,7 +47,7 @@ Command<Arguments> add_command(CLI::App& above, Action& action, const std::strin
 /// All commands of the program.
 void add_commands(CLI::App& program, Action& action);
 /// Runs one command inside another.
-/// \param words  as they are typed after the program's name
+/// \param words  as typed after the program's name
 /// \return the exit code
 /// \throws what the command throws, or CLI::ParseError
 int run_command(const std::vector<std::string>& words);
@@ -100,8 +100,8 @@ void add_device_conform_command(CLI::App& device, Action& action);
 /// Every variable must live as long as the command.
 ///@{
 
-/// The protocols whose studies `new` and `stimuli import` can write: those without a section of
-/// their own in the study file. The others begin with a ready study (touchtrial examples).
+/// The protocols whose studies `new` and `stimuli import` can write: those without their own
+/// section in the study file. The others start from a ready study (touchtrial examples).
 [[nodiscard]] std::vector<std::string> protocols_of_new_studies();
 /// STUDY, required.
 void add_study_argument(CLI::App& command, std::filesystem::path& study);
@@ -115,7 +115,7 @@ CLI::Option* add_key_option(CLI::App& command, std::filesystem::path& key,
                                 "one named last time)");
 /// --passphrase-file, for commands that read keys or stations' files without --key.
 void add_passphrase_option(CLI::App& command);
-/// Why to go on without what the database lacks and its head file knows.
+/// The reason for continuing despite a loss that the head file reveals.
 CLI::Option* add_accept_loss_option(CLI::App& command, std::string& reason);
 /// --key, --station-file and --accept-loss, of commands that record; see opened_to_record.
 void add_signing_options(CLI::App& command, SigningFiles& files);
@@ -123,28 +123,29 @@ void add_signing_options(CLI::App& command, SigningFiles& files);
 void add_pack_option(CLI::App& command, std::filesystem::path& pack);
 /// --subject; see subject_for.
 void add_subject_option(CLI::App& command, std::filesystem::path& subject);
-/// --on: what simulated hands hold; see subject_for.
+/// --on: the device that simulated hands hold; see subject_for.
 void add_on_option(CLI::App& command, std::string& model);
-/// Refuses addresses where a file or folder of this machine is needed. The message does not repeat
-/// the address, which may contain a password.
+/// Refuses addresses where a local file or folder is needed. The message does not repeat the
+/// address, which may contain a password.
 [[nodiscard]] CLI::Validator place_validator();
 
 ///@}
 /// \name Devices
 ///@{
 
-/// A driver, by its own name or a product's; `driver` gets its own. UsageError names the nearest.
+/// A driver, by its own name or a product's; sets `driver` to its own name. UsageError names the
+/// nearest.
 /// \param name  of the argument or option
 CLI::Option* add_driver_argument(CLI::App& command, const std::string& name, std::string& driver);
 /// --settings; see device::device_settings_for.
 void add_settings_option(CLI::App& command, std::filesystem::path& settings);
-/// --monitor, and --window for a window of this size in place of the whole monitor.
+/// --monitor, and --window for a window of this size instead of the whole monitor.
 /// \param size_meaning  of --window
 void add_window_options(CLI::App& command, int& monitor,
                         std::optional<std::pair<int, int>>& size_px,
                         const std::string& size_meaning =
                             "Size WIDTHxHEIGHT of a window instead of the whole monitor, pixels");
-/// A number from `low` to `high`. The parser's own range lets "nan" through.
+/// A number from `low` to `high`. The parser's own range accepts "nan".
 [[nodiscard]] CLI::Validator finite_range(double low, double high);
 /// --rate, 1,000 to 10,000 Hz.
 void add_rate_option(CLI::App& command, double& rate_hz);
@@ -162,7 +163,7 @@ CLI::Option* add_count_option(CLI::App& command, const std::string& name, int& c
 void add_jobs_option(CLI::App& command, int& jobs);
 /// --yes: does not ask; see confirm of app/terminal/console.hpp.
 void add_yes_flag(CLI::App& command, bool& yes);
-/// --force, for every command that writes where it is told to: see core/outputs.hpp.
+/// --force, for every command with output paths: see core/outputs.hpp.
 CLI::Option* add_force_flag(CLI::App& command);
 /// --json
 CLI::Option* add_json_flag(CLI::App& command, bool& json);

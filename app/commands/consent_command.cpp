@@ -59,20 +59,20 @@ void set_detail(record::PersonalRecord& record, std::string_view name, const std
 
 constexpr std::array<std::string_view, 3> kDetails = {"age", "gender", "contact"};
 
-/// Asks for one after the other; an empty answer leaves a detail out.
+/// Asks for each detail; an empty answer skips it.
 void ask_details(record::PersonalRecord& record) {
   for (const std::string_view name : kDetails) {
     const std::string prompt = fmt::format("{} (Return: not given): ", name);
     std::fputs(prompt.c_str(), stderr);
     std::string line;
     if (!std::getline(std::cin, line)) {
-      throw UsageError("consent: broken off; nothing was recorded");
+      throw UsageError("consent: aborted; nothing was recorded");
     }
     set_detail(record, name, trimmed(line));
   }
 }
 
-/// Reads lines "NAME: value" to the end of standard input. No message repeats a value.
+/// Reads lines "NAME: value" to the end of standard input. Messages never repeat a value.
 void read_details(record::PersonalRecord& record) {
   std::array<bool, kDetails.size()> given{};
   int number = 0;
@@ -105,7 +105,7 @@ int record_consent(const ConsentArguments& arguments) {
   if (record.consent_version.empty())
     throw UsageError("consent: --version is empty; name the form");
   if (!record::is_participant_id(record.participant)) {
-    throw UsageError("consent: " + in_quotes(record.participant) + " is no participant id; " +
+    throw UsageError("consent: " + in_quotes(record.participant) + " is not a participant id; " +
                      std::string(record::kParticipantIdRule));
   }
   if (record.consent_version.size() > kLongestVersion ||
@@ -127,7 +127,7 @@ int record_consent(const ConsentArguments& arguments) {
   print(fmt::format("{}: consent of participant {} to version {} recorded\n", path.string(),
                     record.participant, record.consent_version));
   if (before) {
-    print(fmt::format("the consent to version {} of {}, and what was said then, are kept\n",
+    print(fmt::format("the consent to version {} of {} and its details are kept\n",
                       before->consent_version, before->consented_utc));
   }
   return 0;

@@ -1,4 +1,4 @@
-// device accept: a person tries a device step by step, guided, and its certificate is written.
+// device accept: guides a person through the test of a device, and writes its certificate.
 #include "app/commands/acceptance_terminal.hpp"
 #include "app/commands/commands.hpp"
 #include "app/commands/device_accept_page.hpp"
@@ -45,7 +45,7 @@ struct AcceptArguments {
   bool json = false;
 };
 
-/// A model's name as a part of a file's.
+/// A model's name as part of a file name.
 std::string file_word(std::string name) {
   for (char& letter : name) {
     const bool is_plain = (letter >= '0' && letter <= '9') || (letter >= 'a' && letter <= 'z') ||
@@ -55,7 +55,7 @@ std::string file_word(std::string name) {
   return name;
 }
 
-/// What a rehearsal on this model is called.
+/// The name of a rehearsal on this model.
 std::string emulated_word(const std::string& model) {
   return "emulated-" + file_word(model);
 }
@@ -78,7 +78,7 @@ struct AcceptanceFiles {
   [[nodiscard]] std::array<const fs::path*, 3> all() const { return {&certificate, &page, &model}; }
 };
 
-/// Called before the device is opened, so that no work is lost at the end.
+/// Called before the device is opened, so that a run does not end without a place for its results.
 /// \param name  of the certificate, without its ending, unless the arguments name one
 /// \throws UsageError if the certificate would not be a .json file, or a file that this very
 ///   acceptance reads would be replaced
@@ -104,13 +104,13 @@ AcceptanceFiles files_to_write(const AcceptArguments& arguments, const std::stri
                        "with --certificate");
     }
     require_output_place(*file);
-    // Writing is the only proof that it can be written.
+    // Only writing shows that the file can be written.
     const Draft trial(*file, Draft::Kind::file);
   }
   return files;
 }
 
-/// Whether a file is a certificate that no session would take: it failed, or is of a rehearsal.
+/// Whether a file is a certificate that no session accepts: it failed, or is of a rehearsal.
 bool is_no_loss(const fs::path& certificate) {
   try {
     const device::Certificate old = device::read_certificate(certificate).certificate;
@@ -120,12 +120,12 @@ bool is_no_loss(const fs::path& certificate) {
   }
 }
 
-/// Keeps a certificate that sessions may rest on, and what lies beside it.
-void keep_earlier(const AcceptanceFiles& files) {
+/// Backs up a certificate that sessions may depend on, with the files beside it.
+void back_up_earlier(const AcceptanceFiles& files) {
   if (is_there(files.certificate) && is_no_loss(files.certificate)) return;
   for (const fs::path* const file : files.all()) {
     if (!is_there(*file)) continue;
-    spdlog::warn("{}: is kept as {}", file->string(), keep_aside(*file).string());
+    spdlog::warn("{}: is kept as {}", file->string(), move_aside(*file).string());
   }
 }
 
@@ -138,7 +138,7 @@ int write_results(const AcceptArguments& arguments, const AcceptanceFiles& files
   device::DeviceModel model = device::model_of(certificate, info);
   if (!certificate.emulated.empty()) model.name = emulated_word(certificate.emulated);
   const std::string json = device::certificate_json(certificate);
-  keep_earlier(files);
+  back_up_earlier(files);
   write_output(files.certificate, json);
   write_output(files.page, acceptance_page(acceptance));
   write_output(files.model, device::device_model_json(model));
@@ -192,19 +192,19 @@ int accept_one(const AcceptArguments& arguments) {
 
 void add_device_accept_command(CLI::App& device, Action& action) {
   auto arguments = std::make_shared<AcceptArguments>();
-  CLI::App* command = device.add_subcommand(
-      "accept",
-      "Try a device step by step: signs, forces, friction, mass, delay, walls; writes its "
-      "certificate, without which no session runs");
+  CLI::App* command =
+      device.add_subcommand("accept",
+                            "Test a device step by step: signs, forces, friction, mass, delay, "
+                            "walls; writes the certificate that sessions require");
   add_driver_argument(*command, "NAME", arguments->driver);
   command->add_option("--emulate", arguments->emulated,
                       "Rehearse on a device model (its name, a product or a file) in virtual time; "
-                      "proves no device");
+                      "does not test a device");
   add_settings_option(*command, arguments->settings);
   command->add_option("--certificate", arguments->certificate,
                       "Certificate to write (default: NAME-certificate.json)");
   add_force_flag(*command);
-  command->add_option("--skip", arguments->skip, "Step to leave out; may be repeated")
+  command->add_option("--skip", arguments->skip, "Step to skip; may be repeated")
       ->allow_extra_args(false)
       ->check(CLI::IsMember(std::vector<std::string>(device::kAcceptanceSteps.begin(),
                                                      device::kAcceptanceSteps.end())));

@@ -87,75 +87,27 @@ analysis::Definitions device_figures(const device::Certificate& certificate) {
   return figures;
 }
 
-struct PlotWords {
-  std::string id;
-  std::string caption;
-  std::string alt;
-  std::string x;
-  std::string y;
-};
-
-/// A line of a plot.
-struct PlotLine {
-  std::string name;
-  std::vector<std::pair<double, double>> points;
-};
-
-std::vector<PlotLine> lines_of(const std::vector<device::AxisCurves>& curves,
-                               std::vector<std::pair<double, double>> device::AxisCurves::*part) {
-  std::vector<PlotLine> lines;
+/// One panel an axis, with a line of `part`; without any, none.
+void add_curves(analysis::Section& section, analysis::Figure figure, analysis::Axis x,
+                analysis::Axis y, const std::vector<device::AxisCurves>& curves,
+                std::vector<std::pair<double, double>> device::AxisCurves::*part) {
   for (const device::AxisCurves& one : curves) {
-    lines.push_back({"axis " + std::string(device::name_of(one.axis)), one.*part});
+    if ((one.*part).empty()) continue;
+    analysis::Layer line{.kind = analysis::LayerKind::line,
+                         .name = "axis " + std::string(device::name_of(one.axis)),
+                         .colour = analysis::series_colour(0)};
+    for (const auto& [at, value] : one.*part) line.rows.push_back({.x = at, .y = value});
+    figure.panels.push_back({.title = line.name, .x = x, .y = y, .layers = {line}});
   }
-  return lines;
-}
-
-/// Lines of one kind; without any, a picture without an id.
-/// \param more  of the plot's script, before the lines
-analysis::Picture lines_picture(const PlotWords& words, const std::vector<PlotLine>& lines,
-                                const std::string& more = "") {
-  const analysis::Sheet sheet{16.0, 8.0, false};
-  analysis::Margins margins;
-  margins.left_cm = 1.7;
-  margins.top_cm = 1.1;
-  margins.bottom_cm = 1.25;
-  std::string data;
-  std::string plot;
-  std::vector<analysis::LegendEntry> entries;
-  std::size_t series = 0;
-  for (const PlotLine& line : lines) {
-    if (line.points.empty()) continue;
-    std::vector<std::vector<double>> rows;
-    for (const auto& [x, y] : line.points) rows.push_back({x, y});
-    const std::string block = fmt::format("line_{}", series);
-    data += analysis::data_block(block, rows);
-    plot += fmt::format("{}${} using 1:2 with lines lw 1.5 lc rgb '{}' notitle",
-                        series == 0 ? "plot " : ", ", block, analysis::series_colour(series));
-    entries.push_back({analysis::LegendEntry::Kind::line,
-                       std::string(analysis::series_colour(series)), 7, line.name});
-    ++series;
-  }
-  if (series == 0) return {};
-  constexpr double kLegendRowCm = 0.45;
-  margins.top_cm += kLegendRowCm * static_cast<double>((series - 1) / 3);
-  const analysis::Legend legend(sheet, margins.left_cm, entries);
-  analysis::Figure figure = analysis::figure_on(sheet, words.id, words.alt);
-  figure.caption = words.caption;
-  figure.script =
-      data + analysis::sheet_head(sheet) + analysis::panel_at(sheet, margins) +
-      fmt::format("set xlabel '{}' offset 0, 0.4\nset ylabel '{}'\n", words.x, words.y) +
-      legend.script() + more + plot + "\n";
-  analysis::Picture picture{words.id, words.caption, words.alt, ""};
+  if (figure.panels.empty()) return;
+  figure.across = 3;
+  analysis::Picture picture{figure.id, figure.caption, figure.alt, ""};
   try {
     picture.svg = analysis::drawn(figure, analysis::FigureFormat::svg);
   } catch (const Error& error) {
     spdlog::warn("{}", error.what());
   }
-  return picture;
-}
-
-void add_lines(analysis::Section& section, analysis::Picture picture) {
-  if (!picture.id.empty()) section.blocks.emplace_back(std::move(picture));
+  section.blocks.emplace_back(std::move(picture));
 }
 
 analysis::Section results_of(const device::Certificate& certificate) {
@@ -167,19 +119,22 @@ analysis::Section results_of(const device::Certificate& certificate) {
 
 analysis::Section curves_of(const device::Acceptance& acceptance) {
   analysis::Section section{"curves", "Curves", {}};
-  add_lines(section, lines_picture({"friction",
-                                    "Slow strokes: commanded force without the load over the "
-                                    "handle's place. Half the height of a loop is friction.",
-                                    "Commanded force over place, a loop for each axis.",
-                                    "place, mm", "force, N"},
-                                   lines_of(acceptance.curves, &device::AxisCurves::loop)));
-  add_lines(section,
-            lines_picture({"delay",
-                           "How sharply the path bends at a time after the push turns "
-                           "round. The highest point is the delay, where soft arms "
-                           "keep the fit of mass and damping from telling it.",
-                           "Bend over delay, a line for each axis.", "delay, ms", "bend, mm"},
-                          lines_of(acceptance.curves, &device::AxisCurves::by_delay)));
+  analysis::Figure friction = analysis::figure_named("friction", "", false, analysis::kPage_cm);
+  friction.caption =
+      "Slow strokes: commanded force without the load over the handle's place. Half the height of "
+      "a "
+      "loop is friction.";
+  friction.alt = "Commanded force over place, a loop for each axis.";
+  add_curves(section, std::move(friction), {.label = "place, mm"}, {.label = "force, N"},
+             acceptance.curves, &device::AxisCurves::loop);
+  analysis::Figure delay = analysis::figure_named("delay", "", false, analysis::kPage_cm);
+  delay.caption =
+      "Bend of the path by time after the push reverses. The peak is the delay, for soft arms "
+      "whose "
+      "delay cannot be fitted with mass and damping.";
+  delay.alt = "Bend over delay, a line for each axis.";
+  add_curves(section, std::move(delay), {.label = "delay, ms"}, {.label = "bend, mm"},
+             acceptance.curves, &device::AxisCurves::by_delay);
   return section;
 }
 

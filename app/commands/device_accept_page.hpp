@@ -1,4 +1,4 @@
-/// \file What shows a device's certificate: a page with verdict, numbers and plots, and a text.
+/// \file A device's certificate as a page with verdict, numbers and plots, and as text.
 #pragma once
 
 #include "device/acceptance/acceptance.hpp"
@@ -8,8 +8,8 @@
 
 namespace touchtrial::app {
 
-/// \return one HTML page without references to other files. Without gnuplot its plots are missing,
-///   with a warning.
+/// \return one HTML page without references to other files. Without gnuplot it has no plots, and a
+///   warning is printed.
 [[nodiscard]] std::string acceptance_page(const device::Acceptance& acceptance);
 
 /// \return verdict and numbers

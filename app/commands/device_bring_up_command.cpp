@@ -1,5 +1,5 @@
-// device bring-up: half an hour with a device that the project does not have, in one file to send
-// back.
+// device bring-up: records half an hour with a device that the project does not have, in one file
+// to send in.
 #include "app/commands/acceptance_terminal.hpp"
 #include "app/commands/commands.hpp"
 #include "app/terminal/console.hpp"
@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 constexpr int kEndedEarly = 1;
 
 struct BringUpArguments {
-  std::string program;  ///< what `--version` prints
+  std::string program;  ///< as printed by `--version`
   std::string driver;
   fs::path settings;
   fs::path out;
@@ -36,8 +36,8 @@ struct BringUpArguments {
   bool json = false;
 };
 
-/// The lab's own limits hold, but its corrections and the weight that it lets a Falcon carry do
-/// not: the readings are to be the driver's own, and no force may come on top of the small ones.
+/// The lab's limits apply, but not its corrections and the weight compensation of a Falcon:
+/// readings must be the driver's own, and no force may be added to the small ones.
 device::DeviceSettings settings_of(const BringUpArguments& arguments) {
   device::DeviceSettings settings = device::device_settings_for(arguments.settings);
   settings.falcon.gravity_bias_n = {};
@@ -130,14 +130,14 @@ void add_device_bring_up_command(CLI::App& device, Action& action) {
   for (const CLI::App* app = &device; app != nullptr; app = app->get_parent()) {
     arguments->program = app->version();
   }
-  CLI::App* command = device.add_subcommand(
-      "bring-up",
-      "Half an hour with a device that nobody here has: small forces, questions, and one file "
-      "without names to send back");
+  CLI::App* command =
+      device.add_subcommand("bring-up",
+                            "Half an hour with a device that the project lacks: small forces, "
+                            "questions, and one file without names to send in");
   add_driver_argument(*command, "NAME", arguments->driver);
   add_settings_option(*command, arguments->settings);
   command->add_option("--out", arguments->out, "File to write (default: NAME-bring-up.json)");
-  command->add_flag("--facts", arguments->facts, "Print what nobody has verified of the devices");
+  command->add_flag("--facts", arguments->facts, "Print what is still unverified for the devices");
   add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return bring_up_device(*arguments); }; });
 }

@@ -1,5 +1,5 @@
-// device: force-feedback devices; device list: what is plugged in; device initialise: lets a device
-// find its axes; device models: what the program can rehearse on.
+// device: force-feedback devices; device list: connected devices; device initialise: homes a
+// device; device models: models for rehearsals.
 #include "analysis/report/text_table.hpp"
 #include "app/commands/commands.hpp"
 #include "app/terminal/console.hpp"
@@ -50,14 +50,14 @@ std::string line_of(const Row& row, const std::array<std::size_t, kColumns>& wid
   return line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
 }
 
-/// \return what a driver serves by another name than its own, "touch, omni"; empty if nothing
+/// \return further names that a driver serves, "touch, omni"; may be empty
 std::string served_by(const std::string& driver) {
   const auto names = device::device_driver(driver).names();
   return fmt::format("{}", fmt::join(names.begin() + 1, names.end(), ", "));
 }
 
-/// One row for each device; what it lacks, what a study must know, and below the first row of a
-/// driver the products that it serves, are in lines below it.
+/// One row for each device. Lines below it state what it lacks, what a study must consider, and,
+/// below a driver's first row, the products that it serves.
 std::string listing_text(const std::vector<device::DeviceListing>& listings) {
   const Row header = {"driver", "state", "model", "serial", "where"};
   std::array<std::size_t, kColumns> widths{};
@@ -117,7 +117,7 @@ int list(const ListArguments& arguments) {
 void add_device_list_command(CLI::App& device, Action& action) {
   auto arguments = std::make_shared<ListArguments>();
   CLI::App* command = device.add_subcommand(
-      "list", "List what is plugged in, the driver of each device, and what it still needs");
+      "list", "List connected devices, their drivers, and what each still needs");
   add_settings_option(*command, arguments->settings);
   add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return list(*arguments); }; });
@@ -148,15 +148,14 @@ int initialise(const InitialiseArguments& arguments) {
 void add_device_initialise_command(CLI::App& device, Action& action) {
   auto arguments = std::make_shared<InitialiseArguments>();
   CLI::App* command = device.add_subcommand(
-      "initialise", "Let a device find its axes by moving itself; asks before it moves");
+      "initialise", "Home a device, which moves by itself; asks before it moves");
   add_driver_argument(*command, "NAME", arguments->driver)->required();
   add_settings_option(*command, arguments->settings);
   add_yes_flag(*command, arguments->yes);
   command->callback([=, &action] { action = [=] { return initialise(*arguments); }; });
 }
 
-/// A model's number: "-" where the stage is left out or the number is not known, "?" behind a
-/// guess.
+/// A model's number: "-" if its stage is omitted or the number is unknown, "?" after a guess.
 std::string number_of(const device::DeviceModel& model, const std::string& key, double number) {
   if (number == 0.0) return "-";
   const auto known = model.provenance.find(key);
@@ -194,8 +193,8 @@ std::string models_json() {
 
 void add_device_models_command(CLI::App& device, Action& action) {
   auto json = std::make_shared<bool>(false);
-  CLI::App* command = device.add_subcommand(
-      "models", "List the device models that the program ships, which rehearsals run on");
+  CLI::App* command =
+      device.add_subcommand("models", "List the built-in device models for rehearsals");
   add_json_flag(*command, *json);
   command->callback([=, &action] {
     action = [=] {

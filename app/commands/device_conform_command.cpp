@@ -1,4 +1,4 @@
-// device conform: checks a driver, above all a plug-in of a lab's own.
+// device conform: checks a driver, mainly a laboratory's own plug-in.
 #include "analysis/report/text_table.hpp"
 #include "app/commands/commands.hpp"
 #include "app/commands/device_words.hpp"
@@ -60,7 +60,7 @@ int count_of(const std::vector<device::ConformanceCheck>& checks,
   return static_cast<int>(std::ranges::count(checks, outcome, &device::ConformanceCheck::outcome));
 }
 
-/// One line for each check; those that failed say below what a driver has to do.
+/// One line for each check; below failed ones, what a driver must do.
 std::string conformance_text(const std::string& target,
                              const std::vector<device::ConformanceCheck>& checks) {
   std::string text = target + "\n";
@@ -131,7 +131,7 @@ void expect_checkable(const ConformArguments& arguments, bool is_plugin) {
   }
 }
 
-/// On the thread that a servo has.
+/// Runs the checks on a real-time thread, as the servo does.
 std::vector<device::ConformanceCheck> checks_of(const ConformArguments& arguments,
                                                 const device::DeviceSettings& settings,
                                                 bool is_plugin, device::SchedulingPolicy policy) {
@@ -139,7 +139,7 @@ std::vector<device::ConformanceCheck> checks_of(const ConformArguments& argument
   device::PacedClock clock(device::PacedClock::usual_spin(policy));
   if (is_plugin) return device::check_plugin_conformance(settings.plugin, clock, options);
   device::ConformanceSubject subject;
-  // The driver itself, without the lab's scales.
+  // Opens the driver itself, without the lab's scales.
   subject.open = [&] { return device::device_driver(arguments.target).open(settings); };
   return device::check_conformance(subject, clock, options);
 }
@@ -176,18 +176,18 @@ int conform(ConformArguments arguments) {
 void add_device_conform_command(CLI::App& device, Action& action) {
   auto arguments = std::make_shared<ConformArguments>();
   CLI::App* command = device.add_subcommand(
-      "conform", "Check a driver, such as a plug-in of your own: readings, zero forces, time");
+      "conform", "Check a driver, such as your own plug-in: readings, zero forces, timing");
   command
       ->add_option("DRIVER", arguments->target,
-                   "A plug-in's file (FILE.so, or a path), or a device or its driver as touchtrial "
-                   "device list names it")
+                   "A plug-in file (FILE.so, or a path), or a device or driver as listed by "
+                   "touchtrial device list")
       ->required();
   add_settings_option(*command, arguments->settings);
-  command->add_option("--seconds", arguments->seconds, "Duration of watching readings, s")
+  command->add_option("--seconds", arguments->seconds, "How long to observe readings, s")
       ->check(finite_range(0.2, 600.0))
       ->capture_default_str();
   command->add_flag("--force", arguments->force,
-                    "Also push with 0.3 N along each axis, to see that forces arrive and end");
+                    "Also push with 0.3 N along each axis, to check that forces start and stop");
   add_yes_flag(*command, arguments->yes);
   add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return conform(*arguments); }; });

@@ -1,4 +1,4 @@
-// device fit: whether a study's plane and its stiffness fit a device, even if none is at hand.
+// device fit: whether a study's plane and stiffness fit a device, which need not be connected.
 #include "app/commands/commands.hpp"
 #include "app/commands/device_words.hpp"
 #include "app/commands/study_inputs.hpp"
@@ -33,23 +33,23 @@ namespace fs = std::filesystem;
 
 /// The origin of a workspace.
 enum class WorkspaceSource {
-  maker,   ///< the maker's statement about all these devices; none was read
+  maker,   ///< the manufacturer's data for all these devices; none was read
   model,   ///< a device model; none was read
-  device,  ///< the device that is plugged in
+  device,  ///< the connected device
   none,    ///< the device reports positions on the plane, whatever its size
 };
 
 struct StudyFit {
   std::string study;
-  std::string device;                ///< as it was named
-  std::string driver;                ///< empty: of a model that no driver serves
-  std::optional<std::string> model;  ///< that stood for the device
+  std::string device;                ///< as named by the user
+  std::string driver;                ///< empty: a model without a driver
+  std::optional<std::string> model;  ///< used in place of the device
   PlaneGeometry plane;
   std::optional<device::Workspace> workspace;
   WorkspaceSource source = WorkspaceSource::none;
   device::WorkspaceFit fit;
   device::RenderedStiffness rendered;
-  /// Of the device that was read, or its model; if neither was, the scale alone.
+  /// Of the device or its model; without both, only the scale.
   device::DeviceInfo limits;
 };
 
@@ -110,7 +110,7 @@ ordered_json workspace_json(const StudyFit& fit) {
           {"greatest_mm", vec_json(fit.workspace->greatest_mm)}};
 }
 
-/// The part of the plane that all pictures of a study cover, as a session presents it.
+/// The part of the plane covered by all pictures of a study, as in a session.
 /// \throws FileError if a picture cannot be read
 PlaneGeometry common_plane_of(const study::Study& study) {
   PlaneGeometry plane{study.rendering.pitch_mm, 0, 0};
@@ -125,12 +125,13 @@ PlaneGeometry common_plane_of(const study::Study& study) {
   return plane;
 }
 
-/// A device by the name that a user or the study gives it.
+/// A device by the name from the user or the study.
 struct NamedDevice {
   std::string name;
-  const device::DeviceDriver* driver = nullptr;  ///< null: none serves it
-  std::optional<device::DeviceModel> model;      ///< that stands for the device if none is read
-  bool is_read = true;                           ///< if its driver needs that, and it can be opened
+  const device::DeviceDriver* driver = nullptr;  ///< null: it has no driver
+  std::optional<device::DeviceModel> model;      ///< used if no device is read
+  bool is_read =
+      true;  ///< whether its driver requires reading the device, and the device can be opened
 };
 
 /// \throws UsageError as device::model_of_device
@@ -160,7 +161,7 @@ NamedDevice device_to_fit(const std::string& given, const study::Study& study) {
   return {study.device, device::driver_of_model(model.name), model, false};
 }
 
-/// What opening the device would tell, as far as the model has it.
+/// Fills in from the model what opening the device would give.
 void fill_from_model(const device::DeviceModel& model, StudyFit& fit) {
   fit.model = model.name;
   fit.limits.max_stiffness_n_per_mm = model.max_stiffness_n_per_mm;
@@ -170,7 +171,7 @@ void fill_from_model(const device::DeviceModel& model, StudyFit& fit) {
 }
 
 /// Fills in the workspace and the limits of the device.
-/// \throws DeviceError if only the device could tell and it cannot be opened
+/// \throws DeviceError if the values can only be read from the device and it cannot be opened
 void fill_device(const NamedDevice& named, const device::DeviceSettings& settings, StudyFit& fit) {
   if (named.driver == nullptr || !named.is_read) return fill_from_model(*named.model, fit);
   if (named.driver->workspace_is_known) {
@@ -189,7 +190,7 @@ void fill_device(const NamedDevice& named, const device::DeviceSettings& setting
   }
 }
 
-/// \param orientation  nothing: as the settings say
+/// \param orientation  nothing: that of the settings
 /// \throws DeviceError as fill_device
 /// \throws FileError as common_plane_of
 StudyFit fit_of(const study::Study& study, const NamedDevice& named,
@@ -200,6 +201,7 @@ StudyFit fit_of(const study::Study& study, const NamedDevice& named,
   fit.device = named.name;
   fit.driver = named.driver != nullptr ? named.driver->name : "";
   const device::DeviceUse use = settings.use_of(fit.driver);
+  fit.limits.name = named.name;
   fit.limits.scale = use.scale;
   fill_device(named, settings, fit);
   fit.rendered = rendered_stiffness(study.rendering);
@@ -208,7 +210,7 @@ StudyFit fit_of(const study::Study& study, const NamedDevice& named,
   return fit;
 }
 
-/// Empty unless the device says what it renders.
+/// Empty unless the device states its stiffness limit.
 std::string stiffness_text(const StudyFit& fit) {
   const std::string limits = device::rendering_limits_text(fit.limits);
   if (limits.empty()) return "";
@@ -278,13 +280,13 @@ struct DeviceFitArguments {
   bool json = false;
 };
 
-/// \throws DeviceError if no session would take the certificate, as far as can be said without the
+/// \throws DeviceError if sessions would reject the certificate, as far as is known without the
 ///   device, or the study's wall is as stiff as one that oscillated
 void check_with_certificate(const fs::path& file, const study::Study& study, const StudyFit& fit) {
   const device::Certificate certificate = device::read_certificate(file).certificate;
   device::DeviceInfo info = fit.limits;
   if (fit.source != WorkspaceSource::device) {
-    // No device was read, so that it can be any of this driver's.
+    // No device was read, so any device of this driver is possible.
     info.name = fit.driver;
     info.model = certificate.model;
     info.serial = certificate.serial;
@@ -323,16 +325,16 @@ void add_device_fit_command(CLI::App& device, Action& action) {
       {"horizontal", device::PlaneOrientation::horizontal},
       {"vertical", device::PlaneOrientation::vertical}};
   auto arguments = std::make_shared<DeviceFitArguments>();
-  CLI::App* command = device.add_subcommand(
-      "fit",
-      "Check whether a study's plane fits a device's workspace, and its stiffness the device's "
-      "limits; if the plane does not, give the crop that does");
+  CLI::App* command =
+      device.add_subcommand("fit",
+                            "Check whether a study's plane and stiffness fit a device's workspace "
+                            "and limits; if the plane is too large, print the crop that fits");
   add_study_argument(*command, arguments->study);
   command
       ->add_option("--device", arguments->device,
                    "Driver, product or device model, as touchtrial device list and device models "
-                   "name them, or a model's file (default: the study's). A product that cannot be "
-                   "opened is that of its model")
+                   "name them, or a model's file (default: the study's). For a product that cannot "
+                   "be opened, its model is used")
       ->type_name("NAME");
   command
       ->add_option_function<std::string>(
@@ -343,7 +345,7 @@ void add_device_fit_command(CLI::App& device, Action& action) {
       ->check(CLI::IsMember({"horizontal", "vertical"}));
   add_settings_option(*command, arguments->settings);
   command->add_option("--certificate", arguments->certificate,
-                      "Certificate whose stiffest wall the study must keep to (default: "
+                      "Certificate whose stiffest wall limits the study (default: "
                       "NAME-certificate.json, if it is there)");
   add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return fit(*arguments); }; });

@@ -1,5 +1,5 @@
-// device test: live readings of a device while a person feels a plain wall, and then a texture; or
-// without any force.
+// device test: live readings of a device while a person feels a plain wall, then a texture; or
+// without force.
 #include "app/commands/commands.hpp"
 #include "app/commands/device_words.hpp"
 #include "app/commands/test_texture.hpp"
@@ -46,7 +46,7 @@ struct DeviceTest {
   fs::path fault_record;                   ///< empty unless a fault was recorded
 };
 
-/// Ticks as time at the nominal rate.
+/// Converts ticks to time at the nominal rate.
 double seconds_of(std::int64_t ticks, const device::ServoReport& report) {
   return report.rate_hz > 0.0 ? static_cast<double>(ticks) / report.rate_hz : 0.0;
 }
@@ -83,10 +83,10 @@ std::string run_text(const device::ServoReport& run, bool quit) {
       is_fault ? ", " + fault_names(run) : "");
 }
 
-/// For devices that report it.
+/// Only for devices that report it.
 std::string delivered_text(const device::ServoReport& run) {
   if (run.delivered_share == 0.0) return "";
-  return fmt::format("device:  says that it exerted {:.0f} % of the commanded force\n",
+  return fmt::format("device:  reports {:.0f} % of the commanded force\n",
                      100.0 * run.delivered_share);
 }
 
@@ -165,7 +165,7 @@ constexpr int kPlacedSidePx = 200;
 /// 100 mm, for devices whose plane may have any size.
 constexpr int kFreeSidePx = 500;
 constexpr double kTestS = 30.0;
-/// Longer than anybody watches.
+/// Longer than anybody would watch.
 constexpr double kWatchS = 7.0 * 86'400.0;
 
 struct TestArguments {
@@ -179,7 +179,7 @@ struct TestArguments {
   fs::path fault_record;
 };
 
-/// The device for the servo: placed, if it has a frame of its own and is to be felt.
+/// The device for the servo: placed, if it has its own frame and force is wanted.
 class DeviceForTest {
  public:
   DeviceForTest(const TestArguments& arguments, const device::DeviceSettings& settings)
@@ -229,7 +229,7 @@ void watch(const TestArguments& arguments, device::HapticDevice& device, Attende
   if (test.run) test.phases.push_back({"watch", counted.first()});
 }
 
-/// One run: the wall, and then the texture unless only the wall is wanted.
+/// One run: the wall, then the texture unless only the wall is requested.
 void feel(const TestArguments& arguments, const TestTexture& shown, AttendedRun& run,
           DeviceTest& test) {
   const engine::RenderingModel wall = shown.wall();
@@ -252,7 +252,7 @@ void feel(const TestArguments& arguments, const TestTexture& shown, AttendedRun&
   if (sequence.second().ticks > 0) test.phases.push_back({"texture", sequence.second()});
 }
 
-/// How the program ends.
+/// The result of the command.
 /// \return the exit code
 /// \throws DeviceError if the run ended with a fault
 int outcome_of(const DeviceTest& test, const AttendedRun& run) {
@@ -306,7 +306,7 @@ void add_device_test_command(CLI::App& device, Action& action) {
                    "Duration, s (default: 30 for wall and texture together; --watch: until q)")
       ->check(finite_range(0.1, 3600.0));
   CLI::Option* watch =
-      command->add_flag("--watch", arguments->watch, "Readings alone, in the device's own frame");
+      command->add_flag("--watch", arguments->watch, "Readings only, in the device's own frame");
   add_rate_option(*command, arguments->rate_hz);
   command->add_flag("--wall-only", arguments->wall_only, "No texture")->excludes(watch);
   add_force_flag(*command);

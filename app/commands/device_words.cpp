@@ -28,7 +28,7 @@ constexpr auto kSafetyFaults = std::to_array<Named<SafetyFault>>(
      {"the device lost its homing while force was on", SafetyFault::not_ready},
      {"the stylus moved faster than a hand can", SafetyFault::overspeed},
      {"the device sends no new positions; check its cable", SafetyFault::stale_sample},
-     {"the device's position stood still while somebody pressed; its encoders may have stopped, so "
+     {"the device's position did not change under pressure; its encoders may have stopped, so "
       "switch it off and on and calibrate it",
       SafetyFault::frozen_encoders},
      {"the servo stalled; close other programs", SafetyFault::stalled}});

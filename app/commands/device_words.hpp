@@ -1,4 +1,4 @@
-/// \file Messages about a device and its servo, for the person beside it.
+/// \file Messages about a device and its servo for its user.
 #pragma once
 
 #include "device/model/workspace_fit.hpp"
@@ -9,13 +9,13 @@
 
 namespace touchtrial::app {
 
-/// What went wrong, and the remedy: "the device no longer answers; check its cable and power".
+/// The fault, and the remedy: "the device no longer answers; check its cable and power".
 [[nodiscard]] std::string fault_in_words(const device::ServoReport& report);
 
-/// What the person has to do before force may be sent; empty if nothing.
+/// What the user must do before force may be sent; empty if nothing.
 [[nodiscard]] std::string readiness_in_words(device::DeviceReadiness readiness);
 
-/// \return what a study renders, for device::check_stiffness
+/// \return the stiffness of a study's rendering, for device::check_stiffness
 [[nodiscard]] device::RenderedStiffness rendered_stiffness(
     const engine::RenderingOptions& rendering);
 

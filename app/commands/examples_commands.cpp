@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The studies themselves name no device, and would be simulated on an ideal one.
+/// The studies name no device, so they would be simulated on an ideal one.
 constexpr const char* kDemoDevice = "touch";
 
 struct ExamplesArguments {
@@ -29,7 +29,7 @@ struct DemoArguments {
 
 int write_examples(const ExamplesArguments& arguments) {
   const fs::path& given = arguments.folder;
-  // A shell would take "-x" for an option.
+  // A shell command would parse "-x" as an option.
   const fs::path folder = given.string().starts_with('-') ? "." / given : given;
   copy_examples(folder);
   print(fmt::format(
@@ -40,7 +40,7 @@ int write_examples(const ExamplesArguments& arguments) {
   return 0;
 }
 
-/// Shows a command as one would type it, and runs it.
+/// Prints a command as typed, and runs it.
 /// \throws what the command throws
 int show_and_run(const std::vector<std::string>& words) {
   std::string line = "\n$ touchtrial";
@@ -66,7 +66,7 @@ int run_demo(const DemoArguments& arguments) {
     }
   }
   print(fmt::format(
-      "\nDatabases and reports (report.html) are in {}; go on with\n\n  touchtrial export {} "
+      "\nDatabases and reports (report.html) are in {}; continue with\n\n  touchtrial export {} "
       "--format csv --out {}\n",
       arguments.folder.string(), shell_word((arguments.folder / "classification.db").string()),
       shell_word((arguments.folder / "csv").string())));
@@ -78,7 +78,7 @@ int run_demo(const DemoArguments& arguments) {
 void add_examples_commands(CLI::App& program, Action& action) {
   const auto [examples, copied] = add_command(
       program, action, "examples",
-      "Copy the ready studies, with their pictures and subject files, into a folder of your own",
+      "Copy the ready studies, with their pictures and subject files, into a new folder",
       write_examples);
   examples.add_option("FOLDER", copied.folder, "New folder")->capture_default_str();
 

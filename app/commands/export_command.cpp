@@ -38,7 +38,7 @@ struct ExportArguments {
   analysis::DatasetOptions dataset;
 };
 
-/// Refuses options that the format would silently ignore.
+/// Refuses options that do not apply to the format.
 void require_fitting(const ExportArguments& arguments) {
   const analysis::DatasetOptions& dataset = arguments.dataset;
   const bool for_bids =
@@ -60,7 +60,7 @@ void require_fitting(const ExportArguments& arguments) {
 }
 
 /// Refuses an export of a study that is not unblinded.
-/// \param what  why the export reveals stimuli or answers
+/// \param what  reason why the export reveals stimuli or answers
 void require_outcomes(const record::StudyStore& store,
                       const std::optional<analysis::Outcomes>& outcomes, const std::string& what) {
   if (outcomes) return;
@@ -68,7 +68,7 @@ void require_outcomes(const record::StudyStore& store,
                    "; run `touchtrial close` and `touchtrial unblind`");
 }
 
-/// Personal data that this user may not read keep nobody from exporting the rest.
+/// Unreadable personal data do not prevent exporting the rest.
 std::vector<record::PersonalRecord> consents_if_readable(const fs::path& database) {
   try {
     return consents_beside(database);
@@ -94,7 +94,8 @@ std::vector<fs::path> write_files(const ExportArguments& arguments, const record
     require_outcomes(store, outcomes, "a model contains outcomes");
     std::vector<fs::path> files =
         analysis::analysis_of(outcomes->design).export_model(store, *outcomes, arguments.folder);
-    for (fs::path& file : analysis::export_said(store, *outcomes, arguments.folder, consents)) {
+    for (fs::path& file :
+         analysis::export_typed_text(store, *outcomes, arguments.folder, consents)) {
       files.push_back(std::move(file));
     }
     return files;
@@ -114,7 +115,7 @@ std::vector<fs::path> write_files(const ExportArguments& arguments, const record
   return analysis::export_bids(study, options, arguments.folder);
 }
 
-/// Outcomes take the key, and a look at this participant that is recorded.
+/// Outcomes require the key, and a recorded look at this participant.
 std::vector<fs::path> export_one(const ExportArguments& arguments,
                                  const record::StudyStore& store) {
   std::optional<study::StudyKey> key;
@@ -175,8 +176,8 @@ void add_dataset_options(CLI::App& command, ExportArguments& arguments) {
   command.add_flag("--with-database", arguments.with_database,
                    "bids: a copy of the database in sourcedata/, never its key");
   command.add_flag("--with-texts", arguments.with_texts,
-                   "bids, psych-ds: what people typed (answers in words, ages, notes, reasons), "
-                   "which may name somebody");
+                   "bids, psych-ds: typed text (answers in words, ages, notes, reasons), which may "
+                   "contain names");
   command.add_option("--author", dataset.authors, "bids, psych-ds: an author; may be repeated");
   command.add_option("--license", dataset.license, "bids, psych-ds: license, for instance CC0");
   command.add_option("--institution", dataset.institution, "bids: where the data were collected");
@@ -202,14 +203,14 @@ void add_export_command(CLI::App& program, Action& action) {
       "--participant`");
   command
       .add_flag("--safety", arguments.safety,
-                "Stops, faults, largest forces, reasons and deviations of everybody, as CSV, never "
-                "an outcome; with --key also what was typed")
+                "Stops, faults, largest forces, reasons and deviations of everybody, as CSV, "
+                "without outcomes; with --key also typed text")
       ->excludes(participant)
       ->excludes(format);
   participant->excludes(format);
-  command.add_flag("--for-excel", arguments.for_excel,
-                   "csv: begin each file with a byte order mark, without which Excel takes letters "
-                   "beyond ASCII for others");
+  command.add_flag(
+      "--for-excel", arguments.for_excel,
+      "csv: begin each file with a byte order mark, which Excel needs for letters beyond ASCII");
   add_dataset_options(command, arguments);
 }
 

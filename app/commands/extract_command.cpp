@@ -1,4 +1,4 @@
-// extract: the texture of one image, with every stage on request.
+// extract: the texture of one image, optionally with every stage.
 #include "app/commands/commands.hpp"
 #include "app/commands/given_pictures.hpp"
 #include "app/commands/method_arguments.hpp"
@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The neighbourhood of the forces that the engine computes along with a texture.
+/// The neighbourhood of the forces that the engine computes together with a texture.
 constexpr int kForceNeighbourhood = 3;
 
 struct ExtractArguments {
@@ -43,7 +43,7 @@ struct ExtractArguments {
 
 /// Writes a plane and frees it: the planes of a large picture fill most of the memory.
 template <typename Real>
-void dump_if_made(const fs::path& folder, const std::string& name, Plane<Real>& plane) {
+void dump_if_computed(const fs::path& folder, const std::string& name, Plane<Real>& plane) {
   if (!plane.empty()) write_npy(folder / (name + ".npy"), plane);
   plane = {};
 }
@@ -61,7 +61,7 @@ void dump_force(const fs::path& folder, const engine::ForceField<Real>& force) {
                   {force.x.height(), force.x.width(), 2});
 }
 
-/// Before the work: the places of all planes that a method may have.
+/// Checks the paths of all planes that a method may produce, before the work.
 void require_dump_places(const fs::path& folder) {
   for (const char* name :
        {"image", "subband_LL", "subband_LH", "subband_HL", "subband_HH", "csgv", "order",
@@ -74,15 +74,15 @@ void require_dump_places(const fs::path& folder) {
 template <typename Real>
 void dump_all(const fs::path& folder, GreyImage& image, engine::Extraction<Real>& extraction) {
   make_folder(folder);
-  dump_if_made(folder, "image", image);
-  dump_if_made(folder, "subband_LL", extraction.sub_band_ll);
-  dump_if_made(folder, "subband_LH", extraction.sub_band_lh);
-  dump_if_made(folder, "subband_HL", extraction.sub_band_hl);
-  dump_if_made(folder, "subband_HH", extraction.sub_band_hh);
-  dump_if_made(folder, "csgv", extraction.csgv);
-  dump_if_made(folder, "order", extraction.order);
-  dump_if_made(folder, "enhanced", extraction.enhanced);
-  dump_if_made(folder, "cartoon", extraction.cartoon);
+  dump_if_computed(folder, "image", image);
+  dump_if_computed(folder, "subband_LL", extraction.sub_band_ll);
+  dump_if_computed(folder, "subband_LH", extraction.sub_band_lh);
+  dump_if_computed(folder, "subband_HL", extraction.sub_band_hl);
+  dump_if_computed(folder, "subband_HH", extraction.sub_band_hh);
+  dump_if_computed(folder, "csgv", extraction.csgv);
+  dump_if_computed(folder, "order", extraction.order);
+  dump_if_computed(folder, "enhanced", extraction.enhanced);
+  dump_if_computed(folder, "cartoon", extraction.cartoon);
   write_npy(folder / "texture.npy", extraction.texture);
   write_npy(folder / "texture_u8.npy", extraction.picture);
   dump_force(folder, extraction.force);
@@ -139,7 +139,7 @@ engine::WantedPlanes wanted_planes(const ExtractArguments& arguments) {
   return wanted;
 }
 
-/// Adds what the engine does not compute along with a texture: other mappings and neighbourhoods.
+/// Adds what the engine does not compute with a texture: other mappings and neighbourhoods.
 template <typename Real>
 void complete(const ExtractArguments& arguments, engine::Extraction<Real>& extraction) {
   if (extraction.picture.empty()) {
@@ -170,7 +170,7 @@ int extract_with(const ExtractArguments& arguments, const engine::ExtractionOpti
   return 0;
 }
 
-/// Refuses an output that is not a PNG, that is the input, or that is in another's place.
+/// Refuses an output that is not a PNG, is the input, or would overwrite a foreign file.
 void check_output(const fs::path& image, const fs::path& output, const std::string& option) {
   if (output.empty()) return;
   std::error_code ignored;

@@ -89,7 +89,7 @@ bool same_file(const fs::path& one, const fs::path& other) {
   return !error && whole == fs::weakly_canonical(other, error);
 }
 
-/// Refuses an output that would replace an input, or what another wrote.
+/// Refuses an output that would replace an input or a foreign file.
 void refuse_to_replace(const FitArguments& arguments) {
   if (arguments.out.empty()) return;
   const std::string place = "fit: -o " + one_line(arguments.out.string());
@@ -106,14 +106,14 @@ void refuse_to_replace(const FitArguments& arguments) {
   require_output_place(arguments.out);
 }
 
-/// Prints the report first: a failure to write the file must not lose it.
+/// Prints the report first, so that a failed write does not lose it.
 void finish(const FitArguments& arguments, const simulation::SubjectModel& fitted,
             const std::string& report) {
   print(report);
   if (!arguments.out.empty()) write_output(arguments.out, simulation::subject_model_json(fitted));
 }
 
-/// Shows a share of the work on a progress bar.
+/// Shows the progress of one part of the work on the bar.
 planning::FitProgress shares(const std::function<void(int, int)>& bar) {
   constexpr int kWhole = 100;
   return [bar](double share) { bar(static_cast<int>(share * kWhole), kWhole); };

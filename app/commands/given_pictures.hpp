@@ -1,4 +1,4 @@
-/// \file Pictures that the command line names.
+/// \file Pictures named on the command line.
 #pragma once
 
 #include "engine/image_file.hpp"
@@ -15,13 +15,13 @@ namespace touchtrial::app {
 /// `--bits` and `--heights`.
 void add_sample_options(CLI::App& command, engine::SampleScale& scale);
 
-/// Reads a picture, and warns of what was lost.
+/// Reads a picture, and warns of lost information.
 /// \throws FileError as engine::read_picture
 [[nodiscard]] GreyImage read_given_picture(const std::filesystem::path& path,
                                            const engine::SampleScale& scale = {});
 
-/// What `read` returns, which reads photographs. Prints all faults before it throws, unless there
-/// is one, which is the error's own line.
+/// Calls `read`, which reads photographs, and returns its result. Several faults are all printed
+/// before it throws; a single one is the error's own line.
 template <typename Read>
 auto naming_faults(const Read& read) {
   try {

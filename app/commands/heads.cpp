@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is missing: each session once, and the file's chain, by the head file that knows most.
+/// The losses, each session and the file's chain once, by the most complete head file.
 std::vector<record::Loss> losses_of(const record::StudyStore& store,
                                     std::vector<record::HeadReading> readings) {
   std::ranges::stable_sort(
@@ -48,8 +48,7 @@ std::vector<record::Loss> losses_of(const record::StudyStore& store,
   return found;
 }
 
-/// What a database is held against: the head files that it has on record, and the one in a folder
-/// that is named anew.
+/// The head files to compare a database with: those on record, and the one in a newly named folder.
 std::vector<record::KnownHead> heads_of(const record::StudyStore& store, const fs::path& database,
                                         const HeadOptions& options) {
   std::vector<record::KnownHead> heads = record::known_heads(store, database);
@@ -70,8 +69,8 @@ std::vector<record::HeadReading> readings_of(const std::vector<record::KnownHead
   return readings;
 }
 
-/// Head files that are gone. The one beside the database is made anew from another one, if whoever
-/// records names that one's folder.
+/// Adds missing head files. The one beside the database is recreated from another one whose folder
+/// is named.
 void add_gone(std::vector<record::Loss>& missing, const std::vector<record::KnownHead>& heads,
               const fs::path& own, const HeadOptions& options) {
   const bool is_restored = options.folder && !readings_of(heads).empty();
@@ -82,16 +81,16 @@ void add_gone(std::vector<record::Loss>& missing, const std::vector<record::Know
         {.session = 0,
          .what = head.file == own
                      ? "its head file " + name +
-                           " is gone, so that nobody can tell what else is missing (if there is a "
+                           " is gone, so further losses cannot be detected (if there is a "
                            "second head file, name its folder with run --heads)"
                      : "its second head file " + name +
-                           " is gone, so that nobody can tell whether the first is the newest "
-                           "(bring it back, or connect its disk)"});
+                           " is gone, so it is unknown whether the first is the newest (restore "
+                           "it, or connect its disk)"});
   }
 }
 
-/// Records which head files there are. A head file that was left learns of it: it gives away a
-/// database of before.
+/// Records which head files there are. A head file that is no longer used is updated too, so that
+/// it reveals an older copy of the database.
 void record_heads(record::StudyStore& store, const std::vector<record::KnownHead>& before,
                   const record::HeadFiles& files, const Signer& signer) {
   if (store.heads_on_record() == files.also()) return;
@@ -104,7 +103,7 @@ void record_heads(record::StudyStore& store, const std::vector<record::KnownHead
       record::HeadFile(head.file).update(
           signer,
           [&](record::HeadRecord& record) {
-            record.know_file(store.file_head());
+            record.advance_file(store.file_head());
             record.also = files.also();
           },
           record::head_signers(store.commitment()));
@@ -131,7 +130,7 @@ void accept(record::StudyStore& store, const std::vector<record::Loss>& losses,
 }
 
 void warn_of_no_loss() {
-  spdlog::warn("--accept-loss: no head file knows of a loss, and none was recorded");
+  spdlog::warn("--accept-loss: no head file shows a loss, and none was recorded");
 }
 
 bool is_on_disk_of(const fs::path& file, const fs::path& database) {
@@ -161,24 +160,23 @@ void refuse_lost_database(const std::filesystem::path& database,
   const std::vector<record::HeadReading> readings = files.read();
   if (readings.empty()) return;
   throw StoreError(fmt::format(
-      "{}: is not there, but its head file {} knows it, with {} acknowledged; restore the database "
-      "and its -wal from where they are whole, or begin a new one with --accept-loss REASON, which "
+      "{}: is missing, but its head file {} records it, with {} acknowledged; restore the database "
+      "and its -wal from a complete copy, or begin a new one with --accept-loss REASON, which "
       "is recorded",
       one_line(database.string()), one_line(readings.front().file.string()),
       counted(readings.front().record.acknowledged, "answer")));
 }
 
-void keep_heads(record::StudyStore& store, const fs::path& database, const Signer& signer,
-                const HeadOptions& options, HeadUse use) {
+void set_head_writer(record::StudyStore& store, const fs::path& database, const Signer& signer,
+                     const HeadOptions& options, HeadUse use) {
   const fs::path own = record::head_path_for(database);
   std::vector<record::KnownHead> known = heads_of(store, database, options);
   const std::vector<record::HeadReading> readings = readings_of(known);
   if (use == HeadUse::if_there && readings.empty()) {
     if (!options.accept_loss.empty()) warn_of_no_loss();
     if (!store.commitment().simulated && store.stations() == 0) {
-      spdlog::warn(
-          "{}: has no head file beside it, so that nobody can tell whether it lacks something",
-          one_line(database.string()));
+      spdlog::warn("{}: has no head file beside it, so losses cannot be detected",
+                   one_line(database.string()));
     }
     return;
   }
@@ -187,8 +185,8 @@ void keep_heads(record::StudyStore& store, const fs::path& database, const Signe
   add_gone(missing, known, own, options);
   if (!missing.empty() && options.accept_loss.empty()) {
     throw StoreError(one_line(database.string()) + ": is not as it was left: " + words_on(missing) +
-                     "; restore the database and its -wal from where they are whole, or go on "
-                     "without with --accept-loss REASON, which is recorded");
+                     "; restore the database and its -wal from a complete copy, or continue with "
+                     "--accept-loss REASON, which is recorded");
   }
   if (missing.empty() && !options.accept_loss.empty()) warn_of_no_loss();
   std::string also = store.heads_on_record().value_or("");
@@ -204,7 +202,7 @@ void keep_heads(record::StudyStore& store, const fs::path& database, const Signe
     });
   }
   if (use == HeadUse::required) warn_if_on_one_disk(files, store, database);
-  store.keep_heads(
+  store.set_head_writer(
       [files, signer](const record::HeadChange& change) { files.update(signer, change); });
   if (use == HeadUse::required) record_heads(store, known, files, signer);
 }
@@ -221,21 +219,21 @@ void require_head_beside(const fs::path& database) {
   if (missing.empty()) return;
   throw VerificationError(
       one_line(database.string()) + ": is not as it was left: " + words_on(missing) +
-      "; take the database and its -wal from where they are whole, or record the loss at its "
+      "; take the database and its -wal from a complete copy, or record the loss at its "
       "station, for instance with `touchtrial note --accept-loss REASON`");
 }
 
 void make_head(const record::StudyStore& store, const fs::path& database, const Signer& signer) {
   const fs::path own = record::head_path_for(database);
   std::error_code ignored;
-  fs::remove(own, ignored);  // of a database that is gone
+  fs::remove(own, ignored);  // left over from a database that is gone
   record::HeadFile(own).update(
       signer, [&](record::HeadRecord& record) { record = record::record_of(store); });
 }
 
 std::string head_words(const record::StudyStore& store) {
   const record::HeadRecord now = record::record_of(store);
-  return fmt::format("head {}, {} acknowledged", record::spoken_head(now),
+  return fmt::format("head {}, {} acknowledged", record::head_digits(now),
                      counted(now.acknowledged, "answer"));
 }
 

@@ -1,4 +1,4 @@
-// key check: proves that the investigator's key opens what stations seal.
+// key check: checks that the investigator's key opens what stations seal.
 #include "app/commands/commands.hpp"
 #include "app/commands/study_inputs.hpp"
 #include "app/terminal/console.hpp"
@@ -43,25 +43,25 @@ std::string beginning_of(const fs::path& file) {
   return {bytes.data(), static_cast<std::size_t>(stream.gcount())};
 }
 
-/// A study file is neither protected nor called a key.
+/// A study file is neither protected nor named as a key.
 bool is_key(const fs::path& file) {
   return ending_of(file) == ".key" || beginning_of(file).starts_with("touchtrial-protected") ||
          beginning_of(file).starts_with("{\n  \"check\": ");
 }
 
-/// What was found of one station.
+/// The result for one station.
 struct StationFinding {
   std::string name;
   fs::path file;
-  std::string fault;  ///< empty if all holds
+  std::string fault;  ///< empty if none
 };
 
-/// Where everything of a study is.
+/// The files of a study.
 struct CheckedStudy {
-  study::PackPlace place;  ///< beside which stations' files are looked for
+  study::PackPlace place;  ///< stations' files are searched beside it
   fs::path key_path;
   study::StudyKey key;
-  fs::path pictures;  ///< the study file's folder; empty: the one that a station's file names
+  fs::path pictures;  ///< the study file's folder; empty: that of a station's file
 };
 
 CheckedStudy checked_study(const KeyCheckArguments& arguments) {
@@ -87,8 +87,8 @@ CheckedStudy checked_study(const KeyCheckArguments& arguments) {
   return {place, key_path, std::move(key), study.folder};
 }
 
-/// As `run` chooses it.
-/// \param named  with --pack; empty: nothing
+/// The pack, chosen as by `run`.
+/// \param named  by --pack; may be empty
 fs::path pack_of(const CheckedStudy& study, const study::StationKey& station,
                  const fs::path& named) {
   return named.empty() && is_there(station.pack_folder) ? station.pack_folder : study.place.pack;
@@ -152,8 +152,8 @@ std::vector<StationFinding> station_findings(const KeyCheckArguments& arguments,
   return findings;
 }
 
-/// Whether the key lies where `run` finds it.
-bool lies_beside_study(const CheckedStudy& study) {
+/// Whether `run` would find the key.
+bool is_beside_study(const CheckedStudy& study) {
   const fs::path beside = study::pack_place_at(study.place.pack).key;
   std::error_code error;
   return fs::equivalent(beside, study.key_path, error);
@@ -162,7 +162,7 @@ bool lies_beside_study(const CheckedStudy& study) {
 int check_key(const KeyCheckArguments& arguments) {
   const CheckedStudy study = checked_study(arguments);
   const std::vector<StationFinding> findings = station_findings(arguments, study);
-  const bool beside = lies_beside_study(study);
+  const bool beside = is_beside_study(study);
   const bool is_protected = study::is_protected(study.key_path);
   if (arguments.json) {
     nlohmann::ordered_json stations = nlohmann::ordered_json::array();
@@ -202,7 +202,7 @@ int check_key(const KeyCheckArguments& arguments) {
 void add_key_check_command(CLI::App& keys, Action& action) {
   const auto [command, arguments] = add_command(
       keys, action, "check",
-      "Prove that the key opens what stations seal, before the first participant", check_key);
+      "Check that the key opens what stations seal, before the first participant", check_key);
   command.add_option("STUDY", arguments.subject, "Study file, or its key")->required();
   auto* station = command.add_option("--station", arguments.station,
                                      "One station (default: all whose files are here)");

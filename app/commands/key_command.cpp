@@ -1,4 +1,4 @@
-// key: copy and protect. "key check" has a file of its own.
+// key: copy and protect. "key check" has its own file.
 #include "app/commands/commands.hpp"
 #include "app/terminal/console.hpp"
 #include "app/terminal/passphrases.hpp"
@@ -59,10 +59,10 @@ int protect_key(const KeyArguments& arguments) {
     print(arguments.file.string() + ": is no longer protected by a passphrase\n");
     return 0;
   }
-  // The old passphrase first: nobody should think of a new one for a file that does not open.
+  // Asks for the old passphrase first, so that no new one is asked for if the file does not open.
   static_cast<void>(study::read_secret_text(arguments.file));
   study::protect(arguments.file, new_passphrase(arguments.file, arguments.new_passphrase_files));
-  print(arguments.file.string() + ": is protected; nobody can open it without the passphrase\n");
+  print(arguments.file.string() + ": is protected; it cannot be opened without the passphrase\n");
   return 0;
 }
 
@@ -93,7 +93,7 @@ void add_protect(CLI::App& keys, Action& action) {
                   "Give a key or a station's file a passphrase, another one, or none", protect_key);
   command.add_option("FILE", arguments.file, "Key or station's file")->required();
   CLI::Option* given = add_new_passphrase_option(command, arguments);
-  command.add_flag("--remove", arguments.remove, "Take the passphrase away")->excludes(given);
+  command.add_flag("--remove", arguments.remove, "Remove the passphrase")->excludes(given);
   add_passphrase_option(command);
 }
 

@@ -33,7 +33,7 @@ MadeFolder::~MadeFolder() {
 
 void require_free(const fs::path& folder) {
   if (folder.empty()) throw UsageError("the folder's name is empty; name a new folder");
-  // "new/.." is the folder that is there, although "new" is not.
+  // "new/.." is an existing folder even if "new" does not exist.
   const fs::path place = fs::absolute(folder).lexically_normal();
   if (!is_there(place)) return;
   std::error_code unreadable;

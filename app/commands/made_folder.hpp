@@ -5,8 +5,8 @@
 
 namespace touchtrial::app {
 
-/// A folder that is made, and is gone again with what is in it, and folders above it that were made
-/// for it, unless it is kept.
+/// A created folder, removed again with its content and the parents created for it, unless `keep`
+/// is called.
 class MadeFolder {
  public:
   /// \throws as require_free; FileError if the folder cannot be made
@@ -19,13 +19,13 @@ class MadeFolder {
 
  private:
   std::filesystem::path folder_;
-  std::filesystem::path first_;  ///< the topmost that is made
-  bool had_;                     ///< it was there, and empty
+  std::filesystem::path first_;  ///< the topmost created folder
+  bool had_;                     ///< it existed, and was empty
   bool is_kept_ = false;
 };
 
-/// Whether something new can be made under this name.
-/// \throws UsageError if the name is empty, or a file's, or a folder's with something in it
+/// Checks that a folder can be created under this name.
+/// \throws UsageError if the name is empty, or of a file, or of a non-empty folder
 void require_free(const std::filesystem::path& folder);
 
 }  // namespace touchtrial::app

@@ -1,4 +1,4 @@
-// merge: makes one database from those of several stations.
+// merge: collects several stations' databases into one.
 #include "analysis/report/text_figures.hpp"
 #include "app/commands/commands.hpp"
 #include "app/commands/study_inputs.hpp"
@@ -42,7 +42,8 @@ merging::Stations stations_of(const std::vector<fs::path>& databases) {
   merging::Stations stations;
   for (const fs::path& database : databases) {
     const std::string where = database.string();
-    // What is no file name may hold a password, and goes where no message repeats it.
+    // Anything but a file name may contain a password, and is handled where messages do not repeat
+    // it.
     const bool is_on_server = where.find("://") != std::string::npos;
     if (!is_on_server) require_head_beside(database);
     merging::Stations those = is_on_server
@@ -53,9 +54,9 @@ merging::Stations stations_of(const std::vector<fs::path>& databases) {
   return stations;
 }
 
-/// Takes who consented to which version and when from beside the stations' databases: what exports
-/// have of the personal data, and nothing else. Consents that are there already stay as they are.
-/// \return how many consents the merged database has
+/// Copies versions and times of consents from the personal data beside the stations' databases,
+/// which is the part that exports use. Existing consents are unchanged.
+/// \return the number of consents of the merged database
 std::size_t merge_consents(const MergeArguments& arguments) {
   std::vector<record::PersonalRecord> consents;
   for (const fs::path& database : arguments.databases) {
@@ -80,7 +81,7 @@ std::size_t merge_consents(const MergeArguments& arguments) {
   return known.size();
 }
 
-/// The key beside one of the databases, if it is that of a simulated study with this seal.
+/// The key beside one of the databases, if it belongs to a simulated study with this seal.
 std::optional<study::StudyKey> simulated_key_beside(const std::vector<fs::path>& databases,
                                                     const Digest& seal) {
   for (const fs::path& database : databases) {
@@ -92,8 +93,8 @@ std::optional<study::StudyKey> simulated_key_beside(const std::vector<fs::path>&
   return std::nullopt;
 }
 
-/// The key to write beside a merged database of simulated participants, as `simulate` does: it
-/// follows from the study file and blinds nobody. The key of a study with people stays where it is.
+/// The key to write beside a merged database of simulated participants, as `simulate` does: it is
+/// derived from the study file, so it is not secret. The key of a study with people is not copied.
 /// \throws StoreError if another key is in its place
 std::optional<study::StudyKey> key_to_write(const MergeArguments& arguments,
                                             const merging::Stations& stations) {
@@ -136,7 +137,7 @@ std::string summary_of(const MergeArguments& arguments, const merging::CollectRe
                                   {"stations", report.stations},
                                   {"sessions", report.sessions},
                                   {"left_out", left_out},
-                                  {"superfluous", report.superfluous},
+                                  {"superfluous", report.redundant},
                                   {"consents", consents},
                                   {"key", key ? nlohmann::json(key_path) : nullptr}};
   return json_text(summary);
@@ -151,7 +152,7 @@ int merge(const MergeArguments& arguments) {
       merging::collect_into_file(std::move(stations), arguments.target, progress_bar("merging"));
   for (const merging::SessionLeftOut& session : report.left_out)
     spdlog::warn("{}", session.words());
-  for (const std::string& name : report.superfluous) {
+  for (const std::string& name : report.redundant) {
     spdlog::warn("{}", one_line(name + ": has no finished session that the others do not have"));
   }
   if (key) study::save_study_key(key_path_for(arguments.target, {}), *key);

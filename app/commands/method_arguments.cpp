@@ -58,7 +58,7 @@ void refuse_unused(const CLI::App& command, engine::Method method) {
                    " is not auto or \"frequency,degrees;frequency,degrees\"");
 }
 
-/// Reads the number that begins at `from`, and moves `from` behind it.
+/// Reads the number at `from`, and moves `from` past it.
 double take_number(const std::string& text, std::size_t& from) {
   double number = 0.0;
   const char* end = text.data() + text.size();

@@ -12,7 +12,7 @@
 
 namespace touchtrial::app {
 
-/// The options as they are typed.
+/// The options as typed.
 struct MethodArguments {
   std::string method = "adaptive";
   std::string norm = "additive";
@@ -21,15 +21,15 @@ struct MethodArguments {
   std::string components;  ///< "auto", "f,theta;f,theta", or empty for the default
   std::string control = "none";
   engine::ExtractionOptions numbers;
-  const CLI::App* command = nullptr;  ///< whose options they are
+  const CLI::App* command = nullptr;  ///< the command that has the options
 };
 
 /// Adds --method and one option for each parameter of the methods.
 /// \param arguments  must live as long as the command
 void add_method_options(CLI::App& command, MethodArguments& arguments);
 
-/// The options as the engine takes them.
-/// \throws UsageError for an option that the method does not have, and for a value out of range
+/// The options for the engine.
+/// \throws UsageError for an option that the method lacks, or a value out of range
 [[nodiscard]] engine::ExtractionOptions extraction_options(const MethodArguments& arguments);
 
 /// The words of a table as a list for the parser.

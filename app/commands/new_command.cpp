@@ -1,4 +1,4 @@
-// new: asks a few questions and writes a study that runs, with a comment at every key.
+// new: asks a few questions and writes a runnable study, with a comment at every key.
 #include "app/commands/commands.hpp"
 #include "app/commands/given_pictures.hpp"
 #include "app/commands/made_folder.hpp"
@@ -7,9 +7,12 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/outputs.hpp"
+#include "core/plane_geometry.hpp"
 #include "core/strict_json.hpp"
 #include "core/text.hpp"
 #include "device/drivers/registry.hpp"
+#include "device/model/workspace_fit.hpp"
+#include "engine/rendering/rendering_options.hpp"
 #include "stimuli/default_set.hpp"
 #include "stimuli/import/import.hpp"
 #include "study/languages.hpp"
@@ -45,19 +48,19 @@ using Json = nlohmann::ordered_json;
 /// By option, for instance "--people".
 using Answers = std::map<std::string, std::string>;
 
-/// A question that is asked unless its option answers it in advance.
+/// A question that is asked unless its option is given.
 struct NewQuestion {
   std::string option;
   std::string text;
   CLI::Validator allowed;
-  std::function<std::string(const Answers&)> usual;  ///< the answer of Return and --yes
+  std::function<std::string(const Answers&)> usual;  ///< the default, for Return and --yes
   bool (*is_asked)(const Answers&) = [](const Answers&) { return true; };
 };
 
 struct NewArguments {
   fs::path folder;
   Answers answers;
-  int size_px = stimuli::kDefaultStimulusSizePx;
+  int size_px = 0;  ///< 0: size_for the device
   int crops = 5;
   engine::SampleScale scale;
   bool yes = false;
@@ -79,7 +82,7 @@ bool is_version(const std::string& text) {
   return text.size() <= 64 && !has_edge && one_line(text) == text;
 }
 
-/// An answer that `is_allowed`, or the message.
+/// Returns an answer that `is_allowed`, or throws the message.
 template <typename IsAllowed>
 CLI::Validator allowed_if(IsAllowed is_allowed, const std::string& message,
                           const std::string& kind) {
@@ -148,19 +151,19 @@ std::vector<NewQuestion> new_questions() {
        "Protocol: " + listed(protocols, " or ") +
            "; for thresholds, copy a ready study with touchtrial examples",
        CLI::IsMember(protocols), always(protocols.front())},
-      {"--pictures", "Folder of your photographs; empty: five textures of the program's own",
-       allowed_if(is_folder, "is no folder; check the path", "FOLDER"), always("")},
       {"--device",
-       "Device that the study is for, as touch or omega; empty: none, and then simulated people "
-       "hold an ideal device, which nobody sells",
+       "Device that the study is for, such as touch or omega; empty: none, and simulated people "
+       "hold an ideal device",
        allowed_if(
            is_device,
            "must be one of " + listed(devices, " or ") + "; a model's file is named in the study",
            "NAME"),
        always("")},
+      {"--pictures", "Folder of your photographs; empty: five textures of the program's own",
+       allowed_if(is_folder, "is not a folder; check the path", "FOLDER"), always("")},
       {"--people", "Number of participants", number_within(2, 100'000), always("20")},
       {"--worth",
-       "Least effect worth having, in points of 100: right answers above chance, or of one method "
+       "Smallest relevant effect, percentage points: right answers above chance, or of one method "
        "above another",
        number_within(1.0, 50.0),
        [](const Answers& answers) { return methods_of(answers) > 1 ? "10" : "20"; }},
@@ -170,9 +173,9 @@ std::vector<NewQuestion> new_questions() {
        allowed_if(is_version, "must be at most 64 bytes without blanks at its ends", "VERSION"),
        always("")},
       {"--visits", "Visits of each participant", number_within(1, 100), always("1")},
-      {"--between", "Least days between two visits", number_within(0.0, 3650.0), always("7"),
+      {"--between", "Minimum days between two visits", number_within(0.0, 3650.0), always("7"),
        [](const Answers& answers) { return visits_of(answers) > 1; }},
-      {"--groups", "Groups that participants are dealt into, as trained,control; empty: none",
+      {"--groups", "Groups that participants are assigned to, such as trained,control; empty: none",
        allowed_if(are_groups, "must be 2 to 16 names of 0-9 A-Z a-z _ - with commas between them",
                   "NAMES"),
        always("")},
@@ -208,7 +211,7 @@ stimuli::ImportOptions import_options(const NewArguments& arguments) {
   return options;
 }
 
-/// Asks for another size and number of crops, of which the photographs have enough.
+/// Asks for another size and number of crops that the photographs can provide.
 void ask_crops(NewArguments& arguments, const stimuli::CropsDoNotFit& now) {
   const auto answer = [](const char* option, const char* text, int low, int high, int usual) {
     const NewQuestion question{option, text, number_within(low, high), {}};
@@ -221,10 +224,10 @@ void ask_crops(NewArguments& arguments, const stimuli::CropsDoNotFit& now) {
                            stimuli::kMaxCropsOfClass, arguments.crops);
 }
 
-/// Tries the photographs where they are named, before further questions. If they are too small,
-/// asks for the size and number of crops; if nothing can be made of them, for another folder.
+/// Checks the photographs before further questions. If they are too small, asks for the size and
+/// number of crops; if they are unusable, for another folder.
 /// \param question  "--pictures"
-/// \param typed  the folder was an answer; an option's is refused where only another one would do
+/// \param typed  the folder was typed as an answer; an unusable folder from an option is refused
 void try_pictures(NewArguments& arguments, const NewQuestion& question, bool typed) {
   std::string& folder = arguments.answers.at(question.option);
   while (!folder.empty()) {
@@ -234,8 +237,8 @@ void try_pictures(NewArguments& arguments, const NewQuestion& question, bool typ
     } catch (const stimuli::CropsDoNotFit& small) {
       if (arguments.yes) throw;
       std::fputs((one_line(small.what()) + "\n").c_str(), stderr);
-      const bool some_would_do = small.size_px() > 0 || small.crops() > 0;
-      if (some_would_do) {
+      const bool smaller_suffices = small.size_px() > 0 || small.crops() > 0;
+      if (smaller_suffices) {
         ask_crops(arguments, small);
       } else if (typed) {
         folder = typed_answer(question, "");
@@ -250,7 +253,19 @@ void try_pictures(NewArguments& arguments, const NewQuestion& question, bool typ
   }
 }
 
-/// Answers what no option answers. The study's name is usually its folder's.
+/// \return the default size of pictures, pixels: of those whose plane the device reaches, in tens
+/// \param device  "" : none
+int size_for(const std::string& device) {
+  constexpr int kUsual = stimuli::kDefaultStimulusSizePx;
+  if (device.empty()) return kUsual;
+  const PlaneGeometry usual{engine::RenderingOptions{}.pitch_mm, kUsual, kUsual};
+  const PlaneGeometry fits =
+      device::fit_plane(usual, device::model_of_device(device).workspace).largest;
+  const int side = std::min(fits.width_px, fits.height_px);
+  return std::max(side == kUsual ? side : side / 10 * 10, stimuli::kMinCropSizePx);
+}
+
+/// Asks the questions without options. The default name is the folder's.
 void interview(NewArguments& arguments) {
   const fs::path& given = arguments.folder;
   const std::string folder =
@@ -263,11 +278,14 @@ void interview(NewArguments& arguments) {
       const bool is_asked = !arguments.yes && question.is_asked(arguments.answers);
       arguments.answers[question.option] = is_asked ? typed_answer(question, usual) : usual;
     }
+    if (question.option == "--device" && arguments.size_px == 0) {
+      arguments.size_px = size_for(arguments.answers.at(question.option));
+    }
     if (question.option == "--pictures") try_pictures(arguments, question, !is_given);
   }
 }
 
-/// The study file to be, and what is beside it.
+/// The new study file, and the files beside it.
 struct NewStudy {
   fs::path file;
   Json classes = Json::array();
@@ -301,15 +319,15 @@ void import_pictures(const NewArguments& arguments, NewStudy& study) {
   study.seed = imported.at("seed").get<std::uint64_t>();
 }
 
-/// Whether one of the classes has a label that looks like another.
+/// Whether a class has a label that looks like `label`.
 bool has_label(const Json& classes, const std::string& label) {
   return std::ranges::any_of(classes, [&](const Json& one) {
     return skeleton_of(one.at("label").get<std::string>()) == skeleton_of(label);
   });
 }
 
-/// Practice textures have the classes' size. There is no practice if the study's own labels leave
-/// fewer than two of them.
+/// Practice textures have the classes' size. Without practice if fewer than two have labels that
+/// the study does not use.
 void add_practice(NewStudy& study, int size_px) {
   for (const Json& one :
        generated_classes(study, ".practice", stimuli::StimulusKind::practice, size_px)) {
@@ -328,7 +346,7 @@ std::string lines_of(const Json& list, const std::string& indent) {
 
 using Fillings = std::map<std::string, std::string, std::less<>>;
 
-/// A line of the template with its fillings in place of their names in braces.
+/// A line of the template with names in braces replaced by values.
 std::string filled_line(std::string_view line, const Fillings& fillings) {
   std::string filled;
   for (std::size_t at = 0; at < line.size();) {
@@ -345,8 +363,8 @@ std::string filled_line(std::string_view line, const Fillings& fillings) {
   return filled + "\n";
 }
 
-/// The template of new_study.json.in. Lines between "#if NAME" and "#else" or "#end" stand if NAME
-/// has a filling, those between "#else" and "#end" if it has none.
+/// The template of new_study.json.in. Lines between "#if NAME" and "#else" or "#end" are included
+/// if NAME has a value, those between "#else" and "#end" if it has none.
 std::string filled_in(const std::string& text, const Fillings& fillings) {
   std::string filled;
   std::istringstream lines(text);
@@ -369,7 +387,7 @@ std::string in_json(const std::string& text) {
   return Json(text).dump();
 }
 
-/// The share of right answers, or of a difference of methods, that is worth having.
+/// The smallest relevant effect, as a share of right answers or a difference of methods.
 double effect_of(const NewArguments& arguments, std::size_t classes) {
   const double points = *number_in<double>(arguments.answers.at("--worth"));
   if (methods_of(arguments.answers) > 1) return points / 100.0;
@@ -440,10 +458,10 @@ int write_new_study(const NewArguments& given) {
 }  // namespace
 
 void add_new_command(CLI::App& program, Action& action) {
-  const auto [command, arguments] = add_command(
-      program, action, "new",
-      "Ask a few questions, and write a study that runs, with its pictures and comments",
-      write_new_study);
+  const auto [command, arguments] =
+      add_command(program, action, "new",
+                  "Ask a few questions, and write a runnable study with pictures and comments",
+                  write_new_study);
   command.add_option("FOLDER", arguments.folder, "Folder to make (default: the study's name)");
   for (const NewQuestion& question : new_questions()) {
     command
@@ -455,12 +473,14 @@ void add_new_command(CLI::App& program, Action& action) {
             question.text)
         ->check(question.allowed);
   }
-  add_count_option(command, "--size", arguments.size_px, "Side of a picture, pixels; one is 0.2 mm",
-                   stimuli::kMinCropSizePx, stimuli::kMaxCropSizePx);
+  add_count_option(
+      command, "--size", arguments.size_px,
+      "Side of a picture, pixels; one is 0.2 mm (default: 500, or what the device reaches)",
+      stimuli::kMinCropSizePx, stimuli::kMaxCropSizePx);
   add_count_option(command, "--crops", arguments.crops, "Crops of the photographs of each texture",
                    1, stimuli::kMaxCropsOfClass);
   add_sample_options(command, arguments.scale);
-  command.add_flag("--yes", arguments.yes, "Take the usual answers, and ask nothing");
+  command.add_flag("--yes", arguments.yes, "Use the default answers without asking");
 }
 
 }  // namespace touchtrial::app

@@ -5,7 +5,7 @@
 
 namespace touchtrial::app {
 
-/// The text of app/commands/new_study.json.in, which is built in.
+/// The text of app/commands/new_study.json.in, compiled in.
 [[nodiscard]] std::string new_study_template();
 
 }  // namespace touchtrial::app

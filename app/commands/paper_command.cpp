@@ -1,4 +1,4 @@
-// paper: the source paper's figures and tables beside those of given pictures.
+// paper: compares the source paper's figures and tables with those of given pictures.
 #include "analysis/paper/paper_document.hpp"
 #include "analysis/report/figures/gnuplot.hpp"
 #include "app/commands/commands.hpp"
@@ -66,7 +66,7 @@ PaperImages generated_pictures(stimuli::StimulusKind kind) {
   return pictures;
 }
 
-/// The names of all files that the command writes, drawn or not.
+/// The names of all files that the command writes, whether drawn or not.
 std::vector<std::string> names_of_output() {
   return {"paper.md",
           "paper.html",
@@ -79,7 +79,7 @@ std::vector<std::string> names_of_output() {
 
 void require_places(const fs::path& folder) {
   if (is_there(folder) && !fs::is_directory(folder)) {
-    throw FileError(one_line(folder.string()) + ": is no folder; choose another with --out");
+    throw FileError(one_line(folder.string()) + ": is not a folder; choose another with --out");
   }
   for (const std::string& name : names_of_output()) require_output_place(folder / name);
 }

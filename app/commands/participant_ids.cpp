@@ -70,8 +70,7 @@ std::optional<std::string> next_id(const std::vector<std::string>& known) {
   return fmt::format("{}{:0{}}", last.before, largest + 1, last.digits);
 }
 
-std::optional<std::string> perhaps_meant(const std::string& id,
-                                         const std::vector<std::string>& known) {
+std::optional<std::string> likely_id(const std::string& id, const std::vector<std::string>& known) {
   if (std::ranges::count(known, id) > 0 || id == next_id(known)) return std::nullopt;
   const auto found =
       std::ranges::find_if(known, [&](const std::string& one) { return are_alike(id, one); });
@@ -97,14 +96,14 @@ std::vector<std::string> known_ids(const std::filesystem::path& database) {
   try {
     for (const record::PersonalRecord& one : consents_beside(database)) add(one.participant);
   } catch (const Error&) {
-    // Whoever records a consent is told.
+    // A new consent only prints a warning.
   }
   return ids;
 }
 
 void confirm_id(const std::string& command, const std::filesystem::path& database,
                 const std::string& id, bool yes) {
-  const auto meant = perhaps_meant(id, known_ids(database));
+  const auto meant = likely_id(id, known_ids(database));
   if (!meant) return;
   confirm(command + ": participant " + id + " has neither a session nor a consent, and " + *meant +
               " is known; give --participant " + *meant + " if that is who is meant",

@@ -55,7 +55,7 @@ std::vector<record::SessionRow> sessions_of(const record::StudyStore& store,
 
 /// The session that counts, or the last one if all were replaced.
 int session_of(const record::StudyStore& store, const PeopleArguments& arguments) {
-  // Not simply the last one: two stations of a merged study may have used the same id.
+  // Not always the last one: two stations of a merged study may have used the same id.
   if (const auto counts = store.session_of(arguments.participant)) return counts->session;
   return sessions_of(store, arguments).back().session;
 }
@@ -94,13 +94,13 @@ int replace(const PeopleArguments& arguments) {
   return 0;
 }
 
-/// A mistyped code would be missing wherever the right one is counted.
-/// \throws UsageError with the codes that there are
+/// A mistyped code would not be counted.
+/// \throws UsageError with the valid codes
 void check_code(const PeopleArguments& arguments) {
   const std::string& code = arguments.deviation;
   if (code.empty() || arguments.own_code || study::is_deviation_code(code)) return;
   const auto nearest = nearest_name(code, study::kDeviationCodes);
-  throw UsageError("note: --deviation " + one_line(code) + " is none of the program's codes" +
+  throw UsageError("note: --deviation " + one_line(code) + " is not one of the program's codes" +
                    (nearest ? "; did you mean " + std::string(*nearest) + "?" : ": ") +
                    (nearest ? " There are " : "") + listed(study::kDeviationCodes) +
                    ", no-day-sheet-NUMBER; for a code of the study's own add --own-code");
@@ -121,7 +121,7 @@ constexpr const char* kOtherCopies =
     "if the database was sent to a server, run `touchtrial sync` now, which names the rows that "
     "hold "
     "the key there: until their owner deletes them it is there, and in the server's backups\n";
-/// Goes into the withdrawal's event.
+/// Recorded in the withdrawal's event.
 constexpr const char* kNotErased =
     "other copies and backups; the key on a server, until its row is deleted";
 
@@ -131,7 +131,7 @@ bool remove_person(const PeopleArguments& arguments) {
   return is_there(path) && record::PersonalData(path).remove(arguments.participant);
 }
 
-/// The sessions of a participant that something holds for.
+/// The participant's sessions that satisfy a condition.
 std::vector<int> those_with(const record::StudyStore& store, const std::string& participant,
                             bool (*holds)(const record::SessionRow&)) {
   std::vector<int> sessions;
@@ -168,17 +168,18 @@ void confirm_erasure(const record::StudyStore& store, const std::vector<int>& se
   }
   if (lost.empty()) return;
   confirm(place_of(arguments) + ": " + lost +
-              ": nobody can ever read them again; the safety record stays",
+              ": they can never be read again; the safety record is kept",
           arguments.yes);
 }
 
-/// Destroys the keys of these sessions, and what an earlier call left of keys in the log.
-/// \return what is left of the keys, and the remedy; empty if nothing is
+/// Destroys the keys of these sessions, and remains of keys in the log from an earlier call.
+/// \return what remains of the keys, and the remedy; empty if nothing
 /// \throws StoreError if the withdrawal was not recorded
 std::string destroy_keys(record::StudyStore& store, const std::vector<int>& sessions,
                          const PeopleArguments& arguments) {
   try {
-    store.withdraw(sessions, utc_now(), arguments.reason, record::Kept::safety_record, kNotErased);
+    store.withdraw(sessions, utc_now(), arguments.reason, record::Retention::safety_record,
+                   kNotErased);
   } catch (const StoreError& error) {
     if (!not_erased(store, arguments.participant).empty()) throw;
     return error.what();
@@ -192,15 +193,15 @@ int keep_data(const PeopleArguments& arguments) {
   const std::vector<int> sessions = those_with(
       store, arguments.participant, [](const record::SessionRow& row) { return !row.withdrawn; });
   if (sessions.empty()) throw StoreError(one_line(place_of(arguments) + " has already withdrawn"));
-  confirm(
-      place_of(arguments) +
-          ": takes no further part, for good, and an open session cannot go on; the data stay (" +
-          with_answers(store, sessions) + ")",
-      arguments.yes);
-  store.withdraw(sessions, utc_now(), arguments.reason, record::Kept::data);
+  confirm(place_of(arguments) +
+              ": leaves the study permanently, and an open session cannot continue; the data are "
+              "kept (" +
+              with_answers(store, sessions) + ")",
+          arguments.yes);
+  store.withdraw(sessions, utc_now(), arguments.reason, record::Retention::data);
   print(place_of(arguments) +
-        ": withdrawn; takes no further part, and the data stay: they are analysed as the study "
-        "says, and reports say how many let them be used\n"
+        ": withdrawn; the data are kept and analysed as the study states, and reports state how "
+        "many participants allow this\n"
         "to erase them later, run the same command with --erase\n");
   print_head(store, arguments.database);
   return 0;
@@ -216,10 +217,10 @@ int erase_safety(const PeopleArguments& arguments) {
     throw StoreError(one_line(place_of(arguments) + ": the safety record is already erased"));
   }
   confirm(place_of(arguments) +
-              ": nobody can ever read the texts of the safety record again (stops, faults, largest "
+              ": the texts of the safety record can never be read again (stops, faults, largest "
               "forces, reasons of deviations)",
           arguments.yes);
-  store.withdraw(sessions, utc_now(), "", record::Kept::nothing, kNotErased);
+  store.withdraw(sessions, utc_now(), "", record::Retention::nothing, kNotErased);
   print(place_of(arguments) + ": the texts of the safety record cannot be read again by anybody\n" +
         kOtherCopies);
   print_head(store, arguments.database);
@@ -229,12 +230,12 @@ int erase_safety(const PeopleArguments& arguments) {
 int erase(const PeopleArguments& arguments) {
   std::error_code none;
   const auto log_size = fs::file_size(arguments.database.string() + "-wal", none);
-  const bool had_log = !none && log_size > 0;  // an earlier withdrawal may have left its key there
+  const bool had_log = !none && log_size > 0;  // an earlier withdrawal may have left a key there
   record::StudyStore store = opened_to_record(arguments.database, arguments.files);
   const bool has_session = !store.sessions_of(arguments.participant).empty();
   const std::vector<int> sessions = not_erased(store, arguments.participant);
   confirm_erasure(store, sessions, arguments);
-  // The key first: a fault of the file of personal data must not prevent a withdrawal.
+  // Keys first, so that a fault of the personal data does not prevent a withdrawal.
   std::string left = has_session ? destroy_keys(store, sessions, arguments) : "";
   bool removed = false;
   try {
@@ -257,8 +258,7 @@ int erase(const PeopleArguments& arguments) {
         one_line(place_of(arguments) + " has already withdrawn, and the data are erased"));
   }
   print(place_of(arguments) +
-        ": withdrawn; this person's sealed data cannot be read again by anybody, but for the "
-        "safety record" +
+        ": withdrawn; this person's sealed data can no longer be read, except the safety record" +
         (removed ? ", and the personal data are removed\n" : "\n") +
         (store.stations() > 0 ? "this is a merged database: withdraw at the station too\n" : "") +
         kOtherCopies);
@@ -269,8 +269,9 @@ int erase(const PeopleArguments& arguments) {
 int withdraw(const PeopleArguments& arguments) {
   if (int{arguments.keep_data} + int{arguments.erase} + int{arguments.erase_safety} != 1) {
     throw UsageError(
-        "withdraw: give --reason, and --keep-data (the person takes no further part, the data "
-        "stay), --erase (the data are destroyed, the safety record stays) or --erase-safety (when "
+        "withdraw: give --reason, and --keep-data (the person leaves the study, the data are "
+        "kept), --erase (the data are destroyed, the safety record is kept) or --erase-safety "
+        "(when "
         "its years have passed); ask the person which");
   }
   if (arguments.erase_safety) return erase_safety(arguments);
@@ -300,22 +301,22 @@ void add_reason(CLI::App& command, std::string& reason) {
 
 void add_people_commands(CLI::App& program, Action& action) {
   const PeopleCommand excluded = people_command(program, action, "exclude",
-                                                "Leave a participant out of the outcomes", exclude);
+                                                "Exclude a participant from the outcomes", exclude);
   add_reason(excluded.command, excluded.arguments.reason);
   excluded.command.add_flag("--after-outcomes", excluded.arguments.after_outcomes,
                             "Although this participant's outcomes have been seen; recorded");
-  const PeopleCommand replaced = people_command(
-      program, action, "replace", "Give a participant's place to somebody new", replace);
-  replaced.command.add_option("--with", replaced.arguments.with, "Who takes the place")->required();
+  const PeopleCommand replaced =
+      people_command(program, action, "replace", "Replace a participant by a new one", replace);
+  replaced.command.add_option("--with", replaced.arguments.with, "Id of the new participant")
+      ->required();
   add_reason(replaced.command, replaced.arguments.reason);
-  const PeopleCommand withdrawn =
-      people_command(program, action, "withdraw",
-                     "A participant takes no further part; keep the data or erase them", withdraw);
+  const PeopleCommand withdrawn = people_command(
+      program, action, "withdraw", "Withdraw a participant; keep the data or erase them", withdraw);
   CLI::Option* reason =
       withdrawn.command.add_option("--reason", withdrawn.arguments.reason, "Why; recorded");
   withdrawn.command
       .add_flag("--keep-data", withdrawn.arguments.keep_data,
-                "The data stay, and are analysed as the study says")
+                "Keep the data, and analyse them as the study states")
       ->needs(reason);
   withdrawn.command
       .add_flag("--erase", withdrawn.arguments.erase,

@@ -22,7 +22,7 @@
 namespace touchtrial::app {
 namespace {
 
-/// Where the study file names its pilots.
+/// The place in the study file that names its pilots.
 std::string place_of(const study::Study& study) {
   return study.source + ": /rendering/gains/curve: " + study.level->curve;
 }
@@ -85,7 +85,7 @@ simulation::LevelCurve pilots_curve(const study::Study& study, const device::Dev
     });
     if (stimulus == levels.stimuli.end()) refuse(study, "has no field of " + label);
     const auto place = static_cast<std::size_t>(stimulus - levels.stimuli.begin());
-    // The level of the whole gain is what the threshold lies below it.
+    // The level of the full gain is the distance of the threshold below it.
     sum += measured_db + levels.levels[place].front().db;
   }
   return {.curve = engine::ThresholdCurve::israr_2006,

@@ -1,4 +1,4 @@
-/// \file Thresholds that a laboratory measured, in place of a published curve.
+/// \file Thresholds measured by a laboratory, used in place of a published curve.
 #pragma once
 
 #include "device/model/device_model.hpp"
@@ -7,13 +7,13 @@
 
 namespace touchtrial::app {
 
-/// The curve that a study's level is meant by. For the database of a detection study of pilots it
-/// is israr_2006 with how much less sensitive they were, in the mean over people and stimuli, than
-/// the median simulated person on this device. Source: docs/perception.md, "Pilots".
+/// The curve that a study's levels refer to. With a database of pilots' detection thresholds, it is
+/// israr_2006 shifted by the mean difference, over people and stimuli, between them and the median
+/// simulated person on this device. Source: docs/perception.md, "Pilots".
 /// \param device  the study's
 /// \pre the study has a level
-/// \throws StudyError naming /rendering/gains/curve if the database is no unblinded detection study
-///   along gain with key and pack, or fewer than three people have a threshold in it
+/// \throws StudyError naming /rendering/gains/curve if the database is not an unblinded detection
+///   study along gain with key and pack, or fewer than three people have a threshold in it
 [[nodiscard]] simulation::LevelCurve curve_of(const study::Study& study,
                                               const device::DeviceModel& device);
 

@@ -81,7 +81,7 @@ std::string plan_json(const study::StudyKey& key, const study::PackPlace& place)
   return json_text(document);
 }
 
-/// The group of every number up to `participants`, for whoever treats groups differently.
+/// The group of every number up to `participants`, for the person who treats the groups.
 std::string groups_text(const study::StudyKey& key, int participants, bool json) {
   const std::vector<std::string>& labels = key.study.groups.labels;
   if (labels.empty()) throw UsageError("plan: the study has no groups; leave --groups out");
@@ -99,7 +99,7 @@ std::string groups_text(const study::StudyKey& key, int participants, bool json)
     return json_text(document);
   }
   return fmt::format("{}\n number  group\n{}", key.study.name, text) +
-         (key.study.groups.open ? "" : "Keep this from whoever runs sessions.\n");
+         (key.study.groups.open ? "" : "Keep this secret from people who run sessions.\n");
 }
 
 bool is_divided(const study::StudyKey& key) {
@@ -163,7 +163,7 @@ int plan_enrolment(const PlanArguments& arguments) {
   study::divide(key, std::move(stations));
   study::save_study_key(place.key, key);
   save_station_files(key, place);
-  // The file of the undivided study would present schedules that no station has.
+  // The file of the undivided study would present schedules that belong to no station.
   fs::remove(place.station());
   print(arguments.json ? plan_json(key, place) : plan_text(key, place));
   return 0;
@@ -172,10 +172,9 @@ int plan_enrolment(const PlanArguments& arguments) {
 }  // namespace
 
 void add_plan_command(CLI::App& program, Action& action) {
-  const auto [command, arguments] =
-      add_command(program, action, "plan",
-                  "Divide a prepared study between stations, before the first participant comes",
-                  plan_enrolment);
+  const auto [command, arguments] = add_command(
+      program, action, "plan",
+      "Divide a prepared study between stations, before the first participant", plan_enrolment);
   add_study_argument(command, arguments.study);
   command.add_option("--participants", arguments.participants, "Number of participants in all")
       ->check(CLI::Range(1, study::kMaxEnrolments))
@@ -190,7 +189,8 @@ void add_plan_command(CLI::App& program, Action& action) {
           ->delimiter(',')
           ->excludes(stations);
   command
-      .add_flag("--extend", arguments.extend, "Add numbers to the existing plan, and keep its own")
+      .add_flag("--extend", arguments.extend,
+                "Add numbers to the existing plan, without changing it")
       ->excludes(stations)
       ->excludes(names);
   command

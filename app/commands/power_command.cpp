@@ -27,7 +27,7 @@ struct PowerArguments {
   const CLI::App* command = nullptr;
 };
 
-/// \throws UsageError if an option was given that the study's protocol does not know
+/// \throws UsageError if an option does not apply to the study's protocol
 void refuse_options_of_others(const study::Study& study, const PowerArguments& arguments) {
   for (const CLI::Option* given : arguments.command->get_options()) {
     const std::string option = given->get_name();
@@ -41,8 +41,8 @@ void refuse_options_of_others(const study::Study& study, const PowerArguments& a
   }
 }
 
-/// Refuses a value that is empty, as an unset variable of a shell makes it: it would count as left
-/// out, and the numbers be those of another question.
+/// Refuses an empty value, for example from an unset shell variable: it would count as omitted, and
+/// the result would answer another question.
 void refuse_empty_values(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options()) {
     const auto& values = option->results();
@@ -147,7 +147,7 @@ void add_plan_options(CLI::App& command, PowerArguments& arguments) {
   command.add_option("--trainings", plan.trainings, "Trainings from which studies draw")
       ->capture_default_str();
   add_threshold_options(command, options);
-  // They describe people who feel.
+  // The options describe simulated hands.
   for (const char* option : {"--subject", "--on", "--explorations", "--trainings"}) {
     command.get_option("--mean")->excludes(command.get_option(option));
   }

@@ -1,4 +1,4 @@
-// prepare: the force fields and the key of a study. Nothing that it prints links a stimulus to its
+// prepare: the force fields and the key of a study. Its output does not link a stimulus to its
 // code.
 #include "analysis/planning/level_report.hpp"
 #include "app/commands/commands.hpp"
@@ -51,11 +51,11 @@ Json stimulus_json(const study::PreparedStimulus& stimulus) {
           {"statistics", statistics_json(stimulus.statistics)}};
 }
 
-// A hand strokes a plane of this size from a forearm's rest.
+// The size of a plane that a hand can stroke with the forearm at rest.
 constexpr double kMinPlaneMm = 20.0;
 constexpr double kMaxPlaneMm = 250.0;
 
-/// \return what is to be said about a plane that is not a hand's; else empty
+/// \return a remark on a plane of an unsuitable size; else empty
 std::string remark_on(const PlaneGeometry& plane) {
   if (std::min(plane.width_mm(), plane.height_mm()) < kMinPlaneMm) {
     return fmt::format(
@@ -198,7 +198,7 @@ std::string line_of_totals(const study::PrepareReport& report) {
   return text + "\n";
 }
 
-/// Without the warnings, which are printed as such.
+/// Without warnings, which are printed separately.
 std::string levels_text(const study::Study& study, const simulation::StimulusLevels& levels) {
   analysis::Document document;
   document.sections.push_back(planning::levels_section(study, levels));
@@ -208,7 +208,7 @@ std::string levels_text(const study::Study& study, const simulation::StimulusLev
   return analysis::document_text(document, columns_of_output()) + "\n";
 }
 
-/// Where everything is, and what each file is for.
+/// The paths and purposes of all files.
 std::string places_text(const study::StudyKey& key, const study::PackPlace& place) {
   std::string text = fmt::format("pack     {}\n", place.pack.string());
   for (const study::Station& station : key.stations) {
@@ -225,7 +225,7 @@ int prepare(const PrepareArguments& arguments) {
   if (arguments.pack.empty()) refuse_installed_study(arguments.study);
   const study::Study study = study::load_study(arguments.study);
   study::check_images_exist(study);
-  static_cast<void>(simulation::level_devices(study));  // whether the device is there
+  static_cast<void>(simulation::level_devices(study));  // throws if the device does not exist
   const PlaneGeometry plane = study::plane_of(study);
   const study::PackPlace place = pack_place_for(arguments.study, arguments.pack);
   study::PackLock lock(place.pack);
@@ -254,7 +254,7 @@ int prepare(const PrepareArguments& arguments) {
 void add_prepare_command(CLI::App& program, Action& action) {
   const auto [command, arguments] = add_command(
       program, action, "prepare",
-      "Make a study's force fields and its key, as far as they are missing or changed", prepare);
+      "Make the force fields and the key of a study if they are missing or outdated", prepare);
   add_study_argument(command, arguments.study);
   command.add_option("--pack", arguments.pack,
                      "Folder of the pack; the key is beside it (default: <study>.pack)");

@@ -18,14 +18,14 @@ namespace fs = std::filesystem;
 
 constexpr const char* kDraftEnding = ".unfinished";
 
-/// A new key would make another study of this one, and replace the station's file that its
-/// databases need.
+/// A new key would turn this into another study, and replace the station's file that its databases
+/// need.
 void refuse_new_key(const study::PackPlace& place) {
   const fs::path station = place.station();
   const fs::path found = is_there(station) ? station : place.pack;
   if (!is_there(station) && !is_there(place.pack / "pack.json")) return;
   throw FileError(place.key.string() + ": is not here, but " + found.string() +
-                  " was made with it; lay the key here, or make a new study in another folder with "
+                  " was made with it; put the key here, or make a new study in another folder with "
                   "--pack");
 }
 
@@ -41,15 +41,15 @@ void require_own(const study::StudyKey& earlier, const study::Study& study, cons
   }
 }
 
-/// Where the key of an earlier version of the study is kept.
-fs::path kept_place(const fs::path& key, const Digest& seal) {
+/// The path to which the key of an earlier version of the study is moved.
+fs::path aside_place(const fs::path& key, const Digest& seal) {
   constexpr std::size_t kSealDigits = 8;
   fs::path kept = key;
   kept += "." + to_hex(seal).substr(0, kSealDigits);
   return kept;
 }
 
-/// What drafts of this file, or of a file whose name goes on, a killed run left.
+/// Removes drafts that a killed run left of this file, or of a file whose name starts with it.
 void remove_drafts_of(const fs::path& file) {
   std::error_code ignored;
   const std::string beginning = file.filename().string() + ".";
@@ -64,7 +64,7 @@ void remove_drafts_of(const fs::path& file) {
   for (const fs::path& one : left) fs::remove(one, ignored);
 }
 
-/// Where a link leads, or the file itself.
+/// The target of a link, or the file itself.
 fs::path target_of(const fs::path& place) {
   std::error_code error;
   if (!fs::is_symlink(place, error)) return place;
@@ -106,7 +106,7 @@ fs::path PreparedSecrets::draft_for(const fs::path& place) {
   fs::path file = target;
   file += kDraftEnding;
   drafts_.in_order.push_back({file, target});
-  // A copy, so that a protected file stays under its passphrase.
+  // A copy, so that a protected file keeps its passphrase.
   if (is_there(target)) replace_file(file, read_file(target), FileMode::owner_only);
   return file;
 }
@@ -119,7 +119,7 @@ void PreparedSecrets::draft_secrets(bool passphrase) {
   };
   const fs::path draft_of_key = draft_for(place_.key);
   if (earlier_ && earlier_->seal != key_.seal) {
-    const fs::path kept = draft_for(kept_place(target_of(place_.key), earlier_->seal));
+    const fs::path kept = draft_for(aside_place(target_of(place_.key), earlier_->seal));
     replace_file(kept, before_, FileMode::owner_only);
     if (protects) save(kept, *earlier_);
     std::swap(drafts_.in_order[0], drafts_.in_order[1]);
@@ -151,7 +151,7 @@ void PreparedSecrets::publish() {
   spdlog::warn(
       "{}: the study has changed; the earlier key is kept as {}, because databases that it sealed "
       "need it",
-      place_.key.string(), kept_place(place_.key, earlier_->seal).string());
+      place_.key.string(), aside_place(place_.key, earlier_->seal).string());
 }
 
 }  // namespace touchtrial::app

@@ -44,11 +44,11 @@ int preregister(const PreregArguments& arguments) {
   const study::StudyKey key = study::load_study_key(place.key);
   const engine::Pack pack(place.pack);
   session::require_prepared(study, key, place.key, pack);
-  for (const std::string& unsaid : session::unstated(study.registration)) {
-    // What the program holds a study against are accuracies.
-    if (unsaid == "/registration/estimand" && !study::chooses_classes(study)) continue;
+  for (const std::string& missing : session::missing_statements(study.registration)) {
+    // The program checks a study only against accuracies.
+    if (missing == "/registration/estimand" && !study::chooses_classes(study)) continue;
     spdlog::warn("{}: {} is not stated; add it before depositing the page",
-                 arguments.study.string(), unsaid);
+                 arguments.study.string(), missing);
   }
   const std::string page = session::registration_page(key, pack);
   if (arguments.output.empty()) {
@@ -62,9 +62,9 @@ int preregister(const PreregArguments& arguments) {
 }  // namespace
 
 void add_prereg_command(CLI::App& program, Action& action) {
-  const auto [command, arguments] =
-      add_command(program, action, "prereg",
-                  "Write the page to deposit before the first participant comes", preregister);
+  const auto [command, arguments] = add_command(
+      program, action, "prereg",
+      "Write the preregistration page to deposit before the first participant", preregister);
   add_study_argument(command, arguments.study);
   add_pack_option(command, arguments.pack);
   add_key_option(command, arguments.key, "Key of the study (default: beside the pack)");

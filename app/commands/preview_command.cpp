@@ -40,7 +40,7 @@ struct PreviewArguments {
 };
 
 constexpr std::chrono::milliseconds kPreviewPause{10};
-/// So long that only a window that hangs exceeds it.
+/// Only a hanging window exceeds this.
 constexpr std::chrono::minutes kPreviewPatience{5};
 
 class Preview {
@@ -59,7 +59,7 @@ class Preview {
   }
 
  private:
-  /// What whoever designs wants to see next.
+  /// The next screen that the designer requests.
   enum class Turn { none, back, next, answered, end };
 
   [[nodiscard]] std::size_t place_of(const std::string& name) const {
@@ -90,11 +90,11 @@ class Preview {
 
   void require_shown() {
     if (!window_.wait_until_shown(kPreviewPatience)) {
-      throw DeviceError("preview: the window shows nothing; look at the graphics driver");
+      throw DeviceError("preview: the window shows nothing; check the graphics driver");
     }
   }
 
-  /// Shows a screen as it is after a plane, so that nothing of the one before is left.
+  /// Shows a screen as after a plane, so that nothing of the previous screen remains.
   void present(const PreviewScreen& screen) {
     session::SessionStatus status;
     status.participant = "P07";
@@ -185,7 +185,7 @@ class Preview {
   PlaneGeometry plane_;
   device::PointerExchange pointer_;
   std::atomic<Turn> turn_{Turn::none};
-  ExperimenterDesk console_{false};  ///< whose requests nobody takes
+  ExperimenterDesk console_{false};  ///< whose requests are ignored
   ParticipantWindow window_;
 };
 
@@ -202,7 +202,7 @@ void add_preview_command(CLI::App& program, Action& action) {
                       "Write the screen to this PNG file, or without --screen every screen to this "
                       "folder");
   add_force_flag(*command);
-  command->add_flag("--mouse", arguments->mouse, "As with the device mouse");
+  command->add_flag("--mouse", arguments->mouse, "Screens as with the device mouse");
   command->add_flag("--console", arguments->console,
                     "The experimenter's window too; with --png as console.png beside the others");
   arguments->window.window_px = {1280, 720};

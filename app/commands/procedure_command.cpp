@@ -1,4 +1,4 @@
-// procedure: what an adaptive track of a study would present after a list of answers.
+// procedure: replays a list of answers through an adaptive track of a study.
 #include "analysis/planning/planner.hpp"
 #include "app/commands/commands.hpp"
 #include "app/terminal/console.hpp"
@@ -21,7 +21,7 @@ struct ProcedureArguments {
   bool json = true;
 };
 
-/// Answers as they are typed: "1,0,1"; empty: none.
+/// Answers as typed: "1,0,1"; empty: none.
 /// \throws UsageError if a part is neither 0 nor 1
 std::vector<bool> answers_named(std::string_view text) {
   std::vector<bool> answers;
@@ -55,7 +55,7 @@ void add_procedure_command(CLI::App& program, Action& action) {
   add_study_argument(command, arguments.study);
   command
       .add_option("--answers", arguments.answers,
-                  "1 for right, 0 for wrong; empty: the first level alone")
+                  "1 for right, 0 for wrong; empty: only the first level")
       ->type_name("1,0,1..")
       ->required();
   command.add_option("--track", arguments.track, "Number of the track")->capture_default_str();

@@ -1,5 +1,5 @@
-// reference: what packages, documentation and shells take from the parser; not in the help. help:
-// as --help.
+// reference: manual pages, documentation and shell completion from the parser; not in the help.
+// help: as --help.
 #include "app/commands/commands.hpp"
 #include "app/commands/shipped_files.hpp"
 #include "app/reference/pages.hpp"
@@ -48,13 +48,13 @@ std::vector<std::string> shipped_subjects() {
       files.push_back(file.path().string());
     }
   } catch (const std::exception&) {
-    return {};  // a program that was copied alone
+    return {};  // the program was copied without its files
   }
   std::ranges::sort(files);
   return files;
 }
 
-/// The values that an option takes, or some of them where it takes files and other text as well.
+/// The values of an option; only some of them if files or other text are possible too.
 std::vector<std::string> completed_values(const CLI::Option& option) {
   if (std::vector<std::string> choices = choices_of(option); !choices.empty()) return choices;
   const std::string name = option.get_name();
@@ -64,21 +64,21 @@ std::vector<std::string> completed_values(const CLI::Option& option) {
   return {};
 }
 
-/// The program's name is in every line already.
-std::string words_after_program(const CLI::App& command) {
+/// Every line already contains the program's name.
+std::string command_path(const CLI::App& command) {
   const std::string words = words_of(command);
   const std::size_t space = words.find(' ');
   return space == std::string::npos ? "" : words.substr(space + 1);
 }
 
-/// What may stand where, a row each, for the scripts of config/completion: the command so far, a
-/// word that may follow, the values after it, and its meaning, with bars between them. A word that
-/// takes no value has the value "-"; a row without a word has the values of an argument. Where a
-/// value is expected and the row has none, shells complete names of files.
+/// The table for the scripts of config/completion, with columns separated by bars: the command so
+/// far, a possible next word, its values, and its meaning. A word without a value has "-"; a row
+/// without a word has the values of an argument. If a row's values are empty, shells complete file
+/// names.
 std::string completion_table(const CLI::App& program) {
   std::string table;
   for (const CLI::App* command : every_command(program)) {
-    const std::string place = words_after_program(*command);
+    const std::string place = command_path(*command);
     for (const CLI::App* below : command->get_subcommands({})) {
       if (below->get_group().empty()) continue;
       table += fmt::format("{}|{}|-|{}\n", place, below->get_name(), below->get_description());

@@ -103,9 +103,9 @@ int report_quality(const record::StudyStore& store, const ReportArguments& argum
   return 0;
 }
 
-analysis::ReportWishes wishes_of(const ReportArguments& arguments,
-                                 const analysis::TraceSource& traces) {
-  using Traces = analysis::ReportWishes::Traces;
+analysis::ReportOptions report_options(const ReportArguments& arguments,
+                                       const analysis::TraceSource& traces) {
+  using Traces = analysis::ReportOptions::Traces;
   return {.source = &traces,
           .page = !arguments.folder.empty(),
           .traces = arguments.cues == "auto"  ? Traces::if_few
@@ -184,8 +184,8 @@ int report(const ReportArguments& given) {
   if (arguments.is_public) outcomes = analysis::without_identities(std::move(outcomes));
   const analysis::TraceSource traces{store, key};
   const auto results = with_levels_if_any(
-      analysis::analysis_of(outcomes.design).results(outcomes, wishes_of(arguments, traces)), key,
-      arguments);
+      analysis::analysis_of(outcomes.design).results(outcomes, report_options(arguments, traces)),
+      key, arguments);
   if (!arguments.folder.empty()) return write_outcomes(store, outcomes, *results, arguments);
   print_results(store, *results, arguments);
   return 0;

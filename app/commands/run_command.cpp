@@ -28,8 +28,7 @@ int run(const RunOptions& options) {
   }
   if (options.is_simulated() && options.participant.empty()) {
     throw UsageError(
-        "run: nobody can be asked for a simulated participant's id; give --participant, for "
-        "instance S01");
+        "run: a simulated participant needs an id; give --participant, for instance S01");
   }
   return run_study_session(options);
 }
@@ -48,7 +47,7 @@ void add_session_options(CLI::App& command, RunOptions& options) {
                          "File of this station (default: <study>.station beside the pack)");
   command.add_option_function<std::string>(
       "--heads", [&options](const std::string& folder) { options.heads.folder = folder; },
-      "Folder of the second head file, on another disk (default: that of the last time)");
+      "Folder of the second head file, on another disk (default: the previous one)");
   add_accept_loss_option(command, options.heads.accept_loss);
   add_passphrase_option(command);
   command.add_flag("--pilot", options.pilot,
@@ -64,14 +63,15 @@ void add_session_options(CLI::App& command, RunOptions& options) {
                   "Enrolment number, one of this station's (default: its next)")
       ->check(CLI::Range(1, study::kMaxEnrolments));
   add_count_option(command, "--visit", options.visit,
-                   "Which visit of the participant this is, in a study with several", 1, 100);
+                   "Number of the participant's visit, in a study with several", 1, 100);
   command
       .add_option("--station", options.station,
                   "Name of this station, whose file is <study>.NAME.station")
       ->excludes(file);
-  command.add_option("--accept-clock", options.accept_clock,
-                     "Go on after a visit that a wrong clock put into the future; the reason is "
-                     "recorded");
+  command.add_option(
+      "--accept-clock", options.accept_clock,
+      "Continue after a visit with a date in the future due to a wrong clock; the reason is "
+      "recorded");
   add_yes_flag(command, options.yes);
 }
 
@@ -92,11 +92,11 @@ void add_device_options(CLI::App& command, RunOptions& options) {
       .add_option("--console-monitor", options.console_monitor,
                   "Monitor of the experimenter's window")
       ->check(CLI::Range(1, 16));
-  command.add_flag("!--no-sound", options.sound, "Play neither masking noise nor tones");
+  command.add_flag("!--no-sound", options.sound, "Play no masking noise and no tones");
   add_window_options(command, options.monitor, options.window_px);
   command
       .add_option("--text-scale", options.text_scale,
-                  "Size of this participant's letters, in place of the study's; recorded")
+                  "Text size for this participant, instead of the study's; recorded")
       ->check(finite_range(1.0, study::kMaxTextScale));
   command.add_flag("--high-contrast", options.high_contrast,
                    "Black on white for this participant; recorded");
@@ -109,7 +109,7 @@ void add_simulation_options(CLI::App& command, RunOptions& options) {
       "window");
   command.add_flag("--headless")
       ->needs(subject)
-      ->description("Without a window, as every simulated participant is");
+      ->description("Without a window; implied by a simulated participant");
   add_on_option(command, options.on);
   add_seed_option(command, options.seed, "Seed of the simulated participant");
   command.add_flag("--real-time", options.real_time, "Simulate the participant in real time");

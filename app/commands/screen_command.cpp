@@ -1,4 +1,4 @@
-// screen: the size of what a monitor shows.
+// screen: the physical scale of a monitor.
 #include "app/commands/commands.hpp"
 #include "app/terminal/console.hpp"
 #include "app/windows/participant/card_screen.hpp"
@@ -17,7 +17,7 @@ int calibrate_screen(const ParticipantWindowOptions& options) {
   const std::filesystem::path file = measured_screens_path();
   if (file.empty()) {
     throw UsageError(
-        "screen calibrate: there is no configuration folder to keep the scale in; set HOME or "
+        "screen calibrate: there is no configuration folder for the scale; set HOME or "
         "XDG_CONFIG_HOME");
   }
   ParticipantWindow window(options);
@@ -27,7 +27,7 @@ int calibrate_screen(const ParticipantWindowOptions& options) {
   run_beside(window, [&] {
     while (!is_measured && !window.gone()) is_measured = window.attend(card).has_value();
   });
-  if (!is_measured) throw UsageError("screen calibrate: was left before Enter; nothing is kept");
+  if (!is_measured) throw UsageError("screen calibrate: cancelled; nothing was saved");
   keep_measured_screen(before.monitor, card->mm_per_unit());
   print(fmt::format("{}\n{:.5f} mm a pixel, {:.1f} pixels an inch; kept in {}\n", before.monitor,
                     card->mm_per_unit(), 25.4 / card->mm_per_unit(), file.string()));
@@ -37,7 +37,7 @@ int calibrate_screen(const ParticipantWindowOptions& options) {
 }  // namespace
 
 void add_screen_command(CLI::App& program, Action& action) {
-  CLI::App* screen = program.add_subcommand("screen", "The size of what a monitor shows");
+  CLI::App* screen = program.add_subcommand("screen", "Physical scale of a monitor");
   screen->require_subcommand(1);
   const auto [command, options] =
       add_command(*screen, action, "calibrate",

@@ -33,7 +33,7 @@ void copy_below(const fs::path& from, const fs::path& to) {
   }
 }
 
-/// Where they may be: beside an installed program's folder, and in the source tree.
+/// Possible locations: beside an installed program's folder, and in the source tree.
 std::array<fs::path, 2> places() {
   std::error_code unknown;
   const fs::path program = fs::read_symlink("/proc/self/exe", unknown);
@@ -74,7 +74,7 @@ void refuse_installed_study(const fs::path& study) {
   if (end != installed.end()) return;
   throw UsageError(
       one_line(study.string()) +
-      ": belongs to the installation, where no pack can be made; copy the ready studies with "
+      ": is part of the installation, where no pack can be created; copy the ready studies with "
       "`touchtrial examples FOLDER`, and use that copy");
 }
 

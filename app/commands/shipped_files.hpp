@@ -1,4 +1,4 @@
-/// \file The ready studies, with their pictures and subject files, wherever the program is installed.
+/// \file Locates and copies the ready studies with their pictures and subject files.
 #pragma once
 
 #include <filesystem>
@@ -7,15 +7,16 @@ namespace touchtrial::app {
 
 /// The folder that holds `config` and `stimuli`: ../share/touchtrial beside an installed program's
 /// folder, or the source tree of one that runs where it was built.
-/// \throws FileError, with the places that were looked at, if neither has them
+/// \throws FileError, with the searched paths, if neither has them
 [[nodiscard]] std::filesystem::path shipped_folder();
 
-/// Copies the ready studies and what they name, in the same layout, into a new or empty folder.
+/// Copies the ready studies and the files that they name, in the same layout, into a new or empty
+/// folder.
 /// \throws as require_free of app/commands/made_folder.hpp
-/// \throws FileError with the system's reason; nothing is left of the folder then
+/// \throws FileError with the system's reason; the folder is then removed
 void copy_examples(const std::filesystem::path& folder);
 
-/// Refuses a study file of an installation: a pack would be made beside it.
+/// Refuses a study file of an installation, because a pack would be created beside it.
 /// \throws UsageError with the remedy
 void refuse_installed_study(const std::filesystem::path& study);
 

@@ -45,7 +45,7 @@ void add_simulate_command(CLI::App& program, Action& action) {
   add_study_argument(command, arguments.study.study);
   command
       .add_option("--db", arguments.study.database,
-                  "Database to make; its key is written to DB.key")
+                  "Database to create; its key is written to DB.key")
       ->check(place_validator())
       ->required();
   add_count_option(command, "--participants", options.participants, "Number of participants", 1,
@@ -53,7 +53,7 @@ void add_simulate_command(CLI::App& program, Action& action) {
   add_count_option(command, "--first-participant", options.first_participant,
                    "Number of the first participant, for a station whose database will be merged",
                    1, 1'000'000);
-  add_seed_option(command, options.seed, "Seed of everything random in participants");
+  add_seed_option(command, options.seed, "Seed of all randomness of participants");
   add_subject_option(command, arguments.study.subject);
   add_on_option(command, arguments.study.on);
   add_jobs_option(command, options.jobs);

@@ -31,8 +31,8 @@ void refuse_existing(const std::filesystem::path& path) {
   }
 }
 
-/// Puts a head file in the place of that of a database that is gone.
-void put_beside(const std::filesystem::path& made, const std::filesystem::path& place) {
+/// Writes a head file over the one of a database that is gone.
+void write_head_beside(const std::filesystem::path& made, const std::filesystem::path& place) {
   refuse_link(place);
   std::error_code error;
   std::filesystem::rename(made, place, error);
@@ -68,10 +68,10 @@ simulation::SimulationReport simulate_study(const StudyToSimulate& wanted) {
       key, pack, subject, wanted.options, *store, progress_bar("simulating"));
   if (!wanted.keep_blind) end_collection(*store);
   make_head(*store, made, key.signer());
-  store.reset();  // closes it, so that nothing lies beside it
+  store.reset();  // closes it, so that no journal is left beside it
   study::save_study_key(key_file, key);
-  // After the others: a database that is there is whole.
-  put_beside(record::head_path_for(made), record::head_path_for(wanted.database));
+  // Last, so that an existing database is complete.
+  write_head_beside(record::head_path_for(made), record::head_path_for(wanted.database));
   if (!move_to_free_name(made, wanted.database)) refuse_existing(wanted.database);
   return report;
 }

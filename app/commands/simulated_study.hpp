@@ -1,4 +1,4 @@
-/// \file A study that simulated participants take part in, from its file to its database.
+/// \file Simulates a whole study, from its file to its database.
 #pragma once
 
 #include "protocols/simulation/simulation.hpp"
@@ -14,16 +14,16 @@ struct StudyToSimulate {
   std::filesystem::path subject;   ///< a subject model; empty: the built-in one
   std::string on;                  ///< as of subject_for
   simulation::SimulationOptions options;
-  bool keep_blind = false;  ///< neither close the study nor unblind it
+  bool keep_blind = false;  ///< do not close and unblind the study
 };
 
 /// Prepares the study's pack, simulates its sessions, and closes and unblinds it. Shows progress on
 /// a terminal.
-/// \throws StoreError if the database, or another study's key, is there already
+/// \throws StoreError if the database, or another study's key, exists already
 /// \throws as load_study, subject_for, prepare_pack and simulation::simulate_study
 simulation::SimulationReport simulate_study(const StudyToSimulate& wanted);
 
-/// What was done, as `simulate --json` prints it.
+/// The result, as `simulate --json` prints it.
 [[nodiscard]] std::string simulation_json(const StudyToSimulate& wanted,
                                           const simulation::SimulationReport& report);
 

@@ -1,4 +1,4 @@
-// status: how collection stands, and the command line of the next participant.
+// status: the state of collection, and the command line for the next participant.
 #include "analysis/outcomes/study_status.hpp"
 #include "analysis/verification/head_check.hpp"
 #include "app/commands/commands.hpp"
@@ -34,7 +34,7 @@ struct StatusArguments {
   bool json = false;
 };
 
-/// What lies beside a database: the study file and the station's file, as far as they are there.
+/// The study file and the station's file beside a database, if they exist.
 struct FilesBeside {
   fs::path study;
   std::optional<study::Study> design;
@@ -42,7 +42,7 @@ struct FilesBeside {
   std::optional<study::Station> station;  ///< empty also if a passphrase protects the file
 };
 
-/// The station's file, if it is the database's. Never asks for a passphrase.
+/// Uses the station's file if it belongs to the database. Never asks for a passphrase.
 void take_station_file(const fs::path& file, const record::StudyCommitment& commitment,
                        FilesBeside& beside) {
   if (!commitment.station || !is_there(file)) return;
@@ -56,7 +56,7 @@ void take_station_file(const fs::path& file, const record::StudyCommitment& comm
     beside.station_file = file;
     beside.station = key.station;
   } catch (const Error&) {
-    // Another study's, or damaged: `run` says so when it is used.
+    // Another study's, or damaged; `run` reports that. std
   }
 }
 
@@ -69,8 +69,7 @@ fs::path study_file_of(const fs::path& station_file, const std::string& station)
   return study;
 }
 
-/// The study of people who are simulated without a prepared study: the key beside their database
-/// has it.
+/// Uses the study in the key beside a database that was simulated without a prepared study.
 void take_simulated_key(const fs::path& database, const record::StudyCommitment& commitment,
                         FilesBeside& beside) {
   const fs::path path = key_path_for(database, {});
@@ -79,7 +78,7 @@ void take_simulated_key(const fs::path& database, const record::StudyCommitment&
     const study::StudyKey key = study::load_study_key(path);
     if (key.simulated && key.seal == commitment.seal) beside.design = key.study;
   } catch (const Error&) {
-    // Another study's, or damaged: `report` says so when it is used.
+    // Another study's, or damaged; `report` reports that.
   }
 }
 
@@ -91,7 +90,7 @@ void take_study_of_station(const std::string& station, FilesBeside& beside) {
     beside.design = study::load_study(study);
     beside.study = study;
   } catch (const Error&) {
-    // Edited since: `run` says so.
+    // Edited since; `run` reports that.
   }
 }
 
@@ -132,7 +131,7 @@ FilesBeside files_beside(const StatusArguments& arguments,
   return beside;
 }
 
-/// Where there is no database yet: the named study, or that of the only station's file.
+/// Without a database: the named study, or that of the only station's file.
 FilesBeside files_before(const StatusArguments& arguments) {
   FilesBeside beside;
   if (!arguments.study.empty()) {
@@ -153,7 +152,7 @@ FilesBeside files_before(const StatusArguments& arguments) {
       station = beside.station->name;
     }
   } catch (const Error&) {
-    return {};  // damaged: `run` says so
+    return {};  // damaged; `run` reports that
   }
   take_study_of_station(station, beside);
   return beside;
@@ -170,7 +169,8 @@ analysis::StatusSources sources_for(const StatusArguments& arguments, const File
   return sources;
 }
 
-/// Sentences on stations and enrolment numbers. A station's own numbers need not begin at 1.
+/// Sentences on the balance of stations and enrolment numbers. A station's own numbers need not
+/// begin at 1.
 std::vector<std::string> balance_of(const record::StudyStore& store) {
   const record::StudyCommitment& commitment = store.commitment();
   if (commitment.station && commitment.station->name != study::kOnlyStation) return {};
@@ -189,11 +189,11 @@ struct NextSession {
   std::string participant;
   int visit = 1;
   bool is_open = false;
-  std::string from{};  ///< from when it is possible, in words; empty: now
+  std::string from{};  ///< earliest time, as text; empty: now
 };
 
-/// Whether as many have come as the study plans, so that nobody new is due.
-bool all_have_come(const analysis::StudyStatus& status) {
+/// Whether the planned number of participants has been reached, so that no new one is due.
+bool all_planned_present(const analysis::StudyStatus& status) {
   std::set<std::string> came;
   for (const analysis::PersonStatus& one : status.people) {
     const bool stands = one.state == "complete" || one.state == "open" || one.state == "stopped";
@@ -202,8 +202,8 @@ bool all_have_come(const analysis::StudyStatus& status) {
   return status.planned > 0 && static_cast<int>(came.size()) >= status.planned;
 }
 
-/// The next participant: an open session's participant, one who is to come, one whose next visit is
-/// due, or a new id.
+/// The next participant: that of an open session, one who has consented or replaces another, one
+/// whose next visit is due, or a new id.
 std::optional<NextSession> next_session(const analysis::StudyStatus& status) {
   std::vector<std::string> known;
   for (const analysis::PersonStatus& one : status.people) {
@@ -212,10 +212,10 @@ std::optional<NextSession> next_session(const analysis::StudyStatus& status) {
     }
     if (!one.participant.empty()) known.push_back(one.participant);
   }
-  if (!status.visits_to_come.empty()) {
-    const analysis::VisitToCome& visit = status.visits_to_come.front();
+  if (!status.upcoming_visits.empty()) {
+    const analysis::UpcomingVisit& visit = status.upcoming_visits.front();
     const bool is_due = visit.is_due(utc_now());
-    if (is_due || all_have_come(status)) {
+    if (is_due || all_planned_present(status)) {
       return NextSession{visit.participant, visit.visit, false,
                          is_due ? "" : utc_words(*visit.from)};
     }
@@ -225,7 +225,7 @@ std::optional<NextSession> next_session(const analysis::StudyStatus& status) {
   return NextSession{*id};
 }
 
-/// What a command line takes from a database: the names of its station and of its last device.
+/// The parts of a command line from a database: the names of its station and of its last device.
 struct DatabaseWords {
   std::string station = study::kOnlyStation;
   std::string device{};
@@ -259,14 +259,14 @@ std::string run_line(const StatusArguments& arguments, const FilesBeside& beside
   return line + (next.is_open ? " --on-existing resume" : "");
 }
 
-std::string what_comes(const NextSession& next) {
+std::string next_session_text(const NextSession& next) {
   const std::string visit =
       next.visit > 1 ? "visit " + std::to_string(next.visit) : std::string("session");
   return (next.is_open ? "resume the " : "") + visit + " of " + next.participant +
          (next.from.empty() ? "" : ", from " + next.from);
 }
 
-/// Nothing where sessions are recorded elsewhere, or by a program, or no more.
+/// Empty if sessions are recorded elsewhere, are simulated, or are over.
 std::vector<analysis::NextCommand> next_commands(const StatusArguments& arguments,
                                                  const FilesBeside& beside,
                                                  const DatabaseWords& words,
@@ -291,7 +291,7 @@ std::vector<analysis::NextCommand> next_commands(const StatusArguments& argument
                                             shell_word(version) + " --details -"});
   }
   next.push_back(
-      {what_comes(*session), run_line(arguments, beside, words, *session, status.pilot)});
+      {next_session_text(*session), run_line(arguments, beside, words, *session, status.pilot)});
   return next;
 }
 
@@ -336,7 +336,7 @@ int show_status(const StatusArguments& arguments) {
 void add_status_command(CLI::App& program, Action& action) {
   const auto [command, arguments] = add_command(
       program, action, "status",
-      "Who is done, who is open, what is left to do, and the next participant's command",
+      "Finished and open sessions, remaining work, and the command for the next participant",
       show_status);
   add_database_argument(command, arguments.database);
   command.add_option("--study", arguments.study,

@@ -53,7 +53,7 @@ struct ImportArguments {
   bool json = false;
 };
 
-/// Takes a number, or the word "file" for the resolution that the photographs state.
+/// Parses a number, or the word "file" for the resolution stated in the photographs.
 void take_resolution(const std::string& text, stimuli::ImportOptions& options) {
   if (text.empty()) return;
   if (text == "file") {

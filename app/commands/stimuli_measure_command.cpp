@@ -1,4 +1,4 @@
-// stimuli measure: numbers that describe pictures.
+// stimuli measure: statistics of pictures.
 #include "analysis/measures/picture_set.hpp"
 #include "app/commands/commands.hpp"
 #include "app/terminal/console.hpp"
@@ -28,7 +28,7 @@ struct MeasureArguments {
   bool json = false;
 };
 
-/// Pictures, and the rules by which forces are made of them.
+/// Pictures, and the rules for their forces.
 struct MeasureJob {
   std::vector<analysis::LabelledPicture> pictures;
   std::optional<study::Study> rules;  ///< the first study of the command line
@@ -76,7 +76,8 @@ std::vector<fs::path> sorted_entries(const fs::path& folder) {
   return entries;
 }
 
-/// Adds the pictures of a folder: each folder in it is a class, and each picture in it is a class.
+/// Adds the pictures of a folder: each subfolder is a class, and each picture directly in it is a
+/// class.
 void add_folder(MeasureJob& job, const fs::path& folder, const std::string& set) {
   const std::size_t before = job.pictures.size();
   for (const fs::path& entry : sorted_entries(folder)) {

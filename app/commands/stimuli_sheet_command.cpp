@@ -32,7 +32,8 @@ study::StudyKey key_of(const study::Study& study, const fs::path& path) {
                     "key with --key");
   }
   const study::StudyKey stored = study::load_study_key(path);
-  // The key may be elsewhere, for instance on a USB stick: pictures are found from the study file.
+  // Pictures are located from the study file, because the key may be elsewhere, for instance on a
+  // USB stick.
   study::StudyKey key = study::rekeyed(stored, study);
   if (key.seal != stored.seal) {
     throw VerificationError(study::misfit_of(study, stored, path, "--key"));
@@ -44,7 +45,7 @@ int draw_sheet(const SheetArguments& arguments) {
   const study::Study study = study::load_study(arguments.study);
   const study::PackPlace place = pack_place_for(arguments.study, arguments.pack);
   const fs::path key_path = arguments.key.empty() ? place.key : arguments.key;
-  // Whatever may be missing is missed before the pictures take hours.
+  // Missing inputs are reported before the pictures take hours.
   if (ending_of(arguments.output) != ".html") {
     throw UsageError("stimuli sheet: " + one_line(arguments.output.string()) +
                      ": a sheet is HTML; give a name that ends in .html");

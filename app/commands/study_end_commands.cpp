@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The participants whose sessions are open and could be continued; empty if there are none.
+/// The participants whose sessions are open and could be continued; may be empty.
 std::string left_open(const record::StudyStore& store) {
   std::string participants;
   for (const record::SessionRow& row : store.sessions()) {
@@ -42,8 +42,8 @@ int close(const CloseArguments& arguments) {
   record::StudyStore store = opened_to_record(database, arguments.files);
   const std::string open = left_open(store);
   if (!store.state().closed) {
-    confirm(fmt::format("{}: takes no session any more, for good; it has {}{}", database.string(),
-                        store.sessions().size(),
+    confirm(fmt::format("{}: accepts no further session, permanently; it has {}{}",
+                        database.string(), store.sessions().size(),
                         open.empty() ? ", and none is open"
                                      : ", and those of these participants are open and cannot be "
                                        "continued: " +
@@ -72,8 +72,8 @@ struct UnblindArguments {
   bool yes = false;
 };
 
-/// Whether the look is to be at the registered question alone.
-/// \throws StoreError if the registration has looks, and none of them is at this many participants
+/// Whether the look shows only the registered question.
+/// \throws StoreError if the registration has looks, but none at this number of participants
 bool is_registered_look(const record::StudyStore& store, const UnblindArguments& arguments) {
   if (!arguments.interim || arguments.unregistered || store.state().closed) return false;
   const study::StudyKey key = key_of_database(store, arguments.database, arguments.files.key);
@@ -96,7 +96,7 @@ bool is_registered_look(const record::StudyStore& store, const UnblindArguments&
                             "lists as a departure from the plan"));
 }
 
-/// \param registered  the look is at the registered question alone
+/// \param registered  the look shows only the registered question
 /// \throws StoreError if the last look was of the same kind, and shows the same sessions
 void refuse_same_look(const record::StudyStore& store, const UnblindArguments& arguments,
                       bool registered) {
@@ -114,8 +114,9 @@ void refuse_same_look(const record::StudyStore& store, const UnblindArguments& a
                "has ended; `touchtrial report` shows it again, and no other look is recorded"));
 }
 
-/// Asks before outcomes are seen, which nobody can forget. The store refuses what may not be.
-/// \param registered  the look is at the registered question alone
+/// Asks before outcomes are shown, because that cannot be undone. The store refuses forbidden
+/// looks.
+/// \param registered  the look shows only the registered question
 void confirm_look(const record::StudyStore& store, const UnblindArguments& arguments,
                   bool registered) {
   const bool one = !arguments.participant.empty();
@@ -126,7 +127,7 @@ void confirm_look(const record::StudyStore& store, const UnblindArguments& argum
                               : fmt::format("all {} sessions", store.sessions().size());
   const std::string what =
       registered ? "the answer to the registered question, from " : "the outcomes of ";
-  const std::string when = !one && arguments.interim ? ", while collection goes on" : "";
+  const std::string when = !one && arguments.interim ? ", while collection continues" : "";
   confirm(arguments.database.string() + ": this lets " + what + who + " be seen" + when +
               "; it is recorded and cannot be taken back; whoever sees them is no longer blind, "
               "and later exclusions say that outcomes had been seen",
@@ -136,7 +137,7 @@ void confirm_look(const record::StudyStore& store, const UnblindArguments& argum
 int unblind(const UnblindArguments& arguments) {
   record::StudyStore store =
       record::StudyStore::open(arguments.database, record::StudyStore::Access::read_write);
-  // Outcomes cannot be shown without the key: it signs that they are looked at.
+  // Outcomes cannot be shown without the key, which signs the look.
   sign_with_files(store, arguments.database,
                   {.key = key_path_for(arguments.database, arguments.files.key),
                    .station = {},
@@ -175,23 +176,21 @@ void add_close_command(CLI::App& program, Action& action) {
 }
 
 void add_unblind_command(CLI::App& program, Action& action) {
-  const auto [command, arguments] =
-      add_command(program, action, "unblind",
-                  "Record that outcomes are looked at; report then shows them", unblind);
+  const auto [command, arguments] = add_command(
+      program, action, "unblind", "Record a look at the outcomes; report then shows them", unblind);
   add_database_argument(command, arguments.database);
   command.add_option("--reason", arguments.reason, "Why; recorded")->required();
-  CLI::Option* interim =
-      command.add_flag("--interim", arguments.interim,
-                       "Look at the sessions that have ended, before collection is closed; at a "
-                       "registered look, at the registered question alone");
+  CLI::Option* interim = command.add_flag("--interim", arguments.interim,
+                                          "Look at finished sessions before collection is closed; "
+                                          "at a registered look, only at the registered question");
   command
       .add_flag("--unregistered", arguments.unregistered,
-                "With --interim: look at everything, whatever looks were registered; the report "
+                "With --interim: look at everything, regardless of registered looks; the report "
                 "lists it as a departure from the plan")
       ->needs(interim);
   command
       .add_option("--participant", arguments.participant,
-                  "Look at this participant's outcomes alone, at any time")
+                  "Look only at this participant's outcomes, at any time")
       ->excludes(interim);
   add_key_option(command, arguments.files.key);
   add_accept_loss_option(command, arguments.files.accept_loss);

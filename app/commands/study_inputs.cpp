@@ -42,7 +42,7 @@ std::filesystem::path key_path_for(const std::filesystem::path& database,
 
 namespace {
 
-/// Where keys were, by database; empty if the system knows no home.
+/// File of the keys' paths by database; empty without a home folder.
 std::filesystem::path memory_path() {
   const std::filesystem::path settings = device::default_device_settings_path();
   return settings.empty() ? settings : settings.parent_path() / "keys.json";
@@ -54,7 +54,7 @@ std::string absolute_name(const std::filesystem::path& file) {
   return whole.empty() ? file.string() : whole.string();
 }
 
-/// What is damaged is forgotten.
+/// Damaged entries are ignored.
 nlohmann::json remembered_keys() {
   constexpr std::uintmax_t kLargest = 1U << 20U;
   const std::filesystem::path path = memory_path();
@@ -63,7 +63,7 @@ nlohmann::json remembered_keys() {
   return keys.is_object() ? keys : nlohmann::json::object();
 }
 
-/// A home that cannot be written, such as a service's, remembers nothing.
+/// Without a writable home, as of a service, paths are not stored.
 void keep_place_of_key(const std::filesystem::path& database, const std::filesystem::path& key) {
   const std::filesystem::path path = memory_path();
   const std::string place = absolute_name(database);
@@ -138,7 +138,7 @@ std::vector<record::PersonalRecord> consents_beside(const std::filesystem::path&
 }
 
 std::string blind_words(const record::StudyState& state) {
-  return state.question ? "blind but for the registered question" : "not unblinded";
+  return state.question ? "blind except for the registered question" : "not unblinded";
 }
 
 namespace {
@@ -165,7 +165,7 @@ std::optional<study::StationKey> station_key_in(std::span<const std::filesystem:
         study::StationKey key = study::load_station_key(entry.path());
         if (key.signer().public_half() == commitment.station->key) return key;
       } catch (const UsageError&) {
-        throw;  // a question for a passphrase was broken off
+        throw;  // the passphrase prompt was cancelled
       } catch (const Error& error) {
         damaged += std::string("; ") + error.what();
       }
@@ -222,7 +222,7 @@ void sign_with_files(record::StudyStore& store, const std::filesystem::path& dat
                      const SigningFiles& files) {
   const Signer signer = signer_for(store, database, files);
   store.sign_with(signer);
-  keep_heads(store, database, signer, {.accept_loss = files.accept_loss}, HeadUse::if_there);
+  set_head_writer(store, database, signer, {.accept_loss = files.accept_loss}, HeadUse::if_there);
 }
 
 record::StudyStore opened_to_record(const std::filesystem::path& database,
@@ -270,7 +270,7 @@ study::LevelGains level_gains(const study::StudyKey& key) {
   };
 }
 
-/// Levels by the pilots of the laboratory, if the study names some and they can be read.
+/// Levels by the laboratory's pilots, if the study names a readable database of pilots.
 simulation::StimulusLevels by_pilots(simulation::StimulusLevels levels, const study::Study& study) {
   if (!study.level) return levels;
   try {

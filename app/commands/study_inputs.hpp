@@ -1,4 +1,4 @@
-/// \file What several commands read: the keys of databases, the packs of studies, subject models.
+/// \file Inputs of several commands: the keys of databases, the packs of studies, subject models.
 #pragma once
 
 #include "analysis/outcomes/outcomes.hpp"
@@ -23,18 +23,18 @@ namespace touchtrial::app {
 [[nodiscard]] std::filesystem::path key_path_for(const std::filesystem::path& database,
                                                  const std::filesystem::path& given);
 
-/// The key that was named for a database file the last time that one was: its path, and nothing
-/// else, which the user's configuration folder has (touchtrial/keys.json, for the user alone).
-/// \return empty if none is known
+/// The path of the key that was last named for a database file, stored in the user's configuration
+/// folder (touchtrial/keys.json, readable only by the user).
+/// \return empty if none is stored
 [[nodiscard]] std::filesystem::path remembered_key(const std::filesystem::path& database);
 
-/// The key that key_of_database loads: that of key_path_for, or, where no key is beside the
-/// database and none is given, the remembered one if it is there.
+/// The key that key_of_database loads: that of key_path_for, or, if no key is given or beside the
+/// database, the remembered one if it exists.
 [[nodiscard]] std::filesystem::path key_in_use(const std::filesystem::path& database,
                                                const std::filesystem::path& given);
 
-/// Loads the key at key_in_use, checks that it belongs to the database, and remembers where it is.
-/// Its pack_folder is the one of study::pack_in_reach.
+/// Loads the key at key_in_use, checks that it belongs to the database, and remembers its path. Its
+/// pack_folder is that of study::pack_in_reach.
 /// \param database  a file, or the address of a study, which has no key beside it
 /// \throws FileError if the key is missing or damaged
 /// \throws VerificationError, naming both files, if the key is not the database's
@@ -42,7 +42,7 @@ namespace touchtrial::app {
                                               const std::filesystem::path& database,
                                               const std::filesystem::path& given);
 
-/// analysis::load_outcomes, with the wording of the program's own questions.
+/// analysis::load_outcomes, with the wording of the built-in questions.
 [[nodiscard]] analysis::Outcomes outcomes_of(const record::StudyStore& store,
                                              const study::StudyKey& key,
                                              const std::string& participant = {});
@@ -53,41 +53,40 @@ namespace touchtrial::app {
 [[nodiscard]] std::vector<record::PersonalRecord> consents_beside(
     const std::filesystem::path& database);
 
-/// Why outcomes are not shown: "not unblinded", or that a look shows one answer alone.
+/// Why outcomes are not shown: "not unblinded", or that a look shows only one answer.
 [[nodiscard]] std::string blind_words(const record::StudyState& state);
 
-/// Loads the file of a database's station. That a protected file is another station's is said
-/// before anybody is asked for its passphrase; of others, loading does not tell.
+/// Loads the file of a database's station. A protected file of another station is refused before
+/// its passphrase is asked for.
 /// \throws StoreError with the remedy if the file's clear part names another station
 /// \throws FileError as load_station_key
 [[nodiscard]] study::StationKey station_key_for(const record::StudyCommitment& commitment,
                                                 const std::filesystem::path& database,
                                                 const std::filesystem::path& file);
 
-/// What a user named to sign with; empty paths: nothing.
+/// The signing files that a user named; empty paths: none.
 struct SigningFiles {
   std::filesystem::path key;
   std::filesystem::path station;
   std::string accept_loss;  ///< as HeadOptions::accept_loss
 };
 
-/// Lets somebody record on the file's chain, and signs what is recorded: with the investigator's
-/// key or the station's file that the user named; otherwise with the key beside the database, with
-/// the file of the database's station in the folder of the database or in the current folder, or
-/// with the remembered key.
-/// If the database has a head file, it is kept.
+/// Enables recording on the file's chain, and signs with the first of these: the investigator's key
+/// or the station's file that the user named; the key beside the database; the file of the
+/// database's station in the folder of the database or in the current folder; the remembered key.
+/// An existing head file is kept up to date.
 /// \throws FileError if a named file is missing or damaged
-/// \throws StoreError with the remedy if no file is there, or it is not the database's
-/// \throws as keep_heads
+/// \throws StoreError with the remedy if there is no file, or it is not the database's
+/// \throws as set_head_writer
 void sign_with_files(record::StudyStore& store, const std::filesystem::path& database,
                      const SigningFiles& files);
 
-/// A database that is written to, and in which the files let somebody record.
+/// A database opened for writing, with the files that sign.
 /// \throws as StudyStore::open and sign_with_files
 [[nodiscard]] record::StudyStore opened_to_record(const std::filesystem::path& database,
                                                   const SigningFiles& files);
 
-/// Prints the new end of the file's chain, if the database has a head file: somebody recorded.
+/// Prints the new end of the file's chain after recording, if the database has a head file.
 void print_head(const record::StudyStore& store, const std::filesystem::path& database);
 
 /// The pack and key of a prepared study.
@@ -98,37 +97,37 @@ void print_head(const record::StudyStore& store, const std::filesystem::path& da
 /// Writes the files of all stations beside the key.
 void save_station_files(const study::StudyKey& key, const study::PackPlace& place);
 
-/// The key of a simulated study. Its secrets follow from the study's seed, so that its databases
-/// belong together and can be made again. The pack that it names is at simulated_pack_place.
+/// The key of a simulated study. Its secrets are derived from the study's seed, so that its
+/// databases belong together and can be reproduced. Its pack is at simulated_pack_place.
 [[nodiscard]] study::StudyKey simulated_key(const study::Study& study,
                                             const std::filesystem::path& study_file);
 
-/// \return how many threads work on levels: one for each core
+/// \return the number of threads for levels: one for each core
 [[nodiscard]] int cores();
 
-/// study::prepare_pack of a study that may state its level, with a progress bar.
+/// study::prepare_pack with a progress bar, also for a study that states its level.
 [[nodiscard]] study::PrepareReport prepare_here(const study::PackLock& lock,
                                                 const study::StudyKey& key,
                                                 study::PrepareOptions options);
 
-/// Makes what is missing of the key's pack, with a progress bar, and prints the warnings. Waits
-/// while somebody else prepares the pack.
+/// Completes the key's pack, with a progress bar, and prints the warnings. Waits while another
+/// process prepares the pack.
 /// \throws as plane_of and prepare_pack
 void prepare_simulated_pack(const study::StudyKey& key);
 
-/// The levels of a study's stimuli (docs/perception.md), on the device that it names, else on all
-/// that the program ships, with all of the processor's cores.
-/// \throws FileError if the key's pack is not there or lacks a stimulus
-/// \throws StudyError if the study names a device that is not there
+/// The levels of a study's stimuli (docs/perception.md), on its device or else on all built-in
+/// device models, computed on all cores.
+/// \throws FileError if the key's pack is missing or lacks a stimulus
+/// \throws StudyError if the study names an unknown device
 [[nodiscard]] simulation::StimulusLevels levels_of_pack(const study::StudyCodes& key);
 
-/// Results with those levels, if the key's pack is there; a warning says why they could not be
+/// Results with those levels if the key's pack exists; a warning states why they could not be
 /// computed.
 /// \throws StudyError as levels_of_pack
 [[nodiscard]] std::unique_ptr<const analysis::Results> with_levels(
     std::unique_ptr<const analysis::Results> results, const study::StudyKey& key);
 
-/// Refuses to overwrite another key, of which there may be no copy. The same key may stay when its
+/// Refuses to overwrite another key, which may be the only copy. The same key may remain after its
 /// database was removed.
 /// \throws StoreError if another key is at `path`
 void refuse_other_key(const std::filesystem::path& path, const study::StudyKey& key);

@@ -30,12 +30,11 @@ std::string text_of_report(const std::string& file, const merging::SendReport& r
       fmt::format("{}: {} {}, {} there before\n", file, counted(std::ssize(report.sent), "session"),
                   dry_run ? "to send" : "sent", report.already_there);
   if (report.rows_with_erased_keys.empty()) return text;
-  return text +
-         fmt::format(
-             "{}: the server still holds keys of participants who withdrew; whoever owns the "
-             "table destroys them with DELETE FROM touchtrial_bundles WHERE bundle IN ({}); "
-             "VACUUM FULL touchtrial_bundles; and its backups and WAL archives\n",
-             file, fmt::join(report.rows_with_erased_keys, ", "));
+  return text + fmt::format(
+                    "{}: the server still holds keys of participants who withdrew; the table's "
+                    "owner destroys them with DELETE FROM touchtrial_bundles WHERE bundle IN ({}); "
+                    "VACUUM FULL touchtrial_bundles; and its backups and WAL archives\n",
+                    file, fmt::join(report.rows_with_erased_keys, ", "));
 }
 
 int sync(const SyncArguments& arguments) {
@@ -75,7 +74,8 @@ void add_sync_command(CLI::App& program, Action& action) {
   add_database_argument(command, arguments.database, "Database of the station");
   const std::string meaning = "postgresql://USER@HOST/DATABASE; ~/.pgpass has the password";
   command.add_option("SERVER", arguments.server, meaning)->required();
-  command.add_flag("--dry-run", arguments.dry_run, "Show what would be sent, and change nothing");
+  command.add_flag("--dry-run", arguments.dry_run,
+                   "Show what would be sent, without changing anything");
   add_json_flag(command, arguments.json);
 }
 

@@ -1,4 +1,4 @@
-/// \file The texture with which devices and servos are tried out, and a plain wall.
+/// \file The texture for tests of devices and servos, and a plain wall.
 #pragma once
 
 #include "core/plane_geometry.hpp"
@@ -12,7 +12,7 @@ namespace touchtrial::app {
 class TestTexture {
  public:
   /// \param side_px  side of the square plane, at the default pitch; >= 16
-  /// \param max_stiffness_n_per_mm  of the device, which wall and texture stay below; 0: not known
+  /// \param max_stiffness_n_per_mm  of the device, not exceeded by wall and texture; 0: unknown
   explicit TestTexture(int side_px, double max_stiffness_n_per_mm = 0.0);
 
   [[nodiscard]] PlaneGeometry plane() const noexcept { return field_.view().geometry; }

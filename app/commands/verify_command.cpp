@@ -39,7 +39,7 @@ std::string head_of(const VerifyArguments& arguments) {
   const bool is_long_enough = head.size() >= kSpokenDigits && head.size() <= kHashDigits;
   if (head.empty() || (is_hex && is_long_enough)) return head;
   throw UsageError(
-      "--head: is none; give the 16 digits of a day sheet, or the 64 that verify printed");
+      "--head: is not a head; give the 16 digits of a day sheet, or the 64 that verify printed");
 }
 
 int verify(const VerifyArguments& arguments) {
@@ -66,13 +66,13 @@ void add_verify_command(CLI::App& program, Action& action) {
   command.add_option("--pack", arguments.pack,
                      "Pack of the study (default: the one that the key names, or one of that "
                      "name beside the database or here)");
+  command.add_option("--head", arguments.head,
+                     "An earlier head of the file's chain, for instance from a day sheet, which "
+                     "the chain must still "
+                     "contain");
   command.add_option(
-      "--head", arguments.head,
-      "A former head of the file's chain, of a day sheet for instance, which the chain must still "
-      "contain");
-  command.add_option("--head-file", arguments.heads,
-                     "A further head file, whose knowledge the database must have; of a merged "
-                     "database, a station's");
+      "--head-file", arguments.heads,
+      "Another head file to compare the database with; for a merged database, a station's");
   add_json_flag(command, arguments.json);
 }
 

@@ -21,13 +21,13 @@ namespace {
 
 constexpr std::size_t kHelpColumns = 80;
 constexpr std::size_t kNameColumns = 24;
-/// A longer list of choices stands in the meaning of an option, not beside its name.
+/// A longer list of choices is shown in the meaning of an option, not beside its name.
 constexpr std::size_t kMaxChoicesBesideName = 40;
 
 /// An option, an argument or a command.
 struct Item {
   std::string name;
-  std::string value;  ///< what follows the name; may be empty
+  std::string value;  ///< shown after the name; may be empty
   std::string meaning;
   std::string page{};  ///< of a command: "device-accept"
 };
@@ -41,11 +41,11 @@ struct Page {
   std::string name;  ///< "touchtrial device accept"
   std::string summary;
   std::string synopsis;  ///< "touchtrial device accept [OPTIONS] [NAME]"
-  std::string start;     ///< where to start; may be empty
+  std::string start;     ///< first steps; may be empty
   std::vector<Section> sections;
 };
 
-/// What the parser says of a value: its kind, and what limits it. For instance "TEXT:{a,b}",
+/// The parser's description of a value: its type and its limits. For instance "TEXT:{a,b}",
 /// "INT:INT in [1 - 9]", "TEXT:FOLDER", "a|b".
 struct ValueType {
   explicit ValueType(const CLI::Option& option) {
@@ -93,7 +93,7 @@ std::string names_among(const CLI::App& command, const std::set<CLI::Option*>& s
   return listed(names);
 }
 
-/// What an option means, its limits and default, and what it needs and excludes.
+/// The meaning of an option, its limits and default, and what it requires and excludes.
 std::string meaning_of(const CLI::App& command, const CLI::Option& option) {
   std::string text = option.get_description();
   const auto add = [&text](const std::string& label, const std::string& sentence) {
@@ -132,7 +132,7 @@ std::vector<Section> command_sections(const CLI::App& command) {
   std::vector<Section> sections;
   for (const CLI::App* below : command.get_subcommands({})) {
     if (below->get_group().empty()) continue;
-    // The parser's own group, of commands that were put into none.
+    // The parser's group of commands without a group.
     const std::string group = below->get_group() == "Subcommands" ? "Commands" : below->get_group();
     auto section = std::ranges::find(sections, group, &Section::title);
     if (section == sections.end()) section = sections.insert(sections.end(), Section{group, {}});
@@ -143,7 +143,7 @@ std::vector<Section> command_sections(const CLI::App& command) {
 
 Page read_page(const CLI::App& command) {
   Page page{words_of(command), command.get_description(), words_of(command) + " [OPTIONS]",
-            // The parser hands it on to the commands below.
+            // Subcommands inherit it.
             command.get_parent() == nullptr ? command.get_footer() : "", command_sections(command)};
   for (const CLI::Option* option : options_of(command)) {
     if (option->nonpositional()) continue;
@@ -184,7 +184,7 @@ std::string help(const Page& page) {
 /// \name man(7)
 ///@{
 
-/// Text that the formatter takes as it is: hyphens that can be copied, no requests.
+/// Escapes text for roff: hyphens that can be copied, no requests.
 std::string in_roff(std::string_view text) {
   std::string safe;
   for (const char c : text) {

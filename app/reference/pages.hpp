@@ -1,5 +1,5 @@
-/// \file The page of a command, read off the parser: the screen of `--help`, the manual page, and
-/// the page of the documentation.
+/// \file The page of a command, generated from the parser: for `--help`, as manual page, and for
+///   the documentation.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace touchtrial::app {
 
 enum class PageFormat { help, man, markdown };
 
-/// The page of a command, without what is hidden.
+/// The page of a command, without hidden parts.
 [[nodiscard]] std::string page_of(const CLI::App& command, PageFormat format);
 
 /// Shows page_of in place of the parser's own help.
@@ -27,7 +27,7 @@ class PageFormatter final : public CLI::FormatterBase {
 /// \param between  them
 [[nodiscard]] std::string words_of(const CLI::App& command, const std::string& between = " ");
 
-/// The command of this name below another.
+/// The subcommand of this name.
 /// \throws UsageError that names the nearest if there is none
 [[nodiscard]] const CLI::App& command_named(const CLI::App& above, const std::string& name);
 
@@ -37,7 +37,7 @@ class PageFormatter final : public CLI::FormatterBase {
 /// The options and arguments of a command that are not hidden; arguments first.
 [[nodiscard]] std::vector<const CLI::Option*> options_of(const CLI::App& command);
 
-/// "-o", "--out"; of an argument its name alone.
+/// "-o", "--out"; for an argument only its name.
 [[nodiscard]] std::vector<std::string> names_of(const CLI::Option& option);
 
 /// All values that an option takes, if they are few; else empty.

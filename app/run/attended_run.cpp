@@ -25,13 +25,13 @@ using namespace std::chrono_literals;
 constexpr std::chrono::nanoseconds kOnTerminal = 250ms;
 constexpr std::chrono::nanoseconds kOnPipe = 1s;
 
-/// Time between two looks at keys, signals and the servo.
+/// Time between two polls of keys, signals and the servo.
 constexpr auto kBetweenFrames = 16ms;
 
-/// How long a signal waits at most for an answer that is being typed.
+/// The longest delay of a signal while an answer is typed.
 constexpr int kAnswerPollMs = 100;
 
-/// A key that is held repeats sooner than this, even for the first time (660 ms by default in X).
+/// A held key repeats sooner than this, even the first time (660 ms by default in X).
 constexpr std::chrono::nanoseconds kFreshPress = 1s;
 
 device::ServoOptions options_for(const device::SafetyLimits& limits, double rate_hz) {
@@ -49,7 +49,7 @@ std::optional<std::string> line_of_input() {
   while (!device::StopOnSignals::asked()) {
     pollfd input{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
     if (::poll(&input, 1, kAnswerPollMs) <= 0) continue;
-    // One letter at a time, so that the next line stays for the next question.
+    // One letter at a time, so that the next line remains for the next question.
     char letter = 0;
     const ssize_t got = ::read(STDIN_FILENO, &letter, 1);
     if (got < 0 && errno == EINTR) continue;
@@ -75,7 +75,7 @@ std::optional<std::string> attended_answer(const std::string& question) {
     const std::chrono::nanoseconds now = device::monotonic_now();
     if (!has_keys || !line->empty() || now - quiet_since >= kFreshPress) return line;
     quiet_since = now;
-    if (!told) std::fputs("let go of Enter, read, and press it anew after a second\n", stderr);
+    if (!told) std::fputs("release Enter, read, and press it again after a second\n", stderr);
     told = true;
   }
   return std::nullopt;
@@ -91,13 +91,13 @@ AttendedRun::AttendedRun(device::HapticDevice& device, const device::SafetyLimit
       signals_(device, control_),
       on_terminal_(::isatty(STDERR_FILENO) != 0) {
   if (!keys) return;
-  device::StopOnSignals::before_dying(TerminalKeys::restore);
+  device::StopOnSignals::set_crash_cleanup(TerminalKeys::restore);
   keys_.emplace();
 }
 
 AttendedRun::~AttendedRun() {
   keys_.reset();
-  device::StopOnSignals::before_dying(nullptr);
+  device::StopOnSignals::set_crash_cleanup(nullptr);
 }
 
 std::optional<device::ServoReport> AttendedRun::run(const PhaseName& phase,
@@ -130,7 +130,7 @@ std::optional<device::ServoReport> AttendedRun::run(const PhaseName& phase,
   }
   running.finish();
   end_line();
-  // A stop applies to all later runs, but the end of this run must not end the next one.
+  // A stop applies to all later runs, but a finished run must not end the next one.
   if (stop_ == AttendedStop::none) control_.reset();
   return report;
 }

@@ -1,5 +1,5 @@
-/// \file Runs of a device's servo that a person attends at a terminal: live numbers, keys, watchdog,
-/// signals.
+/// \file Runs of a device's servo with a person at the terminal: live numbers, keys, watchdog,
+///   signals.
 #pragma once
 
 #include "app/terminal/terminal_keys.hpp"
@@ -27,10 +27,9 @@ enum class AttendedStop {
   signal,   ///< Ctrl-C, or another signal that ends the program
 };
 
-/// Asks a question on standard error and waits for the line of standard input that answers it. What
-/// was typed at a terminal before the question appeared answers nothing and is dropped; and Enter
-/// alone counts only after a second without one, so that a key that is held consents to nothing.
-/// What follows the line stays in the input.
+/// Asks a question on standard error and reads the answer, one line of standard input. Input typed
+/// at a terminal before the question appeared is discarded. Enter alone counts only after a second
+/// without it, so that a held key does not consent. Later lines remain in the input.
 /// \return nothing if a signal asked the program to end
 /// \throws UsageError at the end of the input
 [[nodiscard]] std::optional<std::string> attended_answer(const std::string& question);
@@ -47,7 +46,7 @@ class NoForce final : public device::ForceSource, public device::SampleSink {
 /// The time within which a person can home a device.
 inline constexpr double kReadyLimitS = 120.0;
 
-/// One device with everything around its servo. Belongs to the main thread.
+/// One device with its servo, watchdog and keys. Belongs to the main thread.
 class AttendedRun {
  public:
   static constexpr double kRecordedS = 10.0;  ///< length of the flight record
@@ -63,21 +62,21 @@ class AttendedRun {
   AttendedRun(const AttendedRun&) = delete;
   AttendedRun& operator=(const AttendedRun&) = delete;
 
-  /// Runs the servo in real time until it ends. Attends to keys, and shows a live line on standard
-  /// error. No run begins after a stop.
-  /// \param is_done  called repeatedly; once it returns true, the force fades and the run ends
+  /// Runs the servo in real time until it ends. Handles keys, and shows a live line on standard
+  /// error. No run starts after a stop.
+  /// \param is_done  polled; once it returns true, the force fades and the run ends
   /// \return nothing if there was a stop before
   std::optional<device::ServoReport> run(const PhaseName& phase, device::ForceSource& force,
                                          device::SampleSink& sink, double seconds,
                                          const std::function<bool()>& is_done = {});
 
-  /// Tells the person what to do and runs without force until the device is ready. Returns at once
-  /// if it is ready already. A person who has put the arm at its reset position says so by the key
-  /// h, or by a line of standard input if no keys are read.
+  /// Instructs the person and runs without force until the device is ready. Returns at once if it
+  /// is ready already. The person confirms the reset position of the arm by the key h, or by a line
+  /// of standard input if no keys are read.
   /// \throws DeviceError if it is not ready after `limit_s`, or a fault occurs
   void wait_until_ready(double limit_s);
 
-  /// The largest force of the runs that follow, within the limits that this was made with.
+  /// Limits the force of later runs, within the limits of the constructor.
   /// \param most_n  > 0
   void limit_force(double most_n) noexcept;
 
@@ -99,7 +98,7 @@ class AttendedRun {
 
   device::HapticDevice& device_;
   device::ServoOptions options_;
-  double max_force_n_;  ///< of the limits that this was made with
+  double max_force_n_;  ///< from the constructor's limits
   device::ServoControl control_;
   device::LatestValue<device::ServoState> state_;
   device::LatestValue<device::ServoParameters> parameters_;

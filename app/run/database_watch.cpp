@@ -31,15 +31,15 @@ fs::path log_of(const fs::path& database) {
 
 void PatientSink::accept(const record::Event& event,
                          const std::optional<record::SealedTrace>& trace) {
-  patiently([&] { inner_->accept(event, trace); });
+  retry_while_locked([&] { inner_->accept(event, trace); });
 }
 
 void PatientSink::accept_together(std::span<const record::RecordedEvent> events) {
-  patiently([&] { inner_->accept_together(events); });
+  retry_while_locked([&] { inner_->accept_together(events); });
 }
 
-void PatientSink::patiently(const std::function<void()>& store) {
-  // Longer than any disk takes that serves a session.
+void PatientSink::retry_while_locked(const std::function<void()>& store) {
+  // Longer than any usable disk takes.
   constexpr std::chrono::milliseconds kNoticed{500};
   const Clock::time_point began = Clock::now();
   for (;;) {
@@ -60,9 +60,9 @@ DatabaseWatch::DatabaseWatch(fs::path database)
       log_{log_of(database_), id_of(log_of(database_))} {}
 
 std::string DatabaseWatch::trouble() {
-  constexpr std::chrono::seconds kBetweenLooks{1};
+  constexpr std::chrono::seconds kPollInterval{1};
   const Clock::time_point now = Clock::now();
-  if (!trouble_.empty() || now - looked_ < kBetweenLooks) return trouble_;
+  if (!trouble_.empty() || now - looked_ < kPollInterval) return trouble_;
   looked_ = now;
   for (const File& file : {file_, log_}) {
     const auto id = id_of(file.path);
@@ -82,13 +82,13 @@ bool is_on_disk(const fs::path& database, int session, const record::StudyStore&
     const auto here = store.last_event(session);
     return there && here && there->sequence == here->sequence && there->hash == here->hash;
   } catch (const record::LockedStore&) {
-    return true;  // by a reader, who cannot have changed it
+    return true;  // locked by a reader, who cannot have changed it
   } catch (const StoreError&) {
     return false;
   }
 }
 
-std::string rescue(const fs::path& database, const record::StudyStore& store) {
+std::string save_copy(const fs::path& database, const record::StudyStore& store) {
   for (int i = 1;; ++i) {
     fs::path name = database;
     name.replace_extension();
@@ -96,7 +96,7 @@ std::string rescue(const fs::path& database, const record::StudyStore& store) {
     if (is_there(name)) continue;
     try {
       store.copy_to(name);
-      // The copy is held against a head of its own.
+      // The copy has its own head file.
       std::error_code ignored;
       fs::copy_file(beside_database(database, ".head"), beside_database(name, ".head"), ignored);
       return fmt::format(

@@ -1,5 +1,5 @@
-/// \file What other programs do to a session's database while the session runs: they lock it,
-/// replace it or remove it.
+/// \file Detects other programs that lock, replace or remove a session's database while the session
+///   runs.
 #pragma once
 
 #include "record/session_recorder.hpp"
@@ -16,18 +16,18 @@
 
 namespace touchtrial::app {
 
-/// Passes a session's events on, and waits as long as another program has the database locked.
+/// Passes on a session's events, and waits while another program locks the database.
 class PatientSink final : public record::EventSink {
  public:
   /// Called about every two seconds while an event waits, on the session's thread.
-  /// \return whether to go on waiting
+  /// \return whether to continue waiting
   using Waiting = std::function<bool(const std::string& why)>;
 
   explicit PatientSink(std::unique_ptr<record::EventSink> inner) : inner_(std::move(inner)) {}
-  /// Without it, nothing waits.
+  /// Without it, events do not wait.
   void set_waiting(Waiting waiting) { waiting_ = std::move(waiting); }
-  /// How long an event waited at most since the last call; empty: less than anybody notices.
-  [[nodiscard]] std::optional<std::chrono::steady_clock::duration> take_waited() {
+  /// The longest wait of an event since the last call; empty: not noticeable.
+  [[nodiscard]] std::optional<std::chrono::steady_clock::duration> take_delay() {
     return std::exchange(waited_, std::nullopt);
   }
 
@@ -35,20 +35,20 @@ class PatientSink final : public record::EventSink {
   void accept_together(std::span<const record::RecordedEvent> events) override;
 
  private:
-  void patiently(const std::function<void()>& store);
+  void retry_while_locked(const std::function<void()>& store);
 
   std::unique_ptr<record::EventSink> inner_;
   Waiting waiting_;
   std::optional<std::chrono::steady_clock::duration> waited_;
 };
 
-/// Looks whether the files at a database's path are still those that were opened.
+/// Checks whether the files at a database's path are still the opened ones.
 class DatabaseWatch {
  public:
-  /// \param database  of an open store, which has made its log
+  /// \param database  of an open store with a log
   explicit DatabaseWatch(std::filesystem::path database);
 
-  /// Looks at the disk, at most once a second.
+  /// Checks the disk, at most once a second.
   /// \return what happened, for instance "study.db was replaced by another file while the session
   ///   ran"; empty: nothing
   [[nodiscard]] std::string trouble();
@@ -66,15 +66,15 @@ class DatabaseWatch {
   std::chrono::steady_clock::time_point looked_{};
 };
 
-/// Reads the end of a session back by the database's path.
-/// \param store  that recorded the session
-/// \return whether the path holds the session as it was recorded
+/// Reads back the end of a session by the database's path.
+/// \param store  the one that recorded the session
+/// \return whether the file at the path holds the session as recorded
 [[nodiscard]] bool is_on_disk(const std::filesystem::path& database, int session,
                               const record::StudyStore& store);
 
-/// Saves what an open store holds to a free name beside the database.
+/// Saves the content of an open store to a free name beside the database.
 /// \return what was done, for a person
-[[nodiscard]] std::string rescue(const std::filesystem::path& database,
-                                 const record::StudyStore& store);
+[[nodiscard]] std::string save_copy(const std::filesystem::path& database,
+                                    const record::StudyStore& store);
 
 }  // namespace touchtrial::app

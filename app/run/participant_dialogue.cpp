@@ -24,7 +24,7 @@
 namespace touchtrial::app {
 namespace {
 
-/// As reports show ages.
+/// As in reports.
 constexpr std::array<std::string_view, 8> kAgeBands = {"under 18", "18-19", "20-29", "30-39",
                                                        "40-49",    "50-59", "60-69", "70 or more"};
 constexpr std::array<std::string_view, 2> kHands = {"right", "left"};
@@ -61,14 +61,14 @@ class DialogueTexts {
     for (const std::string& option : options) question.options.push_back(translated(option));
     return question;
   }
-  /// kAgeBands, as they are shown.
+  /// kAgeBands, as displayed.
   [[nodiscard]] std::vector<std::string> ages() const {
     std::vector<std::string> bands(kAgeBands.begin(), kAgeBands.end());
     bands.front() = say("age_under", {{"years", "18"}});
     bands.back() = say("age_from", {{"years", "70"}});
     return bands;
   }
-  /// kHands, as they are shown.
+  /// kHands, as displayed.
   [[nodiscard]] std::vector<std::string> hands() const {
     const auto& words = texts_.at("handedness");
     return {words.at("pen_right"), words.at("pen_left")};
@@ -79,7 +79,7 @@ class DialogueTexts {
   study::Texts texts_;
 };
 
-/// The option that was chosen; empty if the question was left out.
+/// The chosen option; empty if the question was skipped.
 template <std::size_t count>
 std::string option_in(const std::array<std::string_view, count>& options,
                       const std::string& answer) {
@@ -105,7 +105,7 @@ ParticipantAnswers ask_participant(const AskQuestions& ask, const ParticipantQue
     const std::vector<std::string> answers = ask({&first, person.id});
     person.id = answers.at(0);
     person.has_consented = answers.at(1) == "0";
-    remark = questions.why_not(person.id);
+    remark = questions.refusal(person.id);
     if (remark.empty()) break;
   }
   if (!person.has_consented) return person;
@@ -128,7 +128,7 @@ std::vector<std::string> answers_in(ParticipantWindow& window, const session::Qu
   }
   const std::string stopped = EndingSignals::message();
   throw UsageError("run: " + (stopped.empty() ? "the window was closed" : stopped) +
-                   " before anybody said who the participant is; no session began");
+                   " before a participant was chosen; no session began");
 }
 
 void record(const ParticipantAnswers& person, const RunOptions& options,
@@ -143,7 +143,7 @@ void record(const ParticipantAnswers& person, const RunOptions& options,
                     person.id, consent.consent_version));
 }
 
-/// "age 20-29, pen in the left hand"; empty if nothing was said.
+/// "age 20-29, pen in the left hand"; empty if neither was given.
 std::string remark_on(const ParticipantAnswers& person) {
   std::string remark;
   if (!person.age_band.empty()) remark = "age " + person.age_band;
@@ -151,23 +151,23 @@ std::string remark_on(const ParticipantAnswers& person) {
   return remark + (remark.empty() ? "" : ", ") + "pen in the " + person.hand + " hand";
 }
 
-/// Whom a database knows.
+/// The participants of a database.
 struct KnownPeople {
   std::vector<record::SessionRow> sessions{};
-  std::vector<analysis::VisitToCome> visits{};
+  std::vector<analysis::UpcomingVisit> visits{};
   std::vector<std::string> ids{};
 
   explicit KnownPeople(const std::filesystem::path& database) : ids(known_ids(database)) {
     if (!is_there(database)) return;
     const auto store = record::StudyStore::open(database, record::StudyStore::Access::read_only);
     sessions = store.sessions();
-    visits = analysis::visits_to_come(store);
+    visits = analysis::upcoming_visits(store);
   }
-  [[nodiscard]] const analysis::VisitToCome* next_visit(const std::string& id) const {
-    const auto found = std::ranges::find(visits, id, &analysis::VisitToCome::participant);
+  [[nodiscard]] const analysis::UpcomingVisit* next_visit(const std::string& id) const {
+    const auto found = std::ranges::find(visits, id, &analysis::UpcomingVisit::participant);
     return found == visits.end() ? nullptr : &*found;
   }
-  /// Of the participant's last session; 0 if there is none.
+  /// Of the participant's last session; 0 if none.
   [[nodiscard]] int last_visit(const std::string& id) const {
     int last = 0;
     for (const record::SessionRow& row : sessions) {
@@ -177,41 +177,41 @@ struct KnownPeople {
   }
 };
 
-/// The visit that the session will be: the one that the options name, or else the participant's
-/// next, or the one that is taken up or begun again.
+/// The number of the session's visit: from the options, else the participant's next, or the one
+/// that is resumed or restarted.
 int visit_of(const RunOptions& options, const KnownPeople& people, const std::string& id) {
   if (options.visit > 1) return options.visit;
-  if (const analysis::VisitToCome* const next = people.next_visit(id)) return next->visit;
+  if (const analysis::UpcomingVisit* const next = people.next_visit(id)) return next->visit;
   return std::max(1, people.last_visit(id));
 }
 
-/// What ask_participant asks, and why an id may not be the one that is meant.
+/// The questions of ask_participant, with doubts about an id.
 ParticipantQuestions questions_for(const RunOptions& options, const study::StationKey& key,
                                    const KnownPeople& people) {
   const DialogueTexts texts(key.study.session);
-  const auto comes_for = [texts, of = std::to_string(key.study.visits.count)](
-                             const analysis::VisitToCome& next) {
+  const auto refusal_for = [texts, of = std::to_string(key.study.visits.count)](
+                               const analysis::UpcomingVisit& next) {
     return texts.say("next_visit",
                      {{"id", next.participant}, {"visit", std::to_string(next.visit)}, {"of", of}});
   };
   ParticipantQuestions questions;
   questions.session = key.study.session;
-  std::string said;  // the id that something was said about
+  std::string said;  // the id that was already questioned
   if (options.visit == 1 && !people.visits.empty() && people.visits.front().is_due(utc_now())) {
     said = people.visits.front().participant;
     questions.proposed = said;
-    questions.note = comes_for(people.visits.front());
+    questions.note = refusal_for(people.visits.front());
   } else if (options.visit == 1) {
     questions.proposed = proposed_participant(people.sessions, key.station);
   }
-  questions.why_not = [&options, &people, texts, comes_for,
+  questions.refusal = [&options, &people, texts, refusal_for,
                        said](const std::string& id) mutable -> std::string {
     if (!record::is_participant_id(id)) return texts.say("id_rule");
-    const bool is_said = std::exchange(said, id) == id;
-    if (const analysis::VisitToCome* const next = people.next_visit(id)) {
+    const bool is_mentioned = std::exchange(said, id) == id;
+    if (const analysis::UpcomingVisit* const next = people.next_visit(id)) {
       if (options.visit > 1) return "";
-      // A mistyped id must not become somebody's next visit.
-      if (next->is_due(utc_now())) return is_said ? "" : comes_for(*next);
+      // A mistyped id must not become another participant's next visit.
+      if (next->is_due(utc_now())) return is_mentioned ? "" : refusal_for(*next);
       return texts.say(
           "too_early",
           {{"id", id}, {"visit", std::to_string(next->visit)}, {"time", utc_words(*next->from)}});
@@ -220,8 +220,8 @@ ParticipantQuestions questions_for(const RunOptions& options, const study::Stati
       const bool may_be = options.visit > 1 || options.on_existing != OnExisting::refuse;
       return may_be ? "" : texts.say("has_session", {{"id", id}});
     }
-    const auto meant = perhaps_meant(id, people.ids);
-    if (!meant || is_said) return "";
+    const auto meant = likely_id(id, people.ids);
+    if (!meant || is_mentioned) return "";
     return texts.say("looks_like", {{"known", *meant}, {"id", id}});
   };
   return questions;

@@ -1,5 +1,5 @@
-/// \file Choosing the participant: what the experimenter is asked before a session for which no option names the
-/// participant.
+/// \file Choosing the participant: the questions to the experimenter before a session without
+///   --participant.
 #pragma once
 
 #include "app/run/run_session.hpp"
@@ -14,9 +14,9 @@
 
 namespace touchtrial::app {
 
-/// The id of a station's next participant: next_id, or for the first one their enrolment number, so
+/// The id of a station's next participant: next_id, or for the first one the enrolment number, so
 /// that stations have different ids.
-/// \param sessions  of the station so far, by number
+/// \param sessions  the station's sessions so far, by number
 /// \return for instance "P07"; empty if the last id does not end in a number
 [[nodiscard]] std::string proposed_participant(const std::vector<record::SessionRow>& sessions,
                                                const study::Station& station);
@@ -25,8 +25,8 @@ struct ParticipantQuestions {
   study::SessionPlan session{};  ///< the study's: language, texts and version of the form
   std::string proposed{};        ///< id; may be empty
   std::string note{};            ///< on the proposed id, as a sentence; may be empty
-  /// Why a participant of this id cannot come, as a sentence; empty: they can.
-  std::function<std::string(const std::string& id)> why_not;
+  /// Why a participant with this id is refused, as a sentence; empty: accepted.
+  std::function<std::string(const std::string& id)> refusal;
 };
 
 struct ParticipantAnswers {
@@ -36,17 +36,17 @@ struct ParticipantAnswers {
   std::string hand{};      ///< that holds the pen, "right" or "left"; empty: not given
 };
 
-/// Shows questions until there are answers, as StepReply has them.
+/// Shows questions until there are answers, in the format of StepReply.
 using AskQuestions = std::function<std::vector<std::string>(const session::QuestionStep&)>;
 
-/// Asks for id and consent, again while a participant of that id cannot come; then, of whoever has
-/// consented, for age and hand. In the study's language: the participant may read along.
+/// Asks for id and consent, again while the id is refused; then, after consent, for age and hand.
+/// In the study's language, because the participant may read along.
 [[nodiscard]] ParticipantAnswers ask_participant(const AskQuestions& ask,
                                                  const ParticipantQuestions& questions);
 
-/// Asks who comes, in a window of its own on the experimenter's monitor, or on the participant's if
-/// there is no other, and records the consent beside the database.
-/// \return the options with the participant's id, the visit that it is, and a remark
+/// Asks for the participant in a separate window on the experimenter's monitor, or on the
+/// participant's if there is no other, and records the consent beside the database.
+/// \return the options with the participant's id, the visit number, and a remark
 /// \throws UsageError if the window is gone or a signal ends the program before there are answers,
 ///   or if the study names a consent form and the participant has not signed it
 /// \throws DeviceError as ParticipantWindow

@@ -87,24 +87,24 @@ ParticipantWindowOptions window_options(const RunOptions& options, const study::
 
 namespace {
 
-std::string why_gone(const ParticipantWindow& window) {
+std::string window_end_reason(const ParticipantWindow& window) {
   const auto gone = window.gone();
   if (!gone || *gone == WindowGone::signal) return "";
   return *gone == WindowGone::closed ? "the participant's window was closed"
                                      : "the participant's monitor was unplugged";
 }
 
-/// While another program has the database locked: shows why the session waits.
-/// \return whether it goes on waiting
+/// While another program locks the database: shows why the session waits.
+/// \return whether to continue waiting
 bool waits(const std::string& why, const std::function<void()>& show) {
   spdlog::warn("{}; the session waits", why);
   show();
   return EndingSignals::which() == 0;
 }
 
-/// What is recorded once the database was locked for a while.
+/// The record of a wait for a locked database.
 std::optional<session::ExperimenterRequest> wait_to_record(PatientSink& sink) {
-  const auto waited = sink.take_waited();
+  const auto waited = sink.take_delay();
   if (!waited) return std::nullopt;
   const double seconds = std::chrono::duration<double>(*waited).count();
   return session::ExperimenterRequest{session::ExperimenterRequest::Kind::delay,
@@ -112,8 +112,8 @@ std::optional<session::ExperimenterRequest> wait_to_record(PatientSink& sink) {
                                       "database-locked"};
 }
 
-/// Pauses the session while a plane is on and the participant's keys do not reach it, and goes on
-/// once they do. Belongs to the session's thread.
+/// Pauses the session when a plane is on but the participant's keys do not reach the window, and
+/// resumes it once they do. Belongs to the session's thread.
 class FocusWatch {
  public:
   explicit FocusWatch(ParticipantWindow& window) : window_(window) {}
@@ -122,7 +122,7 @@ class FocusWatch {
     using Kind = session::ExperimenterRequest::Kind;
     constexpr std::chrono::milliseconds kPatience{500};
     const std::chrono::milliseconds lost = window_.out_of_reach();
-    if (window_.take_out_of_reach() && !std::exchange(is_noted_, true)) {
+    if (window_.take_out_of_reach() && !std::exchange(is_recorded_, true)) {
       return session::ExperimenterRequest{Kind::deviation, kWhat, "focus-lost"};
     }
     const bool is_in_trial = window_.is_exploring() || window_.is_answering();
@@ -130,7 +130,7 @@ class FocusWatch {
       return session::ExperimenterRequest{Kind::pause, kWhat, ""};
     }
     if (lost > std::chrono::milliseconds{}) return std::nullopt;
-    is_noted_ = false;
+    is_recorded_ = false;
     if (!std::exchange(has_paused_, false)) return std::nullopt;
     return session::ExperimenterRequest{Kind::resume, "", ""};
   }
@@ -146,7 +146,7 @@ class FocusWatch {
   static constexpr const char* kWhat = "another window had the keyboard during a trial";
 
   ParticipantWindow& window_;
-  bool is_noted_ = false;
+  bool is_recorded_ = false;
   bool has_paused_ = false;
 };
 
@@ -157,8 +157,7 @@ study::MaskingPlan masking_of(const study::Study& study, const device::DeviceInf
   return plan;
 }
 
-/// Deviations from the study that exist before the session begins, and what is known of the
-/// participant.
+/// Deviations that are known before the session begins, and notes on the participant.
 std::vector<session::ExperimenterRequest> known_deviations(const RunOptions& options,
                                                            const RunStudy& study,
                                                            const SessionDevice& device) {
@@ -183,7 +182,7 @@ std::vector<session::ExperimenterRequest> known_deviations(const RunOptions& opt
   return known;
 }
 
-/// What is special about the participant's screens, for the session's record.
+/// Notes on the participant's screen settings, for the session's record.
 std::vector<session::ExperimenterRequest> notes_on_screens(const RunOptions& options,
                                                            const study::Study& study) {
   std::vector<session::ExperimenterRequest> notes;
@@ -213,14 +212,14 @@ void require_blind(const RunOptions& options, const device::DeviceInfo& device) 
                    "pilot's database, or choose a device that is felt");
 }
 
-/// Without a known size, nobody can tell whether pictures have their true size.
+/// Without a known screen size, the true size of pictures is unknown.
 void warn_of_unknown_size(const RunOptions& options, const study::Study& study,
                           const ParticipantWindow& window) {
   if (study.session.sight == study::Sight::blindfold || window.screen().is_known) return;
   const study::Ask ask = study::ask_of(study);
   if (!ask.has_pictures() && ask.scales().empty()) return;
   spdlog::warn(
-      "window: the size of this screen is not known, and so that of the pictures; measure it once "
+      "window: the size of this screen and of the pictures is unknown; measure it once "
       "with `touchtrial screen calibrate{}`",
       options.monitor > 1 ? " --monitor " + std::to_string(options.monitor) : "");
 }
@@ -243,15 +242,15 @@ bool is_attended(const RunOptions& options) {
   return options.console || ::isatty(STDIN_FILENO) != 0;
 }
 
-/// The experimenter must be able to consent to the force.
+/// Refuses a session in which the experimenter could not consent to force.
 void require_consent(const RunOptions& options, const device::DeviceInfo& device) {
   if (device.visual || is_attended(options)) return;
   throw UsageError(
-      "run: standard input is not a terminal, where the experimenter lets the force on; start it "
-      "from a terminal, or with --console");
+      "run: standard input is not a terminal, which the experimenter needs to switch on the force; "
+      "start it from a terminal, or with --console");
 }
 
-/// A person's session with a device, before a window.
+/// A person's session with a device and a window.
 class PersonsSession {
  public:
   PersonsSession(const RunOptions& options, const RunStudy& study)
@@ -315,7 +314,7 @@ class PersonsSession {
         desk_,
         [&] {
           const std::string trouble = watch.trouble();
-          return trouble.empty() ? why_gone(window) : trouble;
+          return trouble.empty() ? window_end_reason(window) : trouble;
         },
         [&] { return recorded_by_itself(*entered.sink, focus); }, [&] { return focus.alert(); });
     entered.sink->set_waiting([&](const std::string& why) {
@@ -342,7 +341,7 @@ class PersonsSession {
     return conclude_session(options_, entered.number, tally, database_.made(), watch.trouble());
   }
 
-  /// What the program records of the session's room, one request after the other.
+  /// The program's own records (sound, window, database), one request at a time.
   [[nodiscard]] std::optional<session::ExperimenterRequest> recorded_by_itself(PatientSink& sink,
                                                                                FocusWatch& focus) {
     if (auto request = wait_to_record(sink)) return request;
@@ -359,7 +358,7 @@ class PersonsSession {
   SessionDevice device_;
   std::unique_ptr<session::Instruments> instruments_;
   record::ScreenRecord screen_;
-  std::optional<SessionSound> sound_;  ///< nothing with --no-sound: no sound card is opened
+  std::optional<SessionSound> sound_;  ///< empty with --no-sound
 };
 
 /// Time in a simulated participant's session is virtual unless the options ask for real time.
@@ -368,7 +367,7 @@ std::unique_ptr<session::Explorer> explorer_for(const RunOptions& options) {
   return std::make_unique<session::VirtualExplorer>();
 }
 
-/// In virtual time there is nothing to be told of.
+/// There are no instruments in virtual time.
 std::unique_ptr<session::Instruments> instruments_for(const RunOptions& options) {
   if (!options.real_time) return nullptr;
   return session_instruments(device::device_settings_for(options.settings).instruments,
@@ -381,7 +380,7 @@ std::unique_ptr<session::SessionClock> clock_for(const session::Explorer& explor
   return std::make_unique<session::VirtualSessionClock>(start);
 }
 
-/// Fills in what the session's first event says about the simulated device.
+/// Describes the simulated device in the session's first event.
 void describe_simulated(const session::Explorer& explorer, const device::DeviceModel& held,
                         record::SessionOpening& opening) {
   if (const auto* const real_time = dynamic_cast<const session::RealTimeExplorer*>(&explorer)) {
@@ -395,7 +394,7 @@ void describe_simulated(const session::Explorer& explorer, const device::DeviceM
 /// A simulated participant's session.
 class SimulatedSession {
  public:
-  /// Teaches the subject the study's classes, which takes about half a second.
+  /// Trains the subject on the study's classes, which takes about half a second.
   /// \throws as subject_for
   SimulatedSession(const RunOptions& options, const RunStudy& study)
       : options_(options),
@@ -415,11 +414,12 @@ class SimulatedSession {
           describe_simulated(*explorer, subject_.device, opening);
         });
     const std::unique_ptr<session::SessionClock> clock = clock_for(*explorer, entered.clock);
-    const std::unique_ptr<simulation::SimulatedParticipant> mind =
+    const std::unique_ptr<simulation::SimulatedParticipant> simulated =
         population_->participant(entered.enrolment);
-    mind->start_visit(options_.visit,
-                      simulation::course_of(study_.key.study,
-                                            study::make_schedule(study_.key.study, entered.draw)));
+    simulated->start_visit(
+        options_.visit,
+        simulation::course_of(study_.key.study,
+                              study::make_schedule(study_.key.study, entered.draw)));
     session::AlwaysReady devices;
     DatabaseWatch watch(options_.database);
     RunExperimenter experimenter(
@@ -430,7 +430,7 @@ class SimulatedSession {
     const session::SessionTally tally =
         session::run_session(*entered.session, {.key = study_.key,
                                                 .source = source_,
-                                                .participant = *mind,
+                                                .participant = *simulated,
                                                 .clock = *clock,
                                                 .explorer = *explorer,
                                                 .devices = devices,

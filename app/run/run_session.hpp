@@ -13,19 +13,19 @@
 
 namespace touchtrial::app {
 
-/// What happens with a session that the participant already has.
+/// What to do with an existing session of the participant.
 enum class OnExisting { refuse, resume, restart };
 
 /// The options of `touchtrial run`.
 struct RunOptions {
   std::filesystem::path study;
   std::string participant;  ///< empty: the experimenter is asked
-  std::string remark;       ///< on the participant; becomes a note of the session
-  bool no_consent = false;  ///< said in the dialogue about the participant
+  std::string remark;       ///< on the participant; recorded as a note
+  bool no_consent = false;  ///< entered in the dialogue
   std::filesystem::path database;
-  std::filesystem::path pack;          ///< empty: where `prepare` puts it
+  std::filesystem::path pack;          ///< empty: the default of `prepare`
   std::filesystem::path station_file;  ///< empty: beside the pack
-  std::string device;                  ///< driver; empty: the one that is plugged in
+  std::string device;                  ///< driver; empty: the connected one
   std::filesystem::path settings;
   std::filesystem::path certificate;  ///< empty: NAME-certificate.json
   bool allow_unverified = false;      ///< run a device with force without a valid certificate
@@ -35,8 +35,8 @@ struct RunOptions {
   HeadOptions heads;
   int enrolment = 0;           ///< 0: the station's next number
   int visit = 1;               ///< of the participant
-  std::string accept_clock{};  ///< why a visit follows one that a wrong clock put into the future
-  bool yes = false;            ///< go on without asking about an unusual id or number
+  std::string accept_clock{};  ///< reason to accept a previous visit with a date in the future
+  bool yes = false;            ///< do not ask about an unusual id or number
   std::string station{};       ///< of a study with several; empty: its only one
   /// A simulated participant instead of a person: a model file, or "default".
   std::optional<std::filesystem::path> subject;
@@ -48,7 +48,7 @@ struct RunOptions {
   bool sound = true;
   int monitor = 1;                     ///< the participant's, from 1; full screen
   std::optional<double> text_scale{};  ///< of the participant's letters; empty: the study's
-  bool high_contrast = false;          ///< whether or not the study asks for it
+  bool high_contrast = false;          ///< even if the study does not require it
   /// Width and height of the participant's window in pixels, instead of full screen.
   std::optional<std::pair<int, int>> window_px;
 
@@ -60,9 +60,9 @@ struct RunOptions {
 [[nodiscard]] ParticipantWindowOptions window_options(const RunOptions& options,
                                                       const study::Study& study);
 
-/// Runs the session of a person with a device before a window, or of a simulated participant
-/// without one. A window belongs to the calling thread, which must be the program's main thread;
-/// the session then runs on another thread.
+/// Runs the session of a person with a device and a window, or of a simulated participant without a
+/// window. A window belongs to the calling thread, which must be the program's main thread; the
+/// session then runs on another thread.
 /// \return the exit code: 0 if the session is complete, 1 if it was stopped or left open, 128 plus
 ///   the signal's number if a signal ended the program
 /// \throws touchtrial::Error with the remedy, before the session is opened or when it cannot go on;

@@ -38,12 +38,12 @@ study::StationKey station_key_at(const RunOptions& options, const fs::path& file
   return station_key_for(store.commitment(), options.database, file);
 }
 
-/// The investigator's key opens everything that a station should not know.
+/// The investigator's key opens everything, so it should not be at a station.
 fs::path key_in_reach(const RunOptions& options, const study::PackPlace& place) {
   return options.is_simulated() || !is_there(place.key) ? fs::path() : place.key;
 }
 
-/// Maps the pack while nobody prepares it, so that a session has one whole pack.
+/// Maps the pack while it is not being prepared, so that a session has one complete pack.
 /// \param key  moved from
 RunStudy checked_study(study::StationKey&& key, const fs::path& pack_folder,
                        study::PackLock::Wait wait) {
@@ -58,7 +58,7 @@ RunStudy checked_study(study::StationKey&& key, const fs::path& pack_folder,
   throw StoreError(options.database.string() + ": " + why);
 }
 
-/// \throws StoreError if no database can be made there
+/// \throws StoreError if no database can be created there
 void require_free_name(const RunOptions& options) {
   refuse_link(options.database);
   const fs::path folder = options.database.parent_path();
@@ -70,11 +70,11 @@ void require_same_study(const record::StudyCommitment& stored, const std::string
                         const Digest& seal, const RunOptions& options) {
   if (stored.study_id == study_id && stored.seal == seal) return;
   refuse(options,
-         "is the database of another study, or of this one before it was prepared anew; "
+         "is the database of another study, or of this one before it was prepared again; "
          "give another --db");
 }
 
-/// Refuses what can be refused before a pack is made.
+/// Checks that are possible before a pack is created.
 void check_before_pack(const RunOptions& options, const study::Study& study,
                        const study::StudyKey& key) {
   static_cast<void>(subject_for(*options.subject, study, options.on));
@@ -107,7 +107,7 @@ void require_same(const record::StudyCommitment& stored, const record::StudyComm
   require_same_study(stored, ours.study_id, ours.seal, options);
   if (stored.investigator != ours.investigator) {
     refuse(options,
-           "is of another investigator than the station's file; copy that file anew from the "
+           "is of another investigator than the station's file; copy that file again from the "
            "investigator's machine, or give another --db");
   }
   if (stored.station && stored.station != ours.station) {
@@ -168,7 +168,7 @@ RunStudy run_study_for(const RunOptions& options) {
 
 namespace {
 
-/// Which of two clocks is wrong, only people can tell. In virtual time sessions are longer than
+/// The program cannot know which of two clocks is wrong. Sessions in virtual time are longer than
 /// they took.
 void warn_of_clock(const RunOptions& options, const record::StudyStore& store) {
   if (options.is_simulated() && !options.real_time) return;
@@ -180,7 +180,7 @@ void warn_of_clock(const RunOptions& options, const record::StudyStore& store) {
       utc_words(utc_now()), one_line(options.database.string()), utc_words(last->at));
 }
 
-/// Refuses, before there is a database, what would refuse its head files.
+/// Checks the paths of head files before the database is created.
 void require_head_places(const RunOptions& options, const record::StudyCommitment& commitment) {
   const record::HeadFiles heads(options.database, record::head_signers(commitment),
                                 options.heads.folder);
@@ -195,27 +195,29 @@ void require_head_places(const RunOptions& options, const record::StudyCommitmen
 RunDatabase::RunDatabase(const RunOptions& options, const RunStudy& study)
     : options_(options),
       study_(study),
-      ours_(session::commitment_of(study.key, study.pack, options.is_simulated(), options.pilot)) {
+      commitment_(
+          session::commitment_of(study.key, study.pack, options.is_simulated(), options.pilot)) {
   if (is_there(options.database)) {
     open();
     return;
   }
   require_free_name(options);
-  refuse_lost_database(options.database, ours_, options.heads);
+  refuse_lost_database(options.database, commitment_, options.heads);
 }
 
 void RunDatabase::open() {
   store_ = record::StudyStore::open(options_.database, record::StudyStore::Access::read_write);
-  require_same(store_->commitment(), ours_, options_);
+  require_same(store_->commitment(), commitment_, options_);
   if (store_->stations() > 0) {
-    refuse(options_,
-           "was merged from several stations' databases and takes no sessions of its own; run them "
-           "in this station's database, and merge again");
+    refuse(
+        options_,
+        "was merged from several stations' databases and accepts no sessions of its own; run them "
+        "in this station's database, and merge again");
   }
   lock_.emplace(options_.database, options_.participant);
   const Signer signer = study_.key.signer();
   store_->sign_with(signer);
-  keep_heads(*store_, options_.database, signer, options_.heads, HeadUse::required);
+  set_head_writer(*store_, options_.database, signer, options_.heads, HeadUse::required);
   warn_of_clock(options_, *store_);
   if (!options_.is_simulated() && !store_->sessions().empty()) {
     print(head_words(*store_) + "; compare it with the last day sheet\n");
@@ -225,17 +227,17 @@ void RunDatabase::open() {
 record::StudyStore& RunDatabase::made() {
   if (store_) return *store_;
   if (is_there(options_.database)) {
-    open();  // another program has made it meanwhile
+    open();  // another program has created it meanwhile
     return *store_;
   }
-  require_head_places(options_, ours_);
+  require_head_places(options_, commitment_);
   lock_.emplace(options_.database, options_.participant);
-  // Before there is a database, because a database without its key is useless.
+  // Written before the database, because a database without its key is useless.
   const fs::path key = key_path_for(options_.database, {});
   if (study_.own_key && !is_there(key)) study::save_study_key(key, *study_.own_key);
   const Signer signer = study_.key.signer();
-  store_ = record::StudyStore::create(options_.database, ours_, utc_now(), signer);
-  keep_heads(*store_, options_.database, signer, options_.heads, HeadUse::required);
+  store_ = record::StudyStore::create(options_.database, commitment_, utc_now(), signer);
+  set_head_writer(*store_, options_.database, signer, options_.heads, HeadUse::required);
   return *store_;
 }
 

@@ -18,24 +18,24 @@ struct RunStudy {
   study::StationKey key;
   engine::Pack pack;
   session::StimulusSource source;  ///< of the pack
-  /// The investigator's key, if it lies beside the pack; else empty.
+  /// The investigator's key, if it is beside the pack; else empty.
   std::filesystem::path key_in_reach{};
-  /// Of a simulated study that was not prepared: its key, for the database that is made.
+  /// The key of a simulated study that was not prepared, for its new database.
   std::optional<study::StudyKey> own_key{};
 };
 
 /// Loads the pack and this station's file; never the investigator's key. For a simulated
 /// participant of a study that was not prepared, makes a simulated study.
 /// \throws StudyError if the study file is not that of the station's file
-/// \throws FileError if pack, station's file or a shown picture is missing, damaged or not what the
-///   investigator signed, or if another process prepares the pack, with the remedy
+/// \throws FileError if pack, station's file or a shown picture is missing, damaged or does not
+///   match the investigator's signature, or if another process prepares the pack, with the remedy
 [[nodiscard]] RunStudy run_study_for(const RunOptions& options);
 
-/// The database of a session, with a lock on its participant. If there is none yet, it is made when
-/// the session begins, so that a run that is refused leaves nothing.
+/// The database of a session, with a lock on its participant. A new one is created when the session
+/// begins, so that a refused run leaves no file.
 class RunDatabase {
  public:
-  /// Opens the database if there is one.
+  /// Opens the database if it exists.
   /// \param options,study  must outlive this
   /// \throws StoreError if it is another study's, if it mixes pilot or simulated sessions with
   ///   others, if it was merged from several stations, or if there is no folder for it
@@ -46,8 +46,8 @@ class RunDatabase {
   [[nodiscard]] const record::StudyStore* present() const noexcept {
     return store_ ? &*store_ : nullptr;
   }
-  /// Makes the database with the study's commitment if there is none.
-  /// \throws StoreError if it cannot be made
+  /// Creates the database with the study's commitment if it does not exist.
+  /// \throws StoreError if it cannot be created
   [[nodiscard]] record::StudyStore& made();
 
  private:
@@ -55,7 +55,7 @@ class RunDatabase {
 
   const RunOptions& options_;
   const RunStudy& study_;
-  record::StudyCommitment ours_;
+  record::StudyCommitment commitment_;
   std::optional<record::SessionLock> lock_;
   std::optional<record::StudyStore> store_;
 };

@@ -35,7 +35,7 @@ int answered_trials(const record::StudyStore& store, int session) {
   }));
 }
 
-/// As verification and outcomes draw a session.
+/// Draws a session as verification and outcomes do.
 study::Draws draws_of(bool pilot, bool simulated) {
   return pilot || simulated ? study::Draws::rehearsal : study::Draws::people;
 }
@@ -60,8 +60,8 @@ void require_own_file(const RunOptions& options, const study::Station& station,
   }
 }
 
-/// The enrolment number of a participant without a session: the one that the options name, or else
-/// the number of the person whom the participant replaces, or else the station's next number.
+/// The enrolment number of a participant without a session: that of the options, else that of the
+/// person whom the participant replaces, else the station's next.
 /// \param store  null: there is none yet
 /// \throws as next_enrolment_of
 int enrolment_of(const RunOptions& options, const study::Station& station,
@@ -86,7 +86,7 @@ std::string open_group(const study::StationKey& key, int enrolment, study::Draws
 EnteredSession new_session(const RunOptions& options, const RunStudy& study, RunDatabase& database,
                            int enrolment, const DescribeOpening& describe) {
   if (!record::is_participant_id(options.participant)) {
-    throw UsageError("run: " + in_quotes(options.participant) + " is no participant id; " +
+    throw UsageError("run: " + in_quotes(options.participant) + " is not a participant id; " +
                      std::string(record::kParticipantIdRule));
   }
   EnteredSession entered;
@@ -122,7 +122,7 @@ EnteredSession new_session(const RunOptions& options, const RunStudy& study, Run
   return entered;
 }
 
-/// When a session was opened, by the clock of the file's chain.
+/// The time of a session's opening, by the clock of the file's chain.
 nanoseconds opened_at(const record::StudyStore& store, int session) {
   nanoseconds at{};
   store.for_each(record::EventKind::session_opened, [&](const record::Event& event) {
@@ -136,8 +136,8 @@ std::string visit_words(const RunOptions& options, const RunStudy& study) {
                      options.participant, options.visit, study.key.study.visits.count);
 }
 
-/// Opens the session of the visit after a participant's last one.
-/// \throws StoreError if it may not follow yet
+/// Opens the session of a participant's next visit.
+/// \throws StoreError if it is too early
 EnteredSession next_visit(const RunOptions& options, const RunStudy& study, RunDatabase& database,
                           const record::SessionRow& last, const DescribeOpening& describe) {
   const auto refuse = [&](const std::string& why) {
@@ -154,7 +154,7 @@ EnteredSession next_visit(const RunOptions& options, const RunStudy& study, RunD
         last.session, last.state == record::SessionState::open ? "still open" : "stopped",
         last.visit, last.visit, last.state == record::SessionState::open ? "resume" : "restart"));
   }
-  // In virtual time nobody waits.
+  // Virtual time has no waiting between visits.
   const bool in_days = !options.is_simulated() || options.real_time;
   const study::VisitPlan& plan = study.key.study.visits;
   const nanoseconds before = opened_at(database.made(), last.session);
@@ -191,8 +191,8 @@ EnteredSession next_visit(const RunOptions& options, const RunStudy& study, RunD
   return entered;
 }
 
-/// An open session as it is stored, opened with the station's copy of its key.
-struct KeptSession {
+/// A stored open session, decrypted with the station's copy of its key.
+struct StoredSession {
   SecretKey key{};
   std::string schedule;  ///< JSON
   std::vector<record::Event> events;
@@ -200,8 +200,8 @@ struct KeptSession {
 };
 
 /// \throws StoreError if this station does not hold the session's key
-KeptSession kept_session(const RunOptions& options, const RunStudy& study,
-                         const record::StudyStore& store, const record::SessionRow& row) {
+StoredSession stored_session(const RunOptions& options, const RunStudy& study,
+                             const record::StudyStore& store, const record::SessionRow& row) {
   const auto refuse = [&] {
     throw StoreError(
         fmt::format("{}: session {} does not open with this station's file; give the file of the "
@@ -213,7 +213,7 @@ KeptSession kept_session(const RunOptions& options, const RunStudy& study,
       kept ? record::kept_participant_key(study.key.station.secret, row.own_session, *kept)
            : std::nullopt;
   if (!key) refuse();
-  KeptSession session{.key = *key, .schedule = {}, .events = {}};
+  StoredSession session{.key = *key, .schedule = {}, .events = {}};
   for (const record::Event& stored : store.events(row.session)) {
     auto opened = record::opened_event(stored, *key);
     if (!opened) refuse();
@@ -233,7 +233,7 @@ std::string standing(const record::StudyStore& store, const record::SessionRow& 
                      minutes / 60, minutes % 60);
 }
 
-session::Session restored(const RunStudy& study, const KeptSession& kept,
+session::Session restored(const RunStudy& study, const StoredSession& kept,
                           const record::SessionRow& row, record::EventSink& sink) {
   const study::ScheduleDraw draw =
       study.key.draw_of(row.enrolment, draws_of(row.pilot, row.simulated), row.visit);
@@ -256,8 +256,8 @@ nanoseconds time_after(const RunOptions& options, nanoseconds last, nanoseconds 
   return options.is_simulated() && !options.real_time ? last : last + away;
 }
 
-/// Records that the clock was set back since the session's last event, by more than a clock that is
-/// kept right is set by.
+/// Records that the clock was set back since the session's last event by more than a usual
+/// correction.
 void record_clock(const RunOptions& options, nanoseconds away, EnteredSession& entered) {
   constexpr std::chrono::seconds kSmall{5};
   const bool is_virtual = options.is_simulated() && !options.real_time;
@@ -271,7 +271,7 @@ void record_clock(const RunOptions& options, nanoseconds away, EnteredSession& e
 }
 
 EnteredSession resumed_session(const RunOptions& options, const RunStudy& study,
-                               record::StudyStore& store, const KeptSession& kept,
+                               record::StudyStore& store, const StoredSession& kept,
                                const record::SessionRow& row) {
   EnteredSession entered;
   entered.number = row.session;
@@ -282,15 +282,15 @@ EnteredSession resumed_session(const RunOptions& options, const RunStudy& study,
   session::Session& session = *entered.session;
   const nanoseconds away = std::max(nanoseconds{}, kept.away);
   entered.clock = time_after(options, session.last(), away);
-  session.take_up(entered.clock, {.after = "program-ended",
-                                  .away_s = std::chrono::duration<double>(away).count(),
-                                  .program_version = std::string(program_version())});
+  session.resume_after_exit(entered.clock, {.after = "program-ended",
+                                            .away_s = std::chrono::duration<double>(away).count(),
+                                            .program_version = std::string(program_version())});
   record_clock(options, kept.away, entered);
   return entered;
 }
 
-void require_young(const RunOptions& options, const RunStudy& study, const std::string& standing,
-                   nanoseconds away) {
+void require_recent(const RunOptions& options, const RunStudy& study, const std::string& standing,
+                    nanoseconds away) {
   const double limit_h = study.key.study.trials.resume_within_h;
   if (std::chrono::duration<double, std::ratio<3600>>(away).count() <= limit_h) return;
   throw StoreError(
@@ -300,8 +300,8 @@ void require_young(const RunOptions& options, const RunStudy& study, const std::
                   options.database.string(), standing, utc_words(utc_now()), limit_h));
 }
 
-/// Refuses to resume a session on another kind of device: a session that is seen is not blind, and
-/// where nobody feels anything no trial counts.
+/// Refuses to resume a session on another kind of device: a session on a screen is not blind, and
+/// trials without force do not count.
 void require_same_kind(const RunOptions& options, const record::SessionRow& row,
                        const record::SessionOpening& then, const record::SessionOpening& now) {
   if (now.is_visual() == then.is_visual() && now.simulated == then.simulated) return;
@@ -329,9 +329,9 @@ void record_other_station(EnteredSession& entered, const record::SessionOpening&
 }
 
 /// Ends the session in its present state.
-/// \throws StoreError if its trials are done: it is complete then, and nobody begins it anew
+/// \throws StoreError if its trials are done: it is then complete and cannot be restarted
 void give_up(const RunOptions& options, const RunStudy& study, record::StudyStore& store,
-             const KeptSession& kept, const record::SessionRow& row) {
+             const StoredSession& kept, const record::SessionRow& row) {
   const std::unique_ptr<record::EventSink> sink = store.continue_session(row.session);
   session::Session session = restored(study, kept, row, *sink);
   if (session.phase() == session::SessionPhase::finished) {
@@ -343,9 +343,10 @@ void give_up(const RunOptions& options, const RunStudy& study, record::StudyStor
   session.close(session.last(), study::ask_of(study.key.study).has_pictures());
 }
 
-/// Opens a new session with the enrolment number of the previous one, which has ended.
-EnteredSession begin_anew(const RunOptions& options, const RunStudy& study, RunDatabase& database,
-                          const record::SessionRow& row, const DescribeOpening& describe) {
+/// Opens a new session with the enrolment number of the previous, ended one.
+EnteredSession restart_session(const RunOptions& options, const RunStudy& study,
+                               RunDatabase& database, const record::SessionRow& row,
+                               const DescribeOpening& describe) {
   database.made().replace(row.session, row.participant, utc_now(), "restarted");
   return new_session(options, study, database, row.enrolment, describe);
 }
@@ -366,7 +367,7 @@ EnteredSession existing_session(const RunOptions& options, const RunStudy& study
   }
   const bool may_be_restarted =
       options.on_existing == OnExisting::restart && row.state == record::SessionState::stopped;
-  if (may_be_restarted) return begin_anew(options, study, database, row, describe);
+  if (may_be_restarted) return restart_session(options, study, database, row, describe);
   if (row.state != record::SessionState::open) {
     throw StoreError(fmt::format(
         "{}: participant {} already has session {}, which is {}; give another participant id{}",
@@ -376,7 +377,7 @@ EnteredSession existing_session(const RunOptions& options, const RunStudy& study
             ? fmt::format(", or --visit {} for the next visit", row.visit + 1)
             : ""));
   }
-  const KeptSession kept = kept_session(options, study, store, row);
+  const StoredSession kept = stored_session(options, study, store, row);
   const std::string stands = standing(store, row, kept.away);
   if (options.on_existing == OnExisting::refuse) {
     throw StoreError(fmt::format(
@@ -385,9 +386,9 @@ EnteredSession existing_session(const RunOptions& options, const RunStudy& study
   }
   if (options.on_existing == OnExisting::restart) {
     give_up(options, study, store, kept, row);
-    return begin_anew(options, study, database, row, describe);
+    return restart_session(options, study, database, row, describe);
   }
-  require_young(options, study, stands, kept.away);
+  require_recent(options, study, stands, kept.away);
   record::SessionOpening now;
   describe(now);
   const record::SessionOpening then = record::opening_from_json(kept.events.front().body);
@@ -461,7 +462,7 @@ constexpr std::array kNames = {"SIGINT", "SIGTERM", "SIGHUP"};
 std::atomic<int> came{0};
 std::array<struct sigaction, kSignals.size()> earlier{};
 
-extern "C" void remember(int signal) {
+extern "C" void store_signal(int signal) {
   came.store(signal);
 }
 
@@ -470,8 +471,8 @@ extern "C" void remember(int signal) {
 EndingSignals::EndingSignals() {
   came.store(0);
   struct sigaction action {};
-  action.sa_handler = remember;
-  // A second signal ends the program at once: whoever sends it does not want to wait.
+  action.sa_handler = store_signal;
+  // A second signal ends the program at once.
   action.sa_flags = SA_RESETHAND | SA_RESTART;
   sigemptyset(&action.sa_mask);
   for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &action, &earlier[i]);
@@ -520,7 +521,7 @@ void RunExperimenter::acknowledged(int trial) {
     print("trial " + std::to_string(trial) + " acknowledged\n");
   } catch (const ClosedPipe& closed) {
     throw FileError(std::string(closed.what()) +
-                    "; the session stays open: go on with --on-existing resume");
+                    "; the session stays open: continue with --on-existing resume");
   }
 }
 
@@ -537,8 +538,8 @@ std::string summary(const RunOptions& options, int session, const session::Sessi
                      row.simulated && !options.is_simulated() ? "; it does not count" : "");
 }
 
-/// A session's end erases the station's copy of its key, which stays in the database's log as long
-/// as another program reads there.
+/// A session's end erases the station's copy of its key, which remains in the database's log while
+/// another program reads it.
 void require_key_erased(const RunOptions& options, int session, record::StudyStore& store) {
   if (store.clear_log()) return;
   const std::string database = one_line(options.database.string());
@@ -560,16 +561,16 @@ int conclude_session(const RunOptions& options, int session, const session::Sess
   if (!trouble.empty()) {
     throw StoreError(
         fmt::format("{}, and does not hold session {} of participant {} to its end; {}", trouble,
-                    session, options.participant, rescue(options.database, store)));
+                    session, options.participant, save_copy(options.database, store)));
   }
   if (!tally.left) require_key_erased(options, session, store);
   const record::SessionRow row = store.session_of(options.participant).value();
-  // Nobody has a day sheet of simulated participants.
+  // Simulated participants have no day sheet.
   print(summary(options, session, tally, row, store) +
         (options.is_simulated() ? "" : head_words(store) + "; write it on the day sheet\n"));
   if (tally.left) {
     std::fprintf(stderr,
-                 "touchtrial: %s; the session stays open: go on with the same command and "
+                 "touchtrial: %s; the session stays open: continue with the same command and "
                  "--on-existing resume (participant %s)\n",
                  one_line(*tally.left).c_str(), options.participant.c_str());
   }

@@ -1,5 +1,5 @@
-/// \file How a session begins (as a new one, or where it was interrupted) and ends: what asks for
-/// its end, and what the program then prints and returns.
+/// \file Start and end of a session: new or resumed sessions, requests to end, and the summary and
+///   exit code.
 #pragma once
 
 #include "app/run/database_watch.hpp"
@@ -24,36 +24,36 @@ namespace touchtrial::app {
 struct EnteredSession {
   int number = 0;
   int enrolment = 0;
-  study::ScheduleDraw draw;          ///< what its schedule is drawn from
-  std::chrono::nanoseconds clock{};  ///< present time of the session's clock
+  study::ScheduleDraw draw;          ///< the inputs of its schedule
+  std::chrono::nanoseconds clock{};  ///< current time of the session's clock
   std::unique_ptr<PatientSink> sink;
   std::unique_ptr<session::Session> session;
 };
 
-/// Fills in what a new session's first event says about device and station.
+/// Describes device and station in a new session's first event.
 using DescribeOpening = std::function<void(record::SessionOpening&)>;
 
 /// \throws UsageError if the study has no such visit
 void require_planned_visit(const RunOptions& options, const study::Study& study);
 
-/// Asks at the terminal about an enrolment number that the options name and that lies beyond the
-/// participants that the study plans, or, if it states no plan, beyond the next number. The ranges
-/// of a divided study's stations are bounds of their own.
+/// Asks at the terminal about an --enrolment number beyond the planned participants, or beyond the
+/// next number without a plan. The ranges of a divided study's stations are checked separately.
 /// \throws as confirm, and as StudyStore::open
 void confirm_enrolment(const RunOptions& options, const study::StationKey& key);
 
-/// Opens a new session for the participant, or handles the existing one as `options.on_existing`
-/// says. On return, the session's first or next event is stored. The database is made last.
+/// Opens a new session for the participant, or handles the existing one according to
+/// `options.on_existing`. On return, the session's first or next event is stored. The database is
+/// created last.
 /// \throws StoreError if the participant has a session that may not be resumed (with its number,
 ///   its progress and the remedy), or if the database refuses
-/// \throws UsageError if the participant's id is none, they cannot get an enrolment number, or the
-///   study has no such visit
+/// \throws UsageError if the participant's id is invalid, they cannot get an enrolment number, or
+///   the study has no such visit
 [[nodiscard]] EnteredSession enter_session(const RunOptions& options, const RunStudy& study,
                                            RunDatabase& database, const DescribeOpening& describe);
 
-/// While an object of this class exists, SIGINT, SIGTERM and SIGHUP are remembered and do not end
-/// the program; a second signal of the same kind does. During explorations, StopOnSignals handles
-/// them first. At most one object may exist.
+/// While an object of this class exists, SIGINT, SIGTERM and SIGHUP are stored and do not end the
+/// program; a second signal of the same kind does. During explorations, StopOnSignals handles them
+/// first. At most one object may exist.
 class EndingSignals {
  public:
   EndingSignals();
@@ -63,7 +63,7 @@ class EndingSignals {
   EndingSignals& operator=(const EndingSignals&) = delete;
 
   /// May be called from any thread.
-  /// \return the number of the signal that came, also during explorations; 0: none
+  /// \return the number of the received signal, also during explorations; 0: none
   [[nodiscard]] static int which() noexcept;
   /// \return for instance "stopped by SIGTERM"; empty: none came
   [[nodiscard]] static std::string message();
@@ -74,9 +74,9 @@ class EndingSignals {
 class RunExperimenter final : public session::Experimenter {
  public:
   /// \param inner  must outlive this object
-  /// \param gone  says why the program is to end, apart from signals; "": it is not to end
-  /// \param more  further requests, such as those of the sound; empty: there are none
-  /// \param alert  SessionStatus::alert; empty: there is none
+  /// \param gone  reason to end the program other than signals; "": none
+  /// \param more  further requests, such as those of the sound; empty: none
+  /// \param alert  SessionStatus::alert; empty: none
   RunExperimenter(session::Experimenter& inner, std::function<std::string()> gone,
                   std::function<std::optional<session::ExperimenterRequest>()> more = {},
                   std::function<std::string()> alert = {});
@@ -96,9 +96,10 @@ class RunExperimenter final : public session::Experimenter {
   std::function<std::string()> alert_;
 };
 
-/// Prints the session's summary, which says nothing about outcomes, and how to resume the session
-/// if it was left open.
-/// \param trouble  DatabaseWatch::trouble; what the store holds is then saved beside the database
+/// Prints the session's summary, without outcomes, and how to resume the session if it was left
+/// open.
+/// \param trouble  DatabaseWatch::trouble; if not empty, the store's content is saved beside the
+///   database
 /// \return the exit code, as run_study_session
 [[nodiscard]] int conclude_session(const RunOptions& options, int session,
                                    const session::SessionTally& tally, record::StudyStore& store,

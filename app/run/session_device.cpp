@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Whether a driver may be chosen automatically: those without a physical device may not.
-bool is_a_rig(const device::DeviceListing& listing) {
+bool has_hardware(const device::DeviceListing& listing) {
   return listing.present && listing.driver != device::kMouseDriver &&
          listing.driver != "simulated" && listing.driver != "replay";
 }
@@ -33,7 +33,7 @@ std::string chosen_driver(const std::string& named, const device::DeviceSettings
   if (!named.empty()) return device::device_driver(named).name;
   std::vector<std::string> found;
   for (const device::DeviceListing& listing : device::list_devices(settings)) {
-    if (is_a_rig(listing)) found.push_back(listing.driver);
+    if (has_hardware(listing)) found.push_back(listing.driver);
   }
   if (found.size() == 1) return found.front();
   throw UsageError(found.empty()
@@ -42,7 +42,7 @@ std::string chosen_driver(const std::string& named, const device::DeviceSettings
                        : "run: several haptic devices are plugged in; choose one with --device");
 }
 
-/// As the system's limits name the person who runs this program.
+/// The user name, as in the system's limits.
 std::string name_of_user() {
   const passwd* const user = ::getpwuid(::geteuid());
   return user == nullptr ? "USER" : user->pw_name;
@@ -66,14 +66,14 @@ std::optional<session::ExperimenterRequest> lateness_to_record(
   const std::string user = name_of_user();
   throw DeviceError(one_line(
       why + "; put the two lines \"" + user + " - rtprio 99\" and \"" + user +
-      " - memlock unlimited\" into /etc/security/limits.d/touchtrial.conf and log in anew, "
+      " - memlock unlimited\" into /etc/security/limits.d/touchtrial.conf and log in again, "
       "or give --allow-late, which is recorded"));
 }
 
-session::Attendant::Says SessionDevice::Consent::attend(const std::string& need) {
-  if (need.empty()) return Says::arm;
+session::Attendant::Reply SessionDevice::Consent::attend(const std::string& need) {
+  if (need.empty()) return Reply::arm;
   std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  return Says::wait;
+  return Reply::wait;
 }
 
 SessionDevice::SessionDevice(const RunOptions& options, const PlaneGeometry& plane,
@@ -87,7 +87,7 @@ SessionDevice::SessionDevice(const RunOptions& options, const PlaneGeometry& pla
   const auto placement = device::placement_of(plane, info_, settings_.use_of(driver_));
   check_certificate(options);
   if (info_.simulated) {
-    const std::string what = "device 'simulated' is no device: nobody feels anything";
+    const std::string what = "device 'simulated' is not a device: nothing is felt";
     spdlog::warn("{}, and the session does not count", what);
     to_record_.push_back({session::ExperimenterRequest::Kind::deviation, what, "simulated-device"});
   }

@@ -1,5 +1,5 @@
-/// \file The device of a session with a person: its choice, the plane's placement on it, its
-/// acceptance, and the consent to its force.
+/// \file The device of a session with a person: its choice, placement of the plane, acceptance, and
+///   consent to force.
 #pragma once
 
 #include "app/run/run_session.hpp"
@@ -20,16 +20,17 @@
 namespace touchtrial::app {
 
 /// Whether a session may run with this scheduling of its servo. A servo without real-time
-/// scheduling is late by tens of milliseconds, in which a force stays as it was.
+/// scheduling is late by tens of milliseconds, during which the force does not change.
 /// \param is_late_allowed  by the experimenter
-/// \return what the session's record must say; nothing if the servo is punctual, or no force is felt
-/// \throws DeviceError with the lines that mend it if force would be felt from a late servo
+/// \return the entry for the session's record; nothing if the servo is punctual, or no force is
+///   felt
+/// \throws DeviceError with the lines that fix it if force would be felt from a late servo
 [[nodiscard]] std::optional<session::ExperimenterRequest> lateness_to_record(
     const device::DeviceInfo& device, const device::SchedulingObtained& scheduling,
     bool is_late_allowed);
 
 /// The constructor opens the device, so that its properties are known before the session is opened.
-/// Constructed on the main thread; then it belongs to the session's thread.
+/// Construct it on the main thread; then it belongs to the session's thread.
 class SessionDevice {
  public:
   /// \param attendant  asked for consent to force, except for the mouse, which has none
@@ -49,7 +50,7 @@ class SessionDevice {
   [[nodiscard]] const device::InstrumentSettings& instruments() const noexcept {
     return settings_.instruments;
   }
-  /// The lab's limits, and less force where the device delivers more than it is told.
+  /// The lab's limits, reduced if the device delivers more force than commanded.
   [[nodiscard]] device::LabLimits limits() const;
   /// \throws DeviceError as device::require_stable, if there is a certificate
   void require_stable_wall(double stiffness_n_per_mm) const;
@@ -57,7 +58,7 @@ class SessionDevice {
   [[nodiscard]] std::string shown_name() const;
   /// As StationRecord::calibration.
   [[nodiscard]] const std::string& certificate() const noexcept { return certificate_; }
-  /// What the session's record must say about the device.
+  /// Entries about the device for the session's record.
   [[nodiscard]] const std::vector<session::ExperimenterRequest>& to_record() const noexcept {
     return to_record_;
   }
@@ -70,7 +71,7 @@ class SessionDevice {
   /// Consents at once, for a device without force.
   class Consent final : public session::Attendant {
    public:
-    [[nodiscard]] Says attend(const std::string& need) override;
+    [[nodiscard]] Reply attend(const std::string& need) override;
   };
 
   [[nodiscard]] std::unique_ptr<device::HapticDevice> open();

@@ -1,5 +1,5 @@
-/// \file The instruments of a lab that record beside a session: a serial line of event codes and
-/// the Lab Streaming Layer.
+/// \file The instruments of a lab that record during a session: a serial line for event codes and
+///   the Lab Streaming Layer.
 #pragma once
 
 #include "device/device_settings.hpp"

@@ -13,17 +13,17 @@
 
 namespace touchtrial::app {
 
-/// Discards standard error while it lives: in search of outputs, ALSA and JACK write a line there
-/// for everything that a machine lacks.
+/// Discards standard error while it lives, because ALSA and JACK write a line there for every
+/// missing output.
 class QuietErrors {
  public:
   QuietErrors() : kept_(::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0)) {
     if (kept_ < 0) return;
     std::fflush(stderr);
-    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-    if (nowhere < 0) return;
-    ::dup2(nowhere, STDERR_FILENO);
-    ::close(nowhere);
+    const int dev_null = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (dev_null < 0) return;
+    ::dup2(dev_null, STDERR_FILENO);
+    ::close(dev_null);
   }
   ~QuietErrors() {
     if (kept_ < 0) return;
@@ -37,10 +37,10 @@ class QuietErrors {
   int kept_;
 };
 
-/// PortAudio, which is loaded for the first sound, because no other command needs it (decision 47).
+/// PortAudio, loaded for the first sound, because no other command needs it (decision 47).
 class PortAudio {
  public:
-  PortAudio() { insist(initialize_(), "cannot be initialised"); }
+  PortAudio() { check(initialize_(), "cannot be initialised"); }
   ~PortAudio() {
     const QuietErrors quiet;
     terminate_();
@@ -52,20 +52,20 @@ class PortAudio {
   [[nodiscard]] PaStream* opened(PaStreamCallback* callback, void* data, double rate_hz) const {
     PaStream* stream = nullptr;
     // One channel: the system sends it to both ears.
-    insist(open_(&stream, 0, 1, paFloat32, rate_hz, paFramesPerBufferUnspecified, callback, data),
-           "the output cannot be opened");
+    check(open_(&stream, 0, 1, paFloat32, rate_hz, paFramesPerBufferUnspecified, callback, data),
+          "the output cannot be opened");
     return stream;
   }
   void start(PaStream* stream) const {
     const PaError started = start_(stream);
     if (started != paNoError) close_(stream);
-    insist(started, "it cannot be started");
+    check(started, "it cannot be started");
   }
   void close(PaStream* stream) const noexcept { close_(stream); }
   [[nodiscard]] bool is_active(PaStream* stream) const noexcept { return is_active_(stream) == 1; }
 
  private:
-  void insist(PaError error, const char* what) const {
+  void check(PaError error, const char* what) const {
     if (error == paNoError) return;
     throw DeviceError(
         std::string("sound: ") + what + ": " + error_text_(error) +

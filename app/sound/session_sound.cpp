@@ -18,7 +18,7 @@ namespace {
 constexpr int kOctaves = 16;
 constexpr std::size_t kSamples = std::size_t{1} << 18;
 
-/// The sum of all rows; the slowest takes four steps in a loop.
+/// The sum of all rows; the slowest row has four steps in a loop.
 std::vector<double> sum_of_steps(RandomStream& random) {
   std::vector<double> sum(kSamples);
   for (int octave = 0; octave <= kOctaves; ++octave) {
@@ -65,7 +65,7 @@ void add_silence(std::vector<float>& samples, double rate_hz, double seconds) {
   samples.resize(samples.size() + static_cast<std::size_t>(std::lround(seconds * rate_hz)));
 }
 
-/// The number of an interval, to be counted.
+/// Adds short pips, whose count is the number of an interval.
 void add_pips(std::vector<float>& samples, double rate_hz, int count) {
   for (int i = 0; i < count; ++i) {
     if (i > 0) add_silence(samples, rate_hz, kBetweenPipsS);
@@ -73,7 +73,7 @@ void add_pips(std::vector<float>& samples, double rate_hz, int count) {
   }
 }
 
-/// The tones differ in their course and not only in their pitch.
+/// The tones differ in contour, not only in pitch.
 std::vector<float> tone_of(Cue cue, double rate_hz) {
   std::vector<float> samples;
   switch (cue) {

@@ -1,5 +1,5 @@
 /// \file The sound of a session on the computer's loudspeaker or headphones: masking noise and
-/// tones, their samples, and the record of it.
+///   tones, their samples, and their record.
 #pragma once
 
 #include "app/windows/participant/cues.hpp"
@@ -30,15 +30,14 @@ inline constexpr double kHighestMaskingDbfs = -18.0;
 /// \return 2^18 samples, 5.5 s at 48 kHz, with mean 0; |sample| < 0.8
 [[nodiscard]] std::vector<float> masking_noise(double level_dbfs, std::uint64_t seed);
 
-/// The peak of the tones that mark intervals, twice that of the others, because a trial hangs on
+/// The peak of the tones that mark intervals, twice that of the others, because trials depend on
 /// them. Each is a pure tone of 1 kHz at -21.4 dBFS rms: 8.6 dB above all of the noise at its
 /// default level of -30 dBFS, and 13 dB above that third of an octave of the loudest noise in which
 /// the tone lies (25 dB at the default level).
 inline constexpr double kMarkAmplitude = 0.12;
 
 /// One channel. `render` belongs to the sound card's thread; the other functions may be called on
-/// any thread. Neither waits for the other. Noise and tones begin and end in ramps, so that nothing
-/// clicks.
+/// any thread. Neither blocks the other. Noise and tones begin and end in ramps, to avoid clicks.
 class SoundMixer {
  public:
   static constexpr double kRampS = 0.05;  ///< duration of the noise's ramp
@@ -48,7 +47,7 @@ class SoundMixer {
   SoundMixer(double sample_rate_hz, std::vector<float> noise);
 
   void mask(bool on) noexcept { masks_.store(on); }
-  /// Plays a tone, unless it still sounds.
+  /// Plays a tone, unless it is still playing.
   void tone(Cue cue) noexcept;
   /// Writes the next samples, each in [-1, 1]. Allocates and locks nothing.
   void render(std::span<float> samples) noexcept;
@@ -78,7 +77,7 @@ class SoundCard {
  public:
   static constexpr double kRateHz = 48000.0;
 
-  /// Begins to play.
+  /// Starts playing.
   /// \param mixer  for kRateHz; must outlive this
   /// \throws DeviceError with the remedy if there is no output, or it cannot be opened
   explicit SoundCard(SoundMixer& mixer);
@@ -98,7 +97,7 @@ class SoundCard {
 /// silence, which is recorded once.
 class SessionSound final : public Cues {
  public:
-  /// Begins the noise if the plan wants it.
+  /// Starts the noise if the study plans it.
   /// \param seed  seed of the noise
   SessionSound(const study::MaskingPlan& plan, std::uint64_t seed);
 

@@ -37,7 +37,7 @@ void print(const std::string& given) {
   const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
   if (written && std::fflush(stdout) == 0) return;
   const int why = errno;
-  if (why == EPIPE) throw ClosedPipe("standard output: nobody reads it any more");
+  if (why == EPIPE) throw ClosedPipe("standard output: its reader has exited");
   throw FileError("standard output: cannot be written (" + std::generic_category().message(why) +
                   "); make room, or name another file");
 }
@@ -46,10 +46,9 @@ void confirm(const std::string& about, bool yes) {
   if (yes) return;
   if (::isatty(STDIN_FILENO) == 0) {
     throw UsageError(one_line(about) +
-                     "; nothing was done: standard input is no terminal to ask at, and only with "
-                     "--yes does this go on without asking");
+                     "; nothing was done: standard input is not a terminal; confirm with --yes");
   }
-  const std::string question = one_line(about) + "\ntype yes to go on: ";
+  const std::string question = one_line(about) + "\ntype yes to continue: ";
   std::fputs(question.c_str(), stderr);
   std::string answer;
   std::getline(std::cin, answer);

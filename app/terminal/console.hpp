@@ -1,5 +1,4 @@
-/// \file What commands share to talk to people and programs: output, progress, the time, and the
-/// endings of file names.
+/// \file Utilities of commands: output, confirmation, progress, time, and file extensions.
 #pragma once
 
 #include "core/errors.hpp"
@@ -13,21 +12,21 @@
 
 namespace touchtrial::app {
 
-/// Whoever read standard output has ended, as in `touchtrial report DB | head -1`. The program then
-/// ends without a word, like others.
+/// The reader of standard output has exited, as in `touchtrial report DB | head -1`. The program
+/// then exits silently.
 class ClosedPipe : public FileError {
  public:
   using FileError::FileError;
 };
 
-/// Prints to standard output, as core/printable.hpp shows it.
-/// \throws ClosedPipe if nobody reads it any more
+/// Prints to standard output, escaped as in core/printable.hpp.
+/// \throws ClosedPipe if the reader has exited
 /// \throws FileError if it cannot be written, for instance to a full disk
 void print(const std::string& text);
 
-/// Asks at the terminal whether to do something, before anything is done; `--yes` answers in
-/// advance (add_yes_flag).
-/// \param about  one line: whom it concerns, and what will be lost or seen
+/// Asks for confirmation at the terminal, before anything is done; `--yes` answers in advance
+/// (add_yes_flag).
+/// \param about  one line: the participant concerned, and what will be lost or shown
 /// \param yes  --yes: nothing is printed or asked
 /// \throws UsageError if the answer is not "yes", or standard input is no terminal
 void confirm(const std::string& about, bool yes);
@@ -36,7 +35,7 @@ void confirm(const std::string& about, bool yes);
 /// file or pipe: analysis::kTextWidth.
 [[nodiscard]] std::size_t columns_of_output();
 
-/// An argument as a shell reads it back.
+/// An argument quoted for a shell.
 [[nodiscard]] std::string shell_word(const std::string& text);
 
 /// A progress bar on standard error. It appears only on a terminal and after one second, and

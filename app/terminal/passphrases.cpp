@@ -21,11 +21,11 @@ namespace fs = std::filesystem;
 constexpr int kQuestions = 3;
 constexpr std::size_t kLongestPassphrase = 4096;
 
-/// The terminal gives every key at once, shows none, and leaves Ctrl-C to this program, which
-/// therefore always restores it.
-class HiddenTyping {
+/// Switches the terminal to raw input without echo; Ctrl-C is read as a key, so that the terminal
+/// is always restored.
+class NoEcho {
  public:
-  HiddenTyping() {
+  NoEcho() {
     if (::tcgetattr(STDIN_FILENO, &before_) != 0) {
       throw UsageError("the terminal cannot hide what is typed; give --passphrase-file");
     }
@@ -35,15 +35,15 @@ class HiddenTyping {
     hidden.c_cc[VTIME] = 0;
     ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &hidden);
   }
-  ~HiddenTyping() { ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &before_); }
-  HiddenTyping(const HiddenTyping&) = delete;
-  HiddenTyping& operator=(const HiddenTyping&) = delete;
+  ~NoEcho() { ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &before_); }
+  NoEcho(const NoEcho&) = delete;
+  NoEcho& operator=(const NoEcho&) = delete;
 
  private:
   termios before_{};
 };
 
-/// One line as it is typed while a HiddenTyping lives, with backspace and Ctrl-U.
+/// Reads one typed line while a NoEcho lives, with backspace and Ctrl-U.
 /// \throws UsageError after Ctrl-C, Ctrl-D, or the end of the input
 std::string typed_line() {
   constexpr char kBackspace = '\x08';
@@ -58,7 +58,7 @@ std::string typed_line() {
     if (key == kErase) line.clear();
     if (key == kBackspace || key == kDelete) {
       while (!line.empty() && (static_cast<unsigned char>(line.back()) & 0xc0U) == 0x80U) {
-        line.pop_back();  // the rest of a character of several bytes
+        line.pop_back();  // remaining bytes of a multi-byte character
       }
       if (!line.empty()) line.pop_back();
     } else if (static_cast<unsigned char>(key) >= ' ' && line.size() < kLongestPassphrase) {
@@ -69,7 +69,7 @@ std::string typed_line() {
 }
 
 std::string asked(const std::string& question) {
-  const HiddenTyping hidden;  // before the question: an answer may come at once
+  const NoEcho hidden;  // before the question, because an answer may come at once
   std::fputs(question.c_str(), stderr);
   std::fflush(stderr);
   const auto end_line = [] { std::fputs("\n", stderr); };
@@ -114,7 +114,7 @@ std::optional<std::string> passphrase_for(const fs::path& file, int attempt) {
     return passphrase_in(sources[index]);
   }
   if (::isatty(STDIN_FILENO) == 0 || attempt > kQuestions) return std::nullopt;
-  return asked((attempt > 1 ? "that is not it; " : "") + std::string("passphrase of ") +
+  return asked((attempt > 1 ? "wrong passphrase; " : "") + std::string("passphrase of ") +
                one_line(file.string()) + ": ");
 }
 
@@ -134,8 +134,8 @@ std::string new_passphrase(const fs::path& file, const std::vector<fs::path>& so
   const std::string name = one_line(file.string());
   if (::isatty(STDIN_FILENO) == 0) {
     throw UsageError(name +
-                     ": a new passphrase is asked for at a terminal, and standard input is none; "
-                     "name a file whose first line it is");
+                     ": a new passphrase needs a terminal, and standard input is not one; name a "
+                     "file with the passphrase in its first line");
   }
   std::string passphrase = asked("new passphrase of " + name + ": ");
   if (asked("the same again: ") != passphrase) {

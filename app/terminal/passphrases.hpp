@@ -1,6 +1,5 @@
 /// \file Passphrases of protected files: from the files that --passphrase-file names, else asked
-/// for on the terminal. They are never on the command line, which every user of the machine can
-/// read.
+/// for on the terminal. Never on the command line, which every user of the machine can read.
 #pragma once
 
 #include <filesystem>
@@ -9,16 +8,16 @@
 
 namespace touchtrial::app {
 
-/// What --passphrase-file names; the parser fills it.
+/// The files of --passphrase-file, filled by the parser.
 [[nodiscard]] std::vector<std::filesystem::path>& passphrase_files();
 
-/// Answers whenever a protected file is opened: with the first line of each passphrase file in
-/// turn, else from the terminal on standard input, without showing what is typed.
+/// Provides passphrases when protected files are opened: the first line of each passphrase file in
+/// turn, else from the terminal, without echo.
 void answer_for_passphrases();
 
-/// A passphrase for a file that is to be protected: the first line of the first of `sources`, or
-/// without one what is typed twice on the terminal.
-/// \throws UsageError if both are not the same, the question is broken off, or standard input is no
+/// A passphrase for a file to protect: the first line of the first of `sources`, or else typed
+/// twice at the terminal.
+/// \throws UsageError if the two differ, the prompt is cancelled, or standard input is not a
 ///   terminal
 /// \throws FileError if the source cannot be read, is empty, or is a file that others may read
 [[nodiscard]] std::string new_passphrase(const std::filesystem::path& file,

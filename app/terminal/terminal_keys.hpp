@@ -1,15 +1,14 @@
-/// \file Keys as they are pressed, without waiting for the end of a line. Each platform has its own
-/// source file.
+/// \file Unbuffered keys of the terminal. Each platform has its own source file.
 #pragma once
 
 #include <optional>
 
 namespace touchtrial::app {
 
-/// Reads standard input and never waits. While this object lives, keys on the program's own
-/// terminal come one by one and are not shown. Ctrl-C remains a signal; Ctrl-Z does not, because a
-/// suspended program cannot release a force. A pipe or file yields its characters, and nothing
-/// after its end. One object at a time.
+/// Reads standard input and never waits. While this object lives, keys on the program's terminal
+/// are delivered one by one without echo. Ctrl-C remains a signal; Ctrl-Z does not, because a
+/// suspended program cannot release a force. A pipe or file yields its characters up to its end.
+/// One object at a time.
 class TerminalKeys {
  public:
   TerminalKeys();

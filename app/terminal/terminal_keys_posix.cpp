@@ -18,7 +18,7 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 }  // namespace
 
 TerminalKeys::TerminalKeys() {
-  // A program in the background would be stopped if it changed the terminal.
+  // A background program would be stopped if it changed the terminal.
   if (::isatty(STDIN_FILENO) == 0 || ::tcgetpgrp(STDIN_FILENO) != ::getpgrp()) return;
   if (::tcgetattr(STDIN_FILENO, &terminal_before) != 0) return;
   termios keys = terminal_before;

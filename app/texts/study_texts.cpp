@@ -27,7 +27,7 @@ std::string seconds_text(double seconds, const std::string& language) {
   return text;
 }
 
-/// The texts of planes that have a clock, and those of ratings, have this at the end of their keys.
+/// The key suffix of texts for clocked planes and for ratings.
 std::string suffix_of(const study::Ask& ask) {
   if (std::holds_alternative<study::InContact>(ask.exploring)) return "_intervals";
   return std::holds_alternative<study::Rate>(ask.question) ? "_rating" : "";
@@ -49,7 +49,7 @@ Values values_for(const study::Study& study) {
   return values;
 }
 
-/// The parts about practice: what is practised, and whether answers are told afterwards too.
+/// The parts about practice and feedback.
 /// \return empty if the study has no practice
 std::vector<std::string> practice_parts(const study::Study& study) {
   const study::Ask ask = study::ask_of(study);
@@ -93,7 +93,7 @@ std::vector<std::vector<std::string>> pages_for(const study::Study& study) {
   return pages;
 }
 
-/// A part of the texts, for whoever wears a blindfold if that differs.
+/// A part of the texts, in the blindfold version if there is one.
 /// \throws StudyError if the language has none
 std::string part_of(const study::Study& study, const Section& texts, const std::string& part) {
   const bool is_blindfold = study.session.sight == study::Sight::blindfold;
@@ -121,7 +121,7 @@ std::vector<std::string> instructions(const study::Study& study, const Section& 
   return pages;
 }
 
-/// Whose words questions have: the study's, in its language, and those of other languages.
+/// The wording of questions: in the study's language, and in further languages.
 struct Wording {
   const study::SessionPlan& plan;
   const study::Texts& texts;                  ///< the study's

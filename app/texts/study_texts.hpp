@@ -1,5 +1,5 @@
-/// \file The texts that people read in a session: those of the study's language, and the study's own
-/// in their place. Sources of questions and items: docs/running-sessions.md.
+/// \file The texts of a session: those of the study's language, overridden by the study's own.
+///   Sources of questions and items: docs/running-sessions.md.
 #pragma once
 
 #include "protocols/session/session_stages.hpp"
@@ -7,13 +7,12 @@
 
 namespace touchtrial::app {
 
-/// The study's pages of instructions replace the program's in the languages that have them. Its
-/// closing questions and day-sheet items follow the program's; a question with the id of one of the
-/// program's replaces it. Texts are English if the program does not have the study's language.
+/// The study's instruction pages replace the built-in ones in the languages that have them. Its
+/// closing questions and day-sheet items follow the built-in ones; a question with a built-in id
+/// replaces that one. Texts are English if the study's language is not available.
 [[nodiscard]] session::SessionTexts session_texts(const study::Study& study);
 
-/// The questionnaires of these texts, worded in the study's language alone: no other language's
-/// file is read.
+/// The questionnaires of these texts, only in the study's language: no other language file is read.
 [[nodiscard]] std::vector<study::Questionnaire> questionnaires_of(const study::Study& study);
 
 }  // namespace touchtrial::app

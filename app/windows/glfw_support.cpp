@@ -55,7 +55,7 @@ GLFWmonitor* monitor_of(GLFWwindow* window) {
   return best;
 }
 
-/// Where the system hides the screen's density, a window unit already covers several pixels.
+/// If the system scales windows, a window unit already covers several pixels.
 float density_of(GLFWwindow* window) {
   float content = 1.0F;
   glfwGetWindowContentScale(window, &content, nullptr);
@@ -156,7 +156,7 @@ GlfwLibrary::GlfwLibrary() {
     spdlog::warn("{}; no screen counts as measured: see touchtrial screen calibrate", error.what());
   }
 #ifdef GLFW_PLATFORM
-  // From 3.4 on GLFW has Wayland too, whose windows have no place of their own to be put at.
+  // GLFW 3.4 and later also support Wayland, where windows cannot be positioned.
   glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
 #endif
   if (glfwInit() != GLFW_TRUE) {
@@ -198,19 +198,19 @@ ScreenScale screen_scale(GLFWwindow* window) {
   const auto measured = measured_screens.find(scale.monitor);
   scale.is_measured = measured != measured_screens.end();
   if (scale.is_measured) scale.mm_per_unit = measured->second;
-  scale.is_known = scale.is_measured || (stated > 0.0 && !is_made_up(width_mm, mode->width));
+  scale.is_known = scale.is_measured || (stated > 0.0 && !is_default_size(width_mm, mode->width));
   return scale;
 }
 
-bool is_made_up(int size_mm, int width) noexcept {
+bool is_default_size(int size_mm, int width) noexcept {
   return std::abs(width * kMmPerInch / 96.0 - size_mm) < 1.0;
 }
 
 double stated_mm_per_unit(int size_mm, int width) noexcept {
   if (size_mm <= 0 || width <= 0) return 0.0;
   const double mm_per_unit = static_cast<double>(size_mm) / width;
-  const bool can_be_true = mm_per_unit <= kMmPerInch / 40.0 && mm_per_unit >= kMmPerInch / 400.0;
-  return can_be_true ? mm_per_unit : 0.0;
+  const bool is_plausible = mm_per_unit <= kMmPerInch / 40.0 && mm_per_unit >= kMmPerInch / 400.0;
+  return is_plausible ? mm_per_unit : 0.0;
 }
 
 engine::ColourImage drawn_picture(int width, int height) {

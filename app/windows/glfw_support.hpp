@@ -1,7 +1,7 @@
-/// \file What all windows share of GLFW and OpenGL: starting GLFW, the scale of a screen, and what
-/// was drawn. Neither library shows here. Scales that somebody has measured with a card (`screen
-/// calibrate`) are in screens.json in the user's configuration folder; format:
-/// docs/data-dictionary.md, "Measured screens".
+/// \file The shared GLFW and OpenGL code of all windows: initialisation, the scale of a screen, and
+/// screenshots. Neither library is exposed. Scales measured with a card (`screen calibrate`) are in
+/// screens.json in the user's configuration folder; format: docs/data-dictionary.md, "Measured
+/// screens".
 #pragma once
 
 #include "engine/pictures/colour_image.hpp"
@@ -13,11 +13,11 @@ struct GLFWwindow;
 
 namespace touchtrial::app {
 
-/// Starts GLFW for as long as there is a window, and reads the measured screens. There may be one
-/// object at a time. It belongs to the main thread.
+/// Initialises GLFW for its lifetime, and reads the measured screens. One object at a time, on the
+/// main thread.
 class GlfwLibrary {
  public:
-  /// Warns if the measured screens cannot be read; there are none then.
+  /// Warns if the measured screens cannot be read, and ignores them.
   /// \throws DeviceError with the remedy if there is no display
   GlfwLibrary();
   ~GlfwLibrary();
@@ -34,11 +34,11 @@ void hint_opengl_3_2();
 /// The scale of the monitor that shows the largest part of a window.
 struct ScreenScale {
   double mm_per_unit = 25.4 / 96.0;  ///< millimetres on the screen for one window unit
-  bool is_known = false;             ///< measured, or the monitor states a size that can be true
+  bool is_known = false;             ///< measured, or the monitor states a plausible size
   float density = 1.0F;              ///< factor for all sizes; 1 at 96 window units per inch
   double refresh_hz = 60.0;
-  /// The monitor: its name, resolution, stated size and, where the system has it, a hash of its
-  /// EDID (the monitor's own description of itself).
+  /// The monitor: its name, resolution, stated size and, if available, a hash of its EDID (the
+  /// monitor's self-description).
   std::string monitor{};
   bool is_measured = false;  ///< by `screen calibrate`
 };
@@ -46,20 +46,19 @@ struct ScreenScale {
 /// Call it on the main thread while GLFW is running.
 [[nodiscard]] ScreenScale screen_scale(GLFWwindow* window);
 
-/// \param size_mm  as the monitor states it: many projectors and emulators state 0 or nonsense
+/// \param size_mm  as stated by the monitor: many projectors and emulators state 0 or nonsense
 /// \param width  window units of the same monitor
-/// \return millimetres for one window unit, or 0 where the statement cannot be true: outside 40 to
-///   400 units per inch
+/// \return millimetres for one window unit, or 0 if implausible: outside 40 to 400 units per inch
 [[nodiscard]] double stated_mm_per_unit(int size_mm, int width) noexcept;
 
-/// Whether a stated size is the one that systems make up for a monitor that states none: 96 window
-/// units per inch, to the millimetre.
-[[nodiscard]] bool is_made_up(int size_mm, int width) noexcept;
+/// Whether a size is the system's default for a monitor that states none: 96 window units per inch,
+/// to the millimetre.
+[[nodiscard]] bool is_default_size(int size_mm, int width) noexcept;
 
-/// \return screens.json in the user's configuration folder; empty if the system knows no home
+/// \return screens.json in the user's configuration folder; empty without a home folder
 [[nodiscard]] std::filesystem::path measured_screens_path();
 
-/// Keeps a measured screen beside those that there are.
+/// Adds a measured screen to the file.
 /// \param monitor  ScreenScale::monitor
 /// \param mm_per_unit  25.4 / 400 to 25.4 / 40
 /// \pre GLFW was started before

@@ -18,7 +18,7 @@ constexpr float kLargeHeight = 26.0F;
 /// Ideographs look small beside Latin letters of the same nominal height.
 constexpr float kEastAsianScale = 1.1F;
 
-/// Where systems keep a typeface that is legible at small sizes.
+/// Paths of a typeface that is legible at small sizes, by system.
 constexpr std::array kFaces = {
     "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
     "/usr/share/fonts/TTF/DejaVuSans.ttf",
@@ -41,7 +41,7 @@ constexpr std::array kBoldFaces = {
     "C:/Windows/Fonts/segoeuib.ttf",
 };
 
-/// Where systems keep a typeface with Chinese and Japanese letters.
+/// Paths of a typeface with Chinese and Japanese letters, by system.
 constexpr std::array kEastAsianFaces = {
     "/usr/share/fonts/truetype/droid/DroidSansFallbackFull.ttf",
     "/usr/share/fonts/droid/DroidSansFallbackFull.ttf",
@@ -70,7 +70,7 @@ ImFont* add_own(ImFontAtlas& atlas, float height) {
   return atlas.AddFontDefault(&own);
 }
 
-/// What ImGui takes from typefaces; must outlive the building of the atlas.
+/// The glyph ranges for ImGui; must outlive the building of the atlas.
 struct WantedLetters {
   ImVector<ImWchar> ranges;
   bool east_asian = false;
@@ -80,14 +80,14 @@ ImFont* add_font(ImFontAtlas& atlas, const FontSize& size, const WantedLetters& 
   std::string face = size.weight == FontWeight::bold ? installed(kBoldFaces) : "";
   if (face.empty()) face = installed(kFaces);
   ImFontConfig options;
-  options.OversampleH = 1;  // enough for large letters, and keeps the atlas small
+  options.OversampleH = 1;  // sufficient for large letters, and keeps the atlas small
   ImFont* font = face.empty() ? nullptr
                               : atlas.AddFontFromFileTTF(face.c_str(), size.height, &options,
                                                          wanted.ranges.Data);
   if (font == nullptr) font = add_own(atlas, size.height);
   const std::string other = wanted.east_asian ? installed(kEastAsianFaces) : "";
   if (other.empty()) return font;
-  options.MergeMode = true;  // takes only letters that the first typeface does not have
+  options.MergeMode = true;  // adds only letters that the first typeface lacks
   atlas.AddFontFromFileTTF(other.c_str(), std::round(kEastAsianScale * size.height), &options,
                            wanted.ranges.Data);
   return font;

@@ -1,5 +1,4 @@
-/// \file What all windows share of Dear ImGui: fonts, colours, the mark of the stylus, and the turn
-/// to draw.
+/// \file The shared Dear ImGui code of all windows: fonts, colours, and the mark of the stylus.
 #pragma once
 
 #include "core/vec.hpp"
@@ -28,9 +27,9 @@ inline constexpr PackedColour kGrey = 0xFF6E6E6E;
 inline constexpr PackedColour kPale = 0xFFE4E4E4;
 ///@}
 
-/// Loads two sizes of one typeface into ImGui's current context: text, then large text that is read
-/// from a distance. The typeface is DejaVu Sans or a similar one that is installed, else ImGui's
-/// own, enlarged.
+/// Loads two sizes of one typeface into ImGui's current context: text, and large text for reading
+/// from a distance. The typeface is DejaVu Sans or a similar installed one, else ImGui's own,
+/// enlarged.
 /// \param density  as ScreenScale::density, >= 1
 void load_fonts(float density);
 
@@ -44,10 +43,10 @@ struct FontSize {
   FontWeight weight = FontWeight::regular;
 };
 
-/// Replaces the fonts of ImGui's current context by sizes of the same typeface. They have the
-/// letters of Western European languages, and those that are asked for, as far as an installed
-/// typeface has them; Chinese and Japanese ones come from Droid Sans Fallback or a similar one. Few
-/// letters keep the fonts' texture small.
+/// Replaces the fonts of ImGui's current context by sizes of the same typeface. They contain the
+/// letters of Western European languages, and the requested ones that an installed typeface has;
+/// Chinese and Japanese ones come from Droid Sans Fallback or a similar one. Few letters keep the
+/// fonts' texture small.
 /// \return one font for each size
 std::vector<ImFont*> load_letters(std::span<const FontSize> sizes,
                                   const std::set<char32_t>& letters);

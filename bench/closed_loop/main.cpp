@@ -1,4 +1,4 @@
-// Sweeps of the closed loop of hand and plane: prints the tables of docs/benchmarks/closed-loop.md
+// Sweeps of the closed loop of hand and plane: prints the tables of docs/benchmarks/README.md
 // and of "Steps at touchdown" in docs/method.md.
 #include "bench/closed_loop/texture_loop.hpp"
 #include "engine/extraction.hpp"

@@ -1,6 +1,6 @@
 /// \file How much a simulated hand chatters while it strokes a texture through the servo, and what it
 /// feels when it comes down.
-/// Source: docs/benchmarks/closed-loop.md.
+/// Source: docs/benchmarks/README.md.
 #pragma once
 
 #include "core/plane.hpp"

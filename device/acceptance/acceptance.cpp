@@ -27,7 +27,7 @@ constexpr double kMinContactS = 1.0;
 constexpr int kWarmMinutes = 20;
 constexpr double kMinuteS = 60.0;
 
-/// Ends an acceptance that must not go on.
+/// Ends an acceptance that must not continue.
 struct EndOfAcceptance {
   std::string why;
 };
@@ -98,10 +98,10 @@ class Procedure {
  private:
   void missed(const std::string& what, const std::string& why) {
     certificate_.not_measured.push_back({what, why});
-    person_.tell(what + ": not measured: " + why);
+    person_.show(what + ": not measured: " + why);
   }
 
-  /// \return whether the run may begin; if not, the certificate says that it was left out
+  /// \return whether the run may begin; if not, the certificate records that it was skipped
   bool consents(const Prompt& prompt, const std::string& what) {
     if (runs_.consents(prompt)) return true;
     missed(what, std::string(kLeftOut));
@@ -123,7 +123,7 @@ class Procedure {
   [[nodiscard]] double step_mm() const {
     return certificate_.step_mm ? certificate_.step_mm->value : 0.0;
   }
-  /// A swing smaller than this is none.
+  /// Smaller swings are ignored.
   [[nodiscard]] double least_swing_mm() const {
     const double noise_mm = certificate_.rest ? certificate_.rest->noise_mm : 0.0;
     return std::max({kMinSwingMm, kStepsOfSwing * step_mm(), kNoisesOfSwing * noise_mm});
@@ -140,16 +140,16 @@ class Procedure {
       runs_.measure("rest", rest);
       certificate_.rest = rest_figures(rest.samples());
       if (certificate_.rest) {
-        person_.tell(fmt::format("at rest: noise {:.4f} mm, drift {:.3f} mm",
+        person_.show(fmt::format("at rest: noise {:.4f} mm, drift {:.3f} mm",
                                  certificate_.rest->noise_mm, certificate_.rest->drift_mm));
       } else {
         missed("noise at rest", "the run ended early");
       }
     }
-    const OrWhy<Measured> step = runs_.encoder_step();
+    const ValueOrReason<Measured> step = runs_.encoder_step();
     certificate_.step_mm = step.value;
     if (step.value) {
-      person_.tell("encoder step: " + words_of(*step.value, 4, "mm"));
+      person_.show("encoder step: " + words_of(*step.value, 4, "mm"));
     } else {
       missed("encoder step", step.why);
     }
@@ -163,7 +163,7 @@ class Procedure {
                                  "N, until it has moved 2 mm; then the other way.",
                                  name_of(axis), forces_.push_n)},
                     "sign" + on(axis))) {
-        throw EndOfAcceptance{"nothing pulls a handle before the signs of all axes are known"};
+        throw EndOfAcceptance{"no pull before the signs of all axes are known"};
       }
       AxisPush run(axis, forces_.push_n);
       runs_.measure("push " + std::string(name_of(axis)), run);
@@ -177,22 +177,23 @@ class Procedure {
     if (figures.plus) result.plus = push_result(*figures.plus, axis, 1.0);
     if (figures.minus) result.minus = push_result(*figures.minus, axis, -1.0);
     const std::string name(name_of(axis));
-    if (result.plus) person_.tell("push +" + name + ": " + push_words(*result.plus));
-    if (result.minus) person_.tell("push -" + name + ": " + push_words(*result.minus));
-    const bool goes_well = result.plus && result.minus && result.plus->moved &&
-                           result.minus->moved && result.plus->along_mm > result.plus->across_mm &&
-                           result.minus->along_mm > result.minus->across_mm;
-    if (goes_well) return;
+    if (result.plus) person_.show("push +" + name + ": " + push_words(*result.plus));
+    if (result.minus) person_.show("push -" + name + ": " + push_words(*result.minus));
+    const bool may_continue = result.plus && result.minus && result.plus->moved &&
+                              result.minus->moved &&
+                              result.plus->along_mm > result.plus->across_mm &&
+                              result.minus->along_mm > result.minus->across_mm;
+    if (may_continue) return;
     if (run.ran_away())
       throw EndOfAcceptance{"the handle ran more than 15 mm away from where its push began" +
                             on(axis)};
-    if (!figures.came_to_rest) throw EndOfAcceptance{"the handle never came to rest" + on(axis)};
+    if (!figures.reached_rest) throw EndOfAcceptance{"the handle never came to rest" + on(axis)};
     throw EndOfAcceptance{"the handle does not follow a small force" + on(axis)};
   }
 
   void stroke() {
     for (const DeviceAxis axis : kDeviceAxes) {
-      const OrWhy<StrokeFigures> strokes =
+      const ValueOrReason<StrokeFigures> strokes =
           runs_.empty_strokes("strokes", axis, support_n_, step_mm());
       if (!strokes.value) {
         missed("friction and load" + on(axis), strokes.why);
@@ -204,7 +205,7 @@ class Procedure {
       support_n_ =
           support_n_ + (*result.load_n - dot(support_n_, direction_of(axis))) * direction_of(axis);
       curves_of(axis).loop = strokes.value->loop;
-      person_.tell(fmt::format("axis {}: friction {}, the handle's own load {:.2f} N",
+      person_.show(fmt::format("axis {}: friction {}, the handle's own load {:.2f} N",
                                name_of(axis), words_of(*result.friction_n, 2, "N"),
                                *result.load_n));
     }
@@ -219,7 +220,7 @@ class Procedure {
         continue;
       }
       const EmptyHandle empty{support_n_, *result.load_n, result.friction_n->value};
-      const OrWhy<WeighResult> weighed = runs_.weigh("weights", axis, empty, step_mm());
+      const ValueOrReason<WeighResult> weighed = runs_.weigh("weights", axis, empty, step_mm());
       result.weight = weighed.value;
       if (!weighed.value) missed(what, weighed.why);
     }
@@ -230,7 +231,7 @@ class Procedure {
       const std::string what = "mass and delay" + on(axis);
       AxisResult& result = result_of(axis);
       if (!result.friction_n) {
-        missed(what, "friction was not measured, which says how hard to push");
+        missed(what, "friction was not measured, which determines how hard to push");
         continue;
       }
       const double push_n = std::min(result.friction_n->value + kShakeMoreN, forces_.push_n);
@@ -245,7 +246,8 @@ class Procedure {
       }
       ShakenStrokes run(axis, support_n_, push_n, forces_.gains, forces_.hold_n);
       runs_.measure("shake " + std::string(name_of(axis)), run);
-      const OrWhy<ShakeFigures> shaken = shake_figures(run, result.friction_n->value, step_mm());
+      const ValueOrReason<ShakeFigures> shaken =
+          shake_figures(run, result.friction_n->value, step_mm());
       if (!shaken.value) {
         missed(what, shaken.why);
         continue;
@@ -270,11 +272,11 @@ class Procedure {
       result.delay_ms = figures.delay_ms;
     }
     curves_of(result.axis).by_delay = figures.by_delay;
-    person_.tell(fmt::format("axis {}: mass {}, {:.0f} % of the motion unexplained",
+    person_.show(fmt::format("axis {}: mass {}, {:.0f} % of the motion unexplained",
                              name_of(result.axis), words_of(figures.mass_kg, 3, "kg"),
                              100.0 * figures.unexplained));
     if (result.delay_ms) {
-      person_.tell(fmt::format("axis {}: delay {}", name_of(result.axis),
+      person_.show(fmt::format("axis {}: delay {}", name_of(result.axis),
                                words_of(*result.delay_ms, 1, "ms")));
     } else {
       missed("delay" + on(result.axis), no_delay);
@@ -307,7 +309,7 @@ class Procedure {
         break;
       }
       if (run.contact_s() < kMinContactS) {
-        wall.ended = "nobody pressed on the floor";
+        wall.ended = "the floor was not pressed";
         break;
       }
       tried = true;
@@ -320,14 +322,14 @@ class Procedure {
       return;
     }
     certificate_.wall = wall;
-    person_.tell(fmt::format("wall: stable at {:.2f} N/mm{}; ended by {}", wall.stable_n_per_mm,
+    person_.show(fmt::format("wall: stable at {:.2f} N/mm{}; ended by {}", wall.stable_n_per_mm,
                              wall.oscillates_n_per_mm > 0.0
                                  ? fmt::format(", swings at {:.2f} N/mm", wall.oscillates_n_per_mm)
                                  : "",
                              wall.ended));
   }
 
-  /// Holds a load along y for twenty minutes; the force that it needs tells what warm motors lose.
+  /// Holds a load along y for twenty minutes; the change of its force shows what warm motors lose.
   void warm() {
     const std::string what = "force after twenty minutes";
     AxisResult& result = result_of(DeviceAxis::y);
@@ -348,7 +350,7 @@ class Procedure {
       SlowStrokes run(DeviceAxis::y, support_n_, forces_.gains, forces_.hold_n,
                       kMinuteS - strokes_s);
       runs_.measure("warm " + std::to_string(minute + 1), run);
-      const OrWhy<StrokeFigures> strokes = stroke_figures(run, step_mm());
+      const ValueOrReason<StrokeFigures> strokes = stroke_figures(run, step_mm());
       if (!strokes.value) {
         missed(what, strokes.why);
         return;
@@ -357,12 +359,12 @@ class Procedure {
       if (minute == 0) warm.before_n = warm.after_n;
     }
     warm.after_c = person_.temperature_c("temperature of the motors' housing now");
-    person_.tell(fmt::format("the load took {:.3f} N at first, and {:.3f} N after twenty minutes",
+    person_.show(fmt::format("the load took {:.3f} N at first, and {:.3f} N after twenty minutes",
                              warm.before_n, warm.after_n));
     certificate_.warm = warm;
   }
 
-  /// What was measured in commanded newtons becomes newtons at the handle.
+  /// Converts measurements from commanded newtons to newtons at the handle.
   void apply_force_scale() {
     for (AxisResult& result : certificate_.axes) {
       const auto scale = result.scale();

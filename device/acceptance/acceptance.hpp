@@ -1,5 +1,5 @@
-/// \file The acceptance of a device: which runs follow each other, what a person does in each, and
-/// what the results are. Source: docs/devices/acceptance.md.
+/// \file The acceptance of a device: the order of runs, what a person does in each, and the
+///   results. Source: docs/devices/acceptance.md.
 #pragma once
 
 #include "device/acceptance/certificate.hpp"
@@ -17,14 +17,14 @@
 
 namespace touchtrial::device {
 
-/// The steps, in their order, by the names that a person may leave out. Without `push` nothing that
-/// follows is possible: a hold pulls a device with a wrong sign away from its place.
+/// The steps in order, by name, so that a person can skip them. Later steps require `push`: a hold
+/// pulls a device with a wrong sign away from its place.
 inline constexpr std::array<std::string_view, 7> kAcceptanceSteps = {
     "rest", "steps", "push", "strokes", "weights", "shake", "wall"};
 
 /// What a person does with the handle during a run.
 enum class Grip {
-  lying,     ///< nothing: it lies or is held still
+  lying,     ///< none: it lies or is held still
   moving,    ///< moves it slowly along all axes
   carrying,  ///< carries it by some centimetres in the axis' direction, and holds it there
   holding,   ///< holds it lightly, so that it can give way
@@ -34,7 +34,7 @@ enum class Grip {
   guarding,  ///< holds it firmly and watches
 };
 
-/// What is to be done before a run.
+/// The instruction before a run.
 struct Prompt {
   std::string_view step;  ///< one of kAcceptanceSteps, or "thermal"
   Grip stance = Grip::lying;
@@ -47,21 +47,21 @@ enum class Consent {
   skip,  ///< this run, or the rest of a row of trials
 };
 
-/// The person, or who stands in. Every function may throw to end the acceptance.
+/// The person, or a simulated one. Every function may throw to end the acceptance.
 class AcceptancePerson {
  public:
   virtual ~AcceptancePerson() = default;
-  /// Asks for the stance, and for consent to the run. No force acts before it returns.
+  /// Asks for the grip, and for consent to the run. No force acts before it returns.
   [[nodiscard]] virtual Consent ready(const Prompt& prompt) = 0;
-  /// Asks for a force along an axis: a weight, or what a spring scale shows.
+  /// Asks for a force along an axis: a weight, or the reading of a spring scale.
   /// \return N, in the range; nothing: the person has none
   [[nodiscard]] virtual std::optional<double> weight_n(DeviceAxis axis, double least_n,
                                                        double most_n) = 0;
   /// \return a temperature in degrees Celsius; nothing: there is no thermometer
   [[nodiscard]] virtual std::optional<double> temperature_c(const std::string& question) = 0;
-  /// \return what the person saw, in their words; empty: nothing
-  [[nodiscard]] virtual std::string saw(const std::string& question) = 0;
-  virtual void tell(const std::string& result) = 0;
+  /// \return the person's observation, in their words; may be empty
+  [[nodiscard]] virtual std::string ask_observation(const std::string& question) = 0;
+  virtual void show(const std::string& result) = 0;
 };
 
 /// The device under its servo.
@@ -69,16 +69,16 @@ class AcceptanceBench {
  public:
   virtual ~AcceptanceBench() = default;
   [[nodiscard]] virtual DeviceInfo info() const = 0;
-  /// In force for every run.
+  /// They apply to every run.
   [[nodiscard]] virtual SafetyLimits limits() const = 0;
-  /// Puts the largest force of the runs that follow below the bench's own limit.
+  /// Sets a stricter force limit than the bench's own for later runs.
   /// \param most_n  > 0
   virtual void limit_force(double most_n) = 0;
   /// \param name  of the run, at most 8 letters
   /// \throws touchtrial::Error if a person or a signal stopped it
   [[nodiscard]] virtual ServoReport run(const std::string& name, Measurement& measurement) = 0;
   /// The same, while the system suspends the program for two seconds.
-  /// \return nothing where that is not possible
+  /// \return nothing if that is not possible
   [[nodiscard]] virtual std::optional<ServoReport> run_suspended(Measurement& /*measurement*/) {
     return std::nullopt;
   }
@@ -97,7 +97,7 @@ struct AxisCurves {
 };
 
 struct Acceptance {
-  Certificate certificate;  ///< `program`, `made` and `emulated` are the caller's
+  Certificate certificate;  ///< the caller sets `program`, `made` and `emulated`
   std::vector<AxisCurves> curves;
 };
 
@@ -111,7 +111,8 @@ struct AcceptanceForces {
 [[nodiscard]] AcceptanceForces acceptance_forces(const DeviceInfo& device,
                                                  const SafetyLimits& limits) noexcept;
 
-/// Runs the acceptance. A wrong sign and a fault end it at once, with a certificate that says so.
+/// Runs the acceptance. A wrong sign or a fault ends it at once, with a certificate that states
+/// this.
 /// \throws whatever bench and person throw
 [[nodiscard]] Acceptance accept_device(AcceptanceBench& bench, AcceptancePerson& person,
                                        const AcceptanceOptions& options);

@@ -26,7 +26,7 @@ constexpr auto kAxisWords = std::to_array<Named<DeviceAxis>>(
 constexpr NumberRange kPositive{.low = 0.0, .high = 1e6};
 constexpr NumberRange kSigned{.low = -1e6, .high = 1e6};
 constexpr std::size_t kMaxEntries = 1000;
-/// A number that is written like its limit (three digits, whole percents) does not exceed it.
+/// A number that prints like its limit (three digits, whole percents) does not exceed it.
 constexpr double kAlikeShare = 0.004;
 constexpr double kAlikePercent = 0.5;
 
@@ -197,7 +197,7 @@ int digits_at(const std::string& text, std::size_t at, std::size_t digits) {
   return number_in<int>(std::string_view(text).substr(at, digits)).value_or(-1);
 }
 
-std::chrono::sys_seconds read_made(const JsonValue& place) {
+std::chrono::sys_seconds read_creation_time(const JsonValue& place) {
   const std::string& text = place.text();
   const std::string form = "0000-00-00T00:00:00Z";
   if (text.size() == form.size()) {
@@ -331,7 +331,7 @@ Certificate read_acceptance(const JsonValue& place) {
   certificate.serial = object.at("serial").text();
   certificate.firmware = object.at("firmware").text();
   certificate.program = object.at("program").text();
-  certificate.made = read_made(object.at("made"));
+  certificate.made = read_creation_time(object.at("made"));
   certificate.emulated = object.at("emulated").text();
   certificate.scale = {read_scale(object.at("force_scale")), read_scale(object.at("length_scale"))};
   certificate.fault = object.at("fault").text();
@@ -487,7 +487,7 @@ std::string check_certificate(const Certificate& certificate, const DeviceInfo& 
                       scale_text(device.scale) + remedy);
   }
   if (const auto failures = certificate.failures(); !failures.empty()) {
-    throw DeviceError(one_line(device.name + ": its certificate says that it failed (" +
+    throw DeviceError(one_line(device.name + ": its certificate states that it failed (" +
                                failures.front() + ")" + remedy));
   }
   if (certificate.made > now + kCertificateLead) {
@@ -555,7 +555,7 @@ DeviceModel model_of(const Certificate& certificate, const DeviceInfo& device) {
     take("delay_ticks", std::round(delay->value), 100.0, ticks);
     model.delay_ticks = static_cast<int>(ticks);
   }
-  // Nothing measures it, but without it a model's walls are stabler than any device's.
+  // It is not measured, but without it a model's walls would be more stable than any device's.
   model.zero_order_hold = true;
   model.provenance["zero_order_hold"] = {"every device holds a force until the next tick",
                                          Confidence::guess};

@@ -18,7 +18,7 @@ namespace touchtrial::device {
 
 inline constexpr double kStandardGravityMS2 = 9.80665;
 
-/// \name What fails a device. Sources: docs/devices/acceptance.md.
+/// \name Limits beyond which a device fails. Sources: docs/devices/acceptance.md.
 ///@{
 inline constexpr double kForceTolerance = 0.10;  ///< share of the force
 inline constexpr double kMaxNoiseMm = 0.1;       ///< of a handle that lies still
@@ -26,22 +26,22 @@ inline constexpr double kMaxDriftMm = 0.5;
 inline constexpr double kMaxStepMm = 0.1;
 inline constexpr double kMaxFrictionN = 0.7;  ///< the push of a stroke
 inline constexpr double kMaxDelayMs = 5.0;
-inline constexpr double kMaxDelayErrorMs = 2.0;  ///< a stated error above it tells nothing
+inline constexpr double kMaxDelayErrorMs = 2.0;  ///< a larger stated error makes the delay useless
 inline constexpr double kMaxWarmDrift = 0.10;    ///< share of the load, over twenty minutes
 ///@}
 
-/// What an interval says of a delay. A device must be shown to be below the limit.
+/// The verdict of a delay's interval. A device must be shown to be below the limit.
 enum class DelayVerdict {
   below,      ///< all of the interval is within the limit
   above,      ///< all of it is beyond
   not_shown,  ///< the limit is within it
-  unclear,    ///< it is wider than kMaxDelayErrorMs to either side, and not all beyond
+  unclear,    ///< wider than kMaxDelayErrorMs to either side, and not entirely beyond
 };
 [[nodiscard]] DelayVerdict verdict_on_delay(const Measured& delay_ms) noexcept;
 
 /// An older certificate causes a warning.
 inline constexpr std::chrono::hours kCertificateAge{24 * 180};
-/// A newer one is refused: clocks of two machines differ, but not by more.
+/// A certificate from further in the future is refused; clocks of two machines may differ by this.
 inline constexpr std::chrono::hours kCertificateLead{24};
 
 /// A push along an axis until the handle moved.
@@ -55,11 +55,11 @@ struct PushResult {
 /// A known force held by the device.
 struct WeighResult {
   double expected_n = 0.0;  ///< of the weight or the spring scale, > 0
-  double measured_n = 0.0;  ///< commanded with it, beyond that without it, >= 0
+  double measured_n = 0.0;  ///< commanded with the load minus without it, >= 0
   double error_n = 0.0;     ///< of measured_n
 };
 
-/// What one axis showed; a part that was not measured is absent.
+/// The results of one axis; parts that were not measured are absent.
 struct AxisResult {
   DeviceAxis axis = DeviceAxis::y;
   std::optional<PushResult> plus{};   ///< force in the axis' direction
@@ -70,14 +70,14 @@ struct AxisResult {
   std::optional<Measured> mass_kg{};
   std::optional<Measured> viscous_n_s_per_m{};
   std::optional<Measured> delay_ms{};
-  /// The person left its step out. Without this an axis whose delay is not known has failed.
+  /// Whether the person skipped the step. Otherwise an axis without a delay fails.
   bool delay_left_out = false;
 
-  /// Delivered force over commanded force, which Certificate::scale has corrected.
+  /// Delivered over commanded force, after correction by Certificate::scale.
   [[nodiscard]] std::optional<Measured> scale() const;
 };
 
-/// A wall that became stiffer from trial to trial.
+/// Trials with a wall of increasing stiffness.
 struct WallResult {
   double stable_n_per_mm = 0.0;      ///< the stiffest that did not oscillate; 0: none
   double oscillates_n_per_mm = 0.0;  ///< the first that did; 0: none did
@@ -92,7 +92,7 @@ struct WarmResult {
   std::optional<double> after_c{};
 };
 
-/// What was not measured, and why.
+/// A measurement that is missing, and why.
 struct NotMeasured {
   std::string what;
   std::string why;
@@ -106,17 +106,17 @@ struct Certificate {
   std::string program;              ///< version
   std::chrono::sys_seconds made{};  ///< UTC
   std::string emulated{};           ///< name of the device model of a rehearsal; empty: a device
-  DeviceScale scale{};              ///< of the lab's settings, in force for all measurements
+  DeviceScale scale{};              ///< from the lab's settings, applied to all measurements
   std::string fault{};              ///< of the device, which ended the acceptance; empty: none
   std::optional<RestFigures> rest{};
   std::optional<Measured> step_mm{};
-  std::vector<AxisResult> axes{};  ///< those that were tried, in the order of kDeviceAxes
+  std::vector<AxisResult> axes{};  ///< the tested axes, in the order of kDeviceAxes
   std::optional<WallResult> wall{};
   std::optional<WarmResult> warm{};
   std::vector<NotMeasured> not_measured{};
 
-  /// \return why the device is refused, a line each; empty: it passed. The rest, the signs, the
-  ///   forces and, unless it was left out, the delays of all three axes must have been measured.
+  /// \return why the device is refused, a line each; empty: it passed. Required are noise at rest
+  ///   and, for all three axes, signs, forces and, unless skipped, delays.
   [[nodiscard]] std::vector<std::string> failures() const;
   [[nodiscard]] bool passed() const { return failures().empty(); }
   /// \return the largest factor between delivered and commanded force; 1 if none was measured
@@ -135,7 +135,7 @@ struct ReadCertificate {
 };
 
 /// \throws FileError if it cannot be read, StudyError with the JSON pointer if it is not a
-///   certificate, or claims more than its measurements show
+///   certificate, or its claims contradict its measurements
 [[nodiscard]] ReadCertificate read_certificate(const std::filesystem::path& path);
 
 /// Compares a certificate with the device of a session.
@@ -147,13 +147,14 @@ struct ReadCertificate {
                                             const DeviceInfo& device, std::chrono::sys_seconds now);
 
 /// \param stiffness_n_per_mm  of a study's wall
-/// \throws DeviceError with the remedy if a wall of this stiffness, or a softer one, oscillated in the
-///   acceptance
+/// \throws DeviceError with the remedy if a wall of this stiffness, or a softer one, oscillated in
+///   the acceptance
 void require_stable(const Certificate& certificate, double stiffness_n_per_mm);
 
-/// \return a device model with what was measured, and a held force, for planning and rehearsals;
-///   what was not measured stays zero, which leaves its stage out. Soft arms, friction at rest and
-///   the lag of velocities are never measured: walls of the model are stabler than the device's.
+/// \return a device model of the measurements, with a held force, for planning and rehearsals;
+///   parameters that were not measured are zero, which disables their stage. Soft arms, friction at
+///   rest and the lag of velocities are never measured, so walls of the model are more stable than
+///   the device's.
 /// \param device  force limits and workspace; the values of a rehearsal are derived, not measured
 [[nodiscard]] DeviceModel model_of(const Certificate& certificate, const DeviceInfo& device);
 

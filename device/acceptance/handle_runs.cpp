@@ -11,7 +11,7 @@ namespace {
 constexpr double kMoveRunS = 12.0;
 constexpr double kSilentRunS = 8.0;
 constexpr double kMinWeightN = 0.1;
-constexpr double kStrokeShareN = 0.2;  ///< that strokes need beside load and friction
+constexpr double kStrokeShareN = 0.2;  ///< that strokes need in addition to load and friction
 
 }  // namespace
 
@@ -29,7 +29,7 @@ void HandleRuns::require_no_fault(const ServoReport& report, const std::string& 
   if (report.end == ServoEnd::fault) throw DeviceFailed{fault_names(report), name};
 }
 
-OrWhy<Measured> HandleRuns::encoder_step() {
+ValueOrReason<Measured> HandleRuns::encoder_step() {
   if (!consents({"steps",
                  Grip::moving,
                  {},
@@ -42,8 +42,8 @@ OrWhy<Measured> HandleRuns::encoder_step() {
   return encoder_step_mm(moving.samples());
 }
 
-OrWhy<StrokeFigures> HandleRuns::empty_strokes(std::string_view step, DeviceAxis axis,
-                                               Vec3 support_n, double step_mm) {
+ValueOrReason<StrokeFigures> HandleRuns::empty_strokes(std::string_view step, DeviceAxis axis,
+                                                       Vec3 support_n, double step_mm) {
   if (!consents({step, Grip::free, axis,
                  fmt::format("Hold the handle in the middle, without a weight. Let go slowly "
                              "within 2 s of the start: it is held and moved by 5 mm along axis "
@@ -57,8 +57,8 @@ OrWhy<StrokeFigures> HandleRuns::empty_strokes(std::string_view step, DeviceAxis
   return stroke_figures(run, step_mm);
 }
 
-OrWhy<WeighResult> HandleRuns::weigh(std::string_view step, DeviceAxis axis,
-                                     const EmptyHandle& empty, double step_mm) {
+ValueOrReason<WeighResult> HandleRuns::weigh(std::string_view step, DeviceAxis axis,
+                                             const EmptyHandle& empty, double step_mm) {
   const AcceptanceForces forces = acceptance_forces(bench_.info(), bench_.limits());
   const double most_n = std::min(forces.weight_n, forces.hold_n) - std::abs(empty.load_n) -
                         empty.friction_n - kStrokeShareN;
@@ -75,21 +75,21 @@ OrWhy<WeighResult> HandleRuns::weigh(std::string_view step, DeviceAxis axis,
   }
   SlowStrokes run(axis, empty.support_n, forces.gains, forces.hold_n);
   measure("weight " + std::string(name_of(axis)), run);
-  const OrWhy<StrokeFigures> strokes = stroke_figures(run, step_mm);
+  const ValueOrReason<StrokeFigures> strokes = stroke_figures(run, step_mm);
   if (!strokes.value) return {{}, strokes.why};
   const Measured& load_n = strokes.value->load_n;
-  // Over a pulley a weight pulls to either side.
+  // Over a pulley, a weight can pull to either side.
   const double more_n = std::abs(load_n.value - empty.load_n);
   const WeighResult result{*weight_n, more_n, load_n.error};
   const auto scale = AxisResult{.weight = result}.scale();
   if (!scale) return {{}, "the weight made no difference"};
-  person_.tell(fmt::format(
+  person_.show(fmt::format(
       "axis {}: {:.3f} N commanded for {:.3f} N: delivers {:.0f} +- {:.0f} % of the command",
       name_of(axis), more_n, *weight_n, 100.0 * scale->value, 100.0 * scale->error));
   return {result};
 }
 
-OrWhy<ServoReport> HandleRuns::suspend_program(std::string_view step) {
+ValueOrReason<ServoReport> HandleRuns::suspend_program(std::string_view step) {
   if (!consents({step, Grip::guarding, DeviceAxis::y,
                  "Hold the handle firmly: it is pushed down by 0.3 N for 8 s. After about 3 s the "
                  "system suspends this program for 2 s."})) {
@@ -100,7 +100,7 @@ OrWhy<ServoReport> HandleRuns::suspend_program(std::string_view step) {
   return {report, report ? "" : "not possible here"};
 }
 
-OrWhy<ServoReport> HandleRuns::pull_cable(std::string_view step) {
+ValueOrReason<ServoReport> HandleRuns::pull_cable(std::string_view step) {
   if (!consents({step, Grip::guarding, DeviceAxis::y,
                  "Hold the handle firmly: it is pushed down by 0.3 N for 8 s. Pull the device's "
                  "data cable out within that time. Leave this out if the cable must stay."})) {
@@ -109,7 +109,7 @@ OrWhy<ServoReport> HandleRuns::pull_cable(std::string_view step) {
   SteadyPush push(kSilentRunS);
   const ServoReport report = bench_.run("cable", push);
   if (report.end != ServoEnd::fault) {
-    return {{}, "the device answered to the end: nobody pulled the cable"};
+    return {{}, "the device answered to the end: the cable was not pulled"};
   }
   return {report};
 }

@@ -1,5 +1,5 @@
-/// \file The runs that an acceptance and a bring-up share: consent, a run, and what it gives or why it
-/// gives nothing.
+/// \file The runs shared by acceptance and bring-up: consent, a run, and its result or the reason
+///   why there is none.
 #pragma once
 
 #include "device/acceptance/acceptance.hpp"
@@ -19,21 +19,21 @@ struct DeviceFailed {
   std::string run;    ///< the run's name
 };
 
-/// The reason for what a person left out.
+/// The reason recorded for skipped steps.
 inline constexpr std::string_view kLeftOut = "left out";
 
-/// What an empty handle takes on an axis.
+/// The support and load of an empty handle on an axis.
 struct EmptyHandle {
-  Vec3 support_n;       ///< commanded, that carries it
+  Vec3 support_n;       ///< commanded force that carries it
   double load_n = 0.0;  ///< of it, along the axis
   double friction_n = 0.0;
 };
 
-/// Leads one person through single runs on one bench. Every function may throw what these throw,
-/// and DeviceFailed. Private to the folders of acceptance and bring-up.
+/// Guides one person through single runs on one bench. Every function may throw DeviceFailed, and
+/// exceptions of person and bench. Private to the folders of acceptance and bring-up.
 class HandleRuns {
  public:
-  /// \param skip  steps that are left out unasked
+  /// \param skip  steps to skip without asking
   HandleRuns(AcceptanceBench& bench, AcceptancePerson& person,
              std::set<std::string, std::less<>> skip = {})
       : bench_(bench), person_(person), skip_(std::move(skip)) {}
@@ -44,22 +44,22 @@ class HandleRuns {
   static void require_no_fault(const ServoReport& report, const std::string& name);
 
   /// The person moves the handle slowly along all axes.
-  [[nodiscard]] OrWhy<Measured> encoder_step();
+  [[nodiscard]] ValueOrReason<Measured> encoder_step();
 
   /// The handle is held and moved slowly along an axis, without a weight.
   /// \param step  that the prompt names
   /// \param step_mm  encoder step; 0: not known
-  [[nodiscard]] OrWhy<StrokeFigures> empty_strokes(std::string_view step, DeviceAxis axis,
-                                                   Vec3 support_n, double step_mm);
+  [[nodiscard]] ValueOrReason<StrokeFigures> empty_strokes(std::string_view step, DeviceAxis axis,
+                                                           Vec3 support_n, double step_mm);
 
   /// The same with a known weight on it; the result has a scale.
-  [[nodiscard]] OrWhy<WeighResult> weigh(std::string_view step, DeviceAxis axis,
-                                         const EmptyHandle& empty, double step_mm);
+  [[nodiscard]] ValueOrReason<WeighResult> weigh(std::string_view step, DeviceAxis axis,
+                                                 const EmptyHandle& empty, double step_mm);
 
   /// A small push while the system suspends the program.
-  [[nodiscard]] OrWhy<ServoReport> suspend_program(std::string_view step);
+  [[nodiscard]] ValueOrReason<ServoReport> suspend_program(std::string_view step);
   /// A small push while the person pulls the cable.
-  [[nodiscard]] OrWhy<ServoReport> pull_cable(std::string_view step);
+  [[nodiscard]] ValueOrReason<ServoReport> pull_cable(std::string_view step);
 
  private:
   AcceptanceBench& bench_;

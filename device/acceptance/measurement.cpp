@@ -7,15 +7,15 @@
 namespace touchtrial::device {
 namespace {
 
-constexpr double kRestMm = 0.3;         ///< a handle that stays within this is at rest
-constexpr double kRestS = 0.4;          ///< when it does so for this long
-constexpr double kLongestWaitS = 10.0;  ///< for that
+constexpr double kRestMm = 0.3;         ///< a handle is at rest within this distance
+constexpr double kRestS = 0.4;          ///< for this long
+constexpr double kLongestWaitS = 10.0;  ///< for rest
 constexpr double kSmoothShare = 0.05;   ///< of a new reading: about 20 ms
 constexpr double kPushReachMm = 15.0;
 constexpr double kStrokeReachMm = 40.0;
 constexpr double kSupportRampS = 1.0;
 constexpr double kHeldSwingMm = 0.6;
-constexpr double kTurnAtMm = 22.0;  ///< shaken strokes turn round here at the latest
+constexpr double kTurnAtMm = 22.0;  ///< shaken strokes reverse here at the latest
 constexpr double kTurnAtMmS = 400.0;
 constexpr double kLongestPushS = 0.15;
 constexpr double kShortestPushS = 0.008;
@@ -50,7 +50,7 @@ Vec3 direction_of(DeviceAxis axis) noexcept {
 
 Measurement::Measurement(double seconds, double most_n, double reach_mm)
     : seconds_(seconds), most_n_(most_n), reach_mm_(reach_mm) {
-  // A run ends with a fade, and begins before the device is ready.
+  // A run starts before the device is ready, and ends with a fade.
   samples_.reserve(static_cast<std::size_t>((seconds + 2.0) * kServoRateHz));
 }
 
@@ -79,7 +79,7 @@ bool SwingDetector::swings(double place_mm, double time_s) noexcept {
   }
   slow_mm_[0] += share * (place_mm - slow_mm_[0]);
   const double first_mm = place_mm - slow_mm_[0];
-  // A steady motion leaves a constant behind the first filter and nothing behind the second.
+  // A steady motion becomes a constant after the first filter and zero after the second.
   slow_mm_[1] += share * (first_mm - slow_mm_[1]);
   const double fast_mm = first_mm - slow_mm_[1];
   if (std::abs(fast_mm) >= least_mm_ && fast_mm * peak_mm_ <= 0.0) {
@@ -138,7 +138,7 @@ Vec3 AxisPush::next_n(const DeviceSample& sample, double time_s) noexcept {
   }
   smooth_mm_ = smooth_mm_ + kSmoothShare * (sample.position_mm - smooth_mm_);
   if (!pushes_) {
-    await_rest(time_s);
+    wait_for_rest(time_s);
     return {};
   }
   const double step = std::floor((time_s - since_s_) / kStepS) + 1.0;
@@ -156,18 +156,18 @@ Vec3 AxisPush::next_n(const DeviceSample& sample, double time_s) noexcept {
   return static_cast<double>(sign_) * force_n * direction_;
 }
 
-void AxisPush::await_rest(double time_s) noexcept {
+void AxisPush::wait_for_rest(double time_s) noexcept {
   if (norm(smooth_mm_ - from_mm_) > kRestMm) {
     from_mm_ = smooth_mm_;
     since_s_ = time_s;
   }
   if (time_s - since_s_ >= kRestS) {
-    figures_.came_to_rest = true;
+    figures_.reached_rest = true;
     pushes_ = true;
     from_mm_ = smooth_mm_;
     since_s_ = time_s;
   } else if (time_s - waited_s_ > kLongestWaitS) {
-    figures_.came_to_rest = false;
+    figures_.reached_rest = false;
     finish();
   }
 }

@@ -1,5 +1,5 @@
-/// \file The runs of an acceptance: each is force source and sample sink in one, for one run of the
-/// servo. Source: docs/devices/acceptance.md.
+/// \file The runs of an acceptance: each is both force source and sample sink, for one run of the
+///   servo. Source: docs/devices/acceptance.md.
 #pragma once
 
 #include "core/vec.hpp"
@@ -16,8 +16,8 @@
 
 namespace touchtrial::device {
 
-/// Axes of the device frame, in the order in which they are tried: along y a weight hangs straight
-/// down, along the others it pulls over a pulley.
+/// Axes of the device frame, in test order: along y a weight hangs straight down, along the others
+/// it pulls over a pulley.
 enum class DeviceAxis { y, x, z };
 inline constexpr std::array kDeviceAxes = {DeviceAxis::y, DeviceAxis::x, DeviceAxis::z};
 /// "x", "y" or "z"
@@ -26,7 +26,7 @@ inline constexpr std::array kDeviceAxes = {DeviceAxis::y, DeviceAxis::x, DeviceA
 [[nodiscard]] Vec3 direction_of(DeviceAxis axis) noexcept;
 
 /// One run. Belongs to the servo's thread while it lasts, except `done`. Until the device is ready
-/// it sends no force and its time stands still.
+/// it sends no force and its time does not advance.
 class Measurement : public ForceSource, public SampleSink {
  public:
   Measurement(const Measurement&) = delete;
@@ -34,9 +34,9 @@ class Measurement : public ForceSource, public SampleSink {
 
   /// The longest time that the run takes.
   [[nodiscard]] double seconds() const noexcept { return seconds_; }
-  /// Whether it has all that it needs, or has given up; from then on its force is zero.
+  /// Whether it is complete or has given up; its force is then zero.
   [[nodiscard]] bool done() const noexcept { return done_.load(std::memory_order_acquire); }
-  /// Whether the handle left the place of the measurement, so that the force was switched off.
+  /// Whether the force was switched off because the handle left the place of the measurement.
   [[nodiscard]] bool ran_away() const noexcept { return ran_away_; }
   /// Every tick of the run, in order.
   [[nodiscard]] std::span<const ServoSample> samples() const noexcept { return samples_; }
@@ -47,7 +47,7 @@ class Measurement : public ForceSource, public SampleSink {
  protected:
   /// \param seconds  > 0
   /// \param most_n  of the force's norm, >= 0
-  /// \param reach_mm  further from its start the handle has run away
+  /// \param reach_mm  at a greater distance from its start the handle counts as run away
   Measurement(double seconds, double most_n, double reach_mm);
 
   /// \param time_s  since the first ready sample
@@ -67,11 +67,11 @@ class Measurement : public ForceSource, public SampleSink {
   std::vector<ServoSample> samples_;
 };
 
-/// Tells an oscillation from a hand's motion: eight half swings within 0.45 s, of which none has
-/// faded to half of the first, behind a high-pass of second order at 12 Hz. Private to this folder.
+/// Detects an oscillation in a hand's motion: after a second-order high-pass at 12 Hz, eight half
+/// swings within 0.45 s, none below half of the first. Private to this folder.
 class SwingDetector {
  public:
-  /// \param least_mm  smaller swings are none
+  /// \param least_mm  smaller swings are ignored
   explicit SwingDetector(double least_mm) noexcept : least_mm_(least_mm) {}
   /// Called at every tick.
   [[nodiscard]] bool swings(double place_mm, double time_s) noexcept;
@@ -80,19 +80,19 @@ class SwingDetector {
   double least_mm_;
   bool has_place_ = false;
   std::array<double, 2> slow_mm_{};   ///< states of the high-pass
-  double peak_mm_ = 0.0;              ///< of the present half swing, signed
+  double peak_mm_ = 0.0;              ///< of the current half swing, signed
   std::array<double, 8> peaks_mm_{};  ///< of the last half swings
   std::array<double, 8> times_s_{};
   std::size_t half_swings_ = 0;
 };
 
-/// Tells a floor that throws the handle up again and again, as too much delay does at two to nine
-/// swings in a second: four rebounds that do not fade. A landing bounces too, but fades. Private to
-/// this folder.
+/// Detects a floor that throws the handle up repeatedly, at two to nine rebounds a second, because
+/// of too much delay: four rebounds that do not fade. Bounces after a landing fade. Private to this
+/// folder.
 class ReboundDetector {
  public:
-  static constexpr double kMinMm = 1.0;  ///< a lower one is none
-  static constexpr double kFaded = 0.7;  ///< of the first of four rebounds, at the last
+  static constexpr double kMinMm = 1.0;  ///< lower rebounds are ignored
+  static constexpr double kFaded = 0.7;  ///< the last of four rebounds, relative to the first
   /// Called at every tick.
   [[nodiscard]] bool throws(double height_mm) noexcept;
 
@@ -103,14 +103,14 @@ class ReboundDetector {
   std::size_t rebounds_ = 0;
 };
 
-/// Sends no force: the handle lies still, or a person moves it.
+/// Sends no force while the handle lies still or a person moves it.
 class Listening final : public Measurement {
  public:
   explicit Listening(double seconds);
 
   /// The device's own readings from the first ready one on, by DeviceSample::sequence.
   [[nodiscard]] std::uint64_t new_readings() const noexcept { return newest_ - first_; }
-  /// The most ticks in a row without a new one.
+  /// The longest sequence of ticks without a new reading.
   [[nodiscard]] int longest_gap_ticks() const noexcept { return longest_gap_; }
 
  private:
@@ -123,66 +123,66 @@ class Listening final : public Measurement {
   int longest_gap_ = 0;
 };
 
-/// Pushes along an axis in steps of kStepN until the handle has moved by kMovedMm, first one way
-/// and then the other. A handle that moves against the force ends it at once.
+/// Pushes along an axis in steps of kStepN until the handle has moved by kMovedMm, in one
+/// direction, then in the other. It ends at once if the handle moves against the force.
 class AxisPush final : public Measurement {
  public:
   static constexpr double kStepN = 0.1;
   static constexpr double kStepS = 0.2;    ///< time of a step
   static constexpr double kMovedMm = 2.0;  ///< which ends a push
-  static constexpr double kMaxN = 1.5;     ///< whatever the device can do
+  static constexpr double kMaxN = 1.5;     ///< even if the device can exert more
 
   struct Push {
     double force_n = 0.0;  ///< of the last step
-    bool moved = false;    ///< by kMovedMm; else that force was not enough
+    bool moved = false;    ///< by kMovedMm; else the force was too small
     Vec3 moved_mm;
   };
   struct Figures {
-    bool came_to_rest = false;  ///< without force, so that motion tells of the force
+    bool reached_rest = false;  ///< without force, so that later motion is due to the force
     std::optional<Push> plus;
     std::optional<Push> minus;
   };
 
-  /// \param most_n  > 0; more than kMaxN counts as that
+  /// \param most_n  > 0; limited to kMaxN
   AxisPush(DeviceAxis axis, double most_n);
-  /// After the run.
+  /// Call after the run.
   [[nodiscard]] const Figures& figures() const noexcept { return figures_; }
 
  private:
   [[nodiscard]] Vec3 next_n(const DeviceSample& sample, double time_s) noexcept override;
-  void await_rest(double time_s) noexcept;
+  void wait_for_rest(double time_s) noexcept;
   void end_push(bool moved, double force_n) noexcept;
 
   Vec3 direction_;
   double most_step_n_;
   int sign_ = 1;
   bool pushes_ = false;
-  double since_s_ = 0.0;   ///< when rest or push began
-  double waited_s_ = 0.0;  ///< when the wait for rest began
+  double since_s_ = 0.0;   ///< start of rest or push
+  double waited_s_ = 0.0;  ///< start of the wait for rest
   bool has_place_ = false;
   Vec3 smooth_mm_;  ///< position without the encoder's noise
   Vec3 from_mm_;    ///< place of rest
   Figures figures_;
 };
 
-/// A spring and a damper that hold the handle at a place.
+/// A spring and a damper that hold the handle in place.
 struct HoldGains {
   double spring_n_per_mm = 0.3;
   double damper_n_s_per_mm = 0.003;
 };
 
-/// Holds the handle and moves it slowly to and fro along an axis, so that friction, whose sign
-/// follows the motion, can be told from a load, whose sign does not. A handle that begins to swing
-/// is let go.
+/// Holds the handle and moves it slowly to and fro along an axis, to separate friction, whose sign
+/// follows the motion, from a load, whose sign does not. The handle is released if it begins to
+/// swing.
 class SlowStrokes final : public Measurement {
  public:
   static constexpr double kPeriodS = 3.0;
-  static constexpr double kAmplitudeMm = 5.0;  ///< of the triangle that the held place follows
+  static constexpr double kAmplitudeMm = 5.0;  ///< of the triangle wave of the target position
   static constexpr double kSpeedMmS = 4.0 * kAmplitudeMm / kPeriodS;
   static constexpr int kPeriods = 3;
-  static constexpr double kLettingGoS = 2.5;  ///< before the strokes: the hand lets go
+  static constexpr double kLettingGoS = 2.5;  ///< before the strokes, for the hand to let go
 
-  /// \param support_n  known load, which is carried without the spring
+  /// \param support_n  known load, carried in addition to the spring
   /// \param most_n  of the force's norm
   /// \param hold_s  how long the handle is held before the strokes, >= kLettingGoS
   SlowStrokes(DeviceAxis axis, Vec3 support_n, const HoldGains& gains, double most_n,
@@ -203,8 +203,8 @@ class SlowStrokes final : public Measurement {
   std::array<SwingDetector, 3> detectors_;
 };
 
-/// Pushes the free handle to and fro along an axis by a constant force that turns round after ever
-/// shorter ways: a chirp whose frequency is the handle's own. Across the axis it is held.
+/// Pushes the free handle to and fro along an axis by a constant force that reverses after ever
+/// shorter distances: a chirp at the handle's own pace. Across the axis it is held.
 class ShakenStrokes final : public Measurement {
  public:
   static constexpr double kShakeS = 10.0;
@@ -217,7 +217,7 @@ class ShakenStrokes final : public Measurement {
 
   [[nodiscard]] DeviceAxis axis() const noexcept { return axis_; }
   [[nodiscard]] double push_n() const noexcept { return push_n_; }
-  /// Samples from here on are shaken.
+  /// Start of the shaken samples.
   [[nodiscard]] static constexpr double begins_s() noexcept { return SlowStrokes::kLettingGoS; }
 
  private:
@@ -232,14 +232,14 @@ class ShakenStrokes final : public Measurement {
   double turned_mm_ = 0.0;
 };
 
-/// A floor below the handle, on which a person presses without a stop. An oscillation ends it at
-/// once, and so do rebounds that do not fade.
+/// A floor below the handle, on which a person presses continuously. An oscillation, or rebounds
+/// that do not fade, end it at once.
 class WallTrial final : public Measurement {
  public:
   static constexpr double kTrialS = 6.0;
   static constexpr double kDepthMm = 3.0;  ///< of the floor below the handle's first place
 
-  /// \param least_mm  a swing smaller than this is none
+  /// \param least_mm  smaller swings are ignored
   WallTrial(double stiffness_n_per_mm, double least_mm, double most_n);
 
   [[nodiscard]] bool oscillated() const noexcept { return oscillated_; }
@@ -256,12 +256,12 @@ class WallTrial final : public Measurement {
   bool oscillated_ = false;
 };
 
-/// A small constant force, while somebody watches what the device does.
+/// A small constant force while a person watches the device.
 class SteadyPush final : public Measurement {
  public:
   static constexpr double kForceN = 0.3;
 
-  /// \param reach_mm  further from its start the handle is let go
+  /// \param reach_mm  the handle is released at a greater distance from its start
   explicit SteadyPush(double seconds, Vec3 force_n = {0.0, -kForceN, 0.0}, double reach_mm = 200.0);
 
  private:

@@ -11,12 +11,12 @@
 namespace touchtrial::device {
 namespace {
 
-/// Motion counts where it exceeds so many encoder steps.
+/// Motion counts if it exceeds this many encoder steps.
 constexpr double kStepsOfMotion = 5.0;
-constexpr double kMaxLeftOut = 0.02;  ///< share of ticks that a servo may have missed
+constexpr double kMaxLeftOut = 0.02;  ///< share of missed servo ticks
 constexpr double kUnknownStepMm = 0.01;
 
-/// \name Floors of stated errors: what the scatter of one run does not show
+/// \name Minimum stated errors, for error sources that do not scatter within one run
 ///@{
 constexpr double kLoadFloorN = 0.01;
 constexpr double kFrictionFloorN = 0.02;
@@ -30,10 +30,10 @@ constexpr double kTurnsFloorMs = 1.0;
 constexpr double kLagShare = 0.25;
 ///@}
 
-/// Soft arms yield first and bend the path early, in all of the shipped models with a structure.
+/// Soft arms yield first and bend the path early in all built-in models with a structure.
 constexpr double kTurnsEarlyTicks = 0.4;
 
-/// One axis at every tick: those that the servo left out are filled in.
+/// One axis at every tick, with missed ticks filled in.
 struct EvenSeries {
   std::vector<double> position_mm;
   std::vector<double> force_n;
@@ -87,7 +87,7 @@ double quantile_of(std::vector<double>& values, double share) {
   return values[static_cast<std::size_t>(at)];
 }
 
-/// The step along one axis, as far as this axis moved.
+/// The encoder step along one axis, if it moved.
 struct AxisStep {
   bool moved = false;
   bool resolved = false;
@@ -126,17 +126,17 @@ AxisStep axis_step(const EvenSeries& series) {
 constexpr std::size_t kUnknowns = 4;
 using FitRow = std::array<double, kUnknowns>;
 
-/// A sum of functions that explains values best; entries beyond the functions are 0.
+/// The least-squares solution; unused entries are 0.
 struct Solution {
   FitRow factors{};
   FitRow inverse_diagonal{};  ///< of the normal matrix
-  double explained = 0.0;     ///< squares, of those of the values
+  double explained = 0.0;     ///< share of the sum of squares
 };
 
 /// Least squares by the normal equations.
 class LeastSquares {
  public:
-  /// \param row  the functions' numbers, of which value is to be the sum
+  /// \param row  the values of the functions whose weighted sum approximates `value`
   void add(const FitRow& row, double value) {
     for (std::size_t i = 0; i < kUnknowns; ++i) {
       right_[i] += row[i] * value;
@@ -181,7 +181,7 @@ struct Window {
   double way = 0.0;                       ///< +1 or -1
   std::array<double, kDelays> force_n{};  ///< by delay in ticks
 
-  /// Between whole ticks, as if forces went straight from one to the next.
+  /// Linear interpolation of forces between ticks.
   [[nodiscard]] double force_at(double delay) const {
     const double at = delay - kEarliestDelay;
     const auto below =
@@ -223,7 +223,7 @@ struct WindowWeight {
   std::vector<double> second;
 };
 
-/// +1 or -1 if the handle moves one way in all of the window, else 0.
+/// +1 or -1 if the handle moves in one direction in the whole window, else 0.
 double way_in(const std::vector<double>& x, std::size_t middle, std::size_t half, double step_mm) {
   constexpr std::size_t kLocal = 4;
   const double change_mm = x[middle + half] - x[middle - half];
@@ -235,7 +235,7 @@ double way_in(const std::vector<double>& x, std::size_t middle, std::size_t half
   return way;
 }
 
-/// The mean of the ways, +1, 0 or -1, that the handle moves in a window, by the smooth weight.
+/// The weighted mean of the directions of motion (+1, 0 or -1) in a window.
 double mean_way_in(const std::vector<double>& x, std::size_t middle, const WindowWeight& weight) {
   constexpr std::size_t kLocal = 4;
   double way = 0.0;
@@ -255,7 +255,7 @@ struct TickRange {
 
 enum class Turning { left_out, kept };
 
-/// \param turning  whether windows in which the handle turns round are kept
+/// \param turning  whether to include windows in which the handle reverses
 std::vector<Window> windows_in(const EvenSeries& series, TickRange ticks, std::size_t half,
                                double step_mm, Turning turning) {
   constexpr std::size_t kEdge = 8;
@@ -283,9 +283,9 @@ std::vector<Window> windows_in(const EvenSeries& series, TickRange ticks, std::s
   return windows;
 }
 
-/// The acceleration as a sum of the force without friction, the speed and a constant: the unknowns
-/// are 1 / m, an offset and -b / m. The acceleration is what noise and soft arms disturb, so it is
-/// the side that is explained.
+/// Acceleration as a linear combination of the force without friction, a constant, and the speed:
+/// the unknowns are 1 / m, an offset and -b / m. Acceleration is the dependent variable because
+/// noise and soft arms disturb it.
 FitRow row_of(const Window& window, double friction_n, double delay) {
   return {window.force_at(delay) - friction_n * window.way, 1.0, window.velocity, 0.0};
 }
@@ -314,7 +314,7 @@ std::optional<LinearFit> fit_at(const std::vector<Window>& windows, double frict
   return fit;
 }
 
-/// Standard errors of the unknowns, and behind them that of the delay.
+/// Standard errors of the unknowns, followed by that of the delay.
 std::optional<FitRow> standard_errors(const std::vector<Window>& windows, const LinearFit& fit,
                                       double friction_n, double delay, std::size_t n) {
   LeastSquares sums;
@@ -360,18 +360,18 @@ std::optional<WindowFit> best_fit(const std::vector<Window>& windows, double fri
   }
   const std::optional<FitRow> errors = standard_errors(windows, *best, friction_n, best_delay, n);
   if (!errors || !(best->unknowns[0] > 0.0)) return std::nullopt;
-  // A force acts until the next tick, on average half a tick after it was sent.
+  // A force is held until the next tick, so on average it acts half a tick late.
   return WindowFit{best->unknowns, *errors,          std::sqrt(best->squares / squares),
                    windows.size(), best_delay - 0.5, (*errors)[n]};
 }
 
-/// With less unexplained, a fit is taken at its word.
+/// A fit with a smaller unexplained share is accepted as it is.
 constexpr double kRigidUnexplained = 0.02;
 
 /// The fits with windows of several lengths.
 struct WindowFits {
-  std::optional<WindowFit> best;       ///< of those without negative damping
-  std::optional<Measured> delay_ms{};  ///< if the fits agree, as they do for a rigid handle
+  std::optional<WindowFit> best;       ///< among fits without negative damping
+  std::optional<Measured> delay_ms{};  ///< if the fits agree, as for a rigid handle
 };
 
 WindowFits fits_of(const std::vector<std::vector<Window>>& by_length, double friction_n) {
@@ -382,7 +382,7 @@ WindowFits fits_of(const std::vector<std::vector<Window>>& by_length, double fri
     std::optional<WindowFit> fit = best_fit(windows, friction_n, 3);
     if (!fit) continue;
     free.push_back(*fit);
-    // No device has negative damping: where soft arms feign it, there is none in the fit.
+    // No device has negative damping: if soft arms mimic it, the fit is repeated without damping.
     if (fit->unknowns[2] > 0.0) fit = best_fit(windows, friction_n, 2);
     if (fit && (!fits.best || fit->unexplained < fits.best->unexplained)) fits.best = fit;
   }
@@ -399,9 +399,9 @@ WindowFits fits_of(const std::vector<std::vector<Window>>& by_length, double fri
   return fits;
 }
 
-/// The fit over windows so long that soft arms follow, whose resonance lies above what the windows
-/// let through: below it a structure turns no phase, so what comes late there is delay, or a
-/// motor's time constant. So long a window holds turns of the handle.
+/// The fit over windows so long that the resonance of soft arms is above their pass band. Below
+/// resonance a structure shifts no phase, so any lag is delay or a motor's time constant. Windows
+/// of this length include reversals of the handle.
 /// \return nothing if it leaves too much unexplained
 std::optional<WindowFit> slow_fit(const EvenSeries& series, TickRange ticks, double friction_n,
                                   double step_mm) {
@@ -413,20 +413,20 @@ std::optional<WindowFit> slow_fit(const EvenSeries& series, TickRange ticks, dou
   return fit && fit->unexplained < kMaxUnexplainedSlowly ? fit : std::nullopt;
 }
 
-/// A turn of the push.
+/// A reversal of the push.
 struct Turn {
-  double at = 0.0;   ///< in ticks; a fraction where the slew limit stretched it
+  double at = 0.0;   ///< in ticks; fractional if the slew limit stretched it
   double way = 0.0;  ///< of the force's change: +1 or -1
 };
 
 std::vector<Turn> turns_in(const EvenSeries& series, TickRange ticks, double push_n,
                            std::size_t apart) {
-  constexpr std::size_t kLongest = 6;  // ticks of a turn
+  constexpr std::size_t kLongest = 6;  // ticks of a reversal
   const std::vector<double>& f = series.force_n;
   std::vector<std::size_t> begins;
   for (std::size_t i = ticks.from + 1; i + kLongest < ticks.end; ++i) {
-    const bool goes_on = !begins.empty() && i - begins.back() < kLongest;
-    if (!goes_on && std::abs(f[i] - f[i - 1]) > 0.4 * push_n) begins.push_back(i);
+    const bool continues = !begins.empty() && i - begins.back() < kLongest;
+    if (!continues && std::abs(f[i] - f[i - 1]) > 0.4 * push_n) begins.push_back(i);
   }
   std::vector<Turn> turns;
   for (std::size_t k = 1; k + 1 < begins.size(); ++k) {
@@ -442,8 +442,8 @@ std::vector<Turn> turns_in(const EvenSeries& series, TickRange ticks, double pus
   return turns;
 }
 
-/// How far the handle has left its parabola at some time after a force changed, if the change
-/// reaches it with a time constant; any unit.
+/// The deviation of the handle from its parabola some time after a force step with a time constant;
+/// any unit.
 double bend_after(double ticks, double lag_ticks) {
   if (ticks <= 0.0) return 0.0;
   const double straight = 0.5 * ticks * ticks;
@@ -451,10 +451,9 @@ double bend_after(double ticks, double lag_ticks) {
   return straight - lag_ticks * ticks - lag_ticks * lag_ticks * std::expm1(-ticks / lag_ticks);
 }
 
-/// What a bend in the middle explains of a stretch of the path beyond a parabola, mm^2 a tick; a
-/// bend against the force's change explains nothing. It is greatest where the path does bend: a
-/// stretch beside that place is a parabola, and one that holds it elsewhere is none with a bend in
-/// the middle.
+/// The variance, mm^2 a tick, of a path segment that a bend in its middle explains beyond a
+/// parabola; 0 for a bend against the force's change. It peaks where the path bends: a segment
+/// without the bend is a parabola, and one with an off-centre bend fits worse.
 std::optional<double> bend_at(const std::vector<double>& x, double bend, double way, double half,
                               double lag_ticks) {
   LeastSquares sums;
@@ -474,13 +473,13 @@ std::optional<double> bend_at(const std::vector<double>& x, double bend, double 
          static_cast<double>(last - first + 1);
 }
 
-/// \name The delays after which a bend is looked for, ticks
+/// \name The range of delays searched for a bend, ticks
 ///@{
 constexpr double kEarliestBend = -2.0;
 constexpr double kLatestBend = 14.0;
 ///@}
 
-/// The turns around which stretches of the longer kind fit.
+/// The reversals around which the longer segments fit into the recording.
 std::vector<Turn> turns_within(const std::vector<Turn>& turns, TickRange ticks, double half) {
   std::vector<Turn> within;
   for (const Turn& turn : turns) {
@@ -494,12 +493,12 @@ std::vector<Turn> turns_within(const std::vector<Turn>& turns, TickRange ticks, 
 struct BendingDelay {
   double ticks = 0.0;
   double error_ticks = 0.0;  ///< standard error
-  bool at_an_end = false;    ///< of the range: it may lie beyond
+  bool at_an_end = false;    ///< at an end of the range, so it may be outside
   std::vector<std::pair<double, double>> by_delay;
 };
 
-/// The delay after which the path bends when the push turns round: while the handle goes on one
-/// way, friction is constant, and nothing else bends it so sharply.
+/// The delay after which the path bends when the push reverses. While the handle moves in one
+/// direction friction is constant, so nothing else bends the path so sharply.
 std::optional<BendingDelay> bending_delay(const EvenSeries& series, const std::vector<Turn>& turns,
                                           double half) {
   constexpr double kFine = 0.25;
@@ -524,7 +523,7 @@ std::optional<BendingDelay> bending_delay(const EvenSeries& series, const std::v
   BendingDelay delay;
   delay.at_an_end = best == 0 || best + 1 == static_cast<std::ptrdiff_t>(kPlaces);
   delay.ticks = delay_of(best);
-  // From quartiles, as single turns may bend elsewhere: 1.25 times the deviation over 1.35.
+  // From quartiles, because of outliers: 1.25 times the interquartile range over 1.35.
   const double spread = quantile_of(best_of_turn, 0.75) - quantile_of(best_of_turn, 0.25);
   delay.error_ticks = 0.93 * spread / std::sqrt(static_cast<double>(best_of_turn.size()));
   for (std::size_t k = 0; k < kPlaces; ++k) {
@@ -534,7 +533,7 @@ std::optional<BendingDelay> bending_delay(const EvenSeries& series, const std::v
   return delay;
 }
 
-/// A delay and the time constant behind it that together explain the path around turns best, in
+/// The delay and subsequent time constant that together explain the path around reversals best, in
 /// ticks.
 struct LaggingDelay {
   double delay = 0.0;
@@ -542,7 +541,8 @@ struct LaggingDelay {
   double explained = 0.0;
 };
 
-/// What a parabola and a bend explain of the same stretch around a turn, whatever their delay.
+/// The variance that a parabola and a bend explain of the same segment around a reversal, at any
+/// delay.
 std::optional<double> explained_around(const std::vector<double>& x, double turn, double delay,
                                        double lag_ticks) {
   constexpr double kBefore = 6.0;  // ticks
@@ -580,20 +580,19 @@ std::optional<LaggingDelay> lagging_delay(const EvenSeries& series,
   return best;
 }
 
-/// Short stretches are not disturbed by soft arms, long ones less by encoder steps; but a slow
-/// motor rounds a bend that soft arms round too. So the delay lies between what the bends say and
-/// what the slow motion says.
+/// Soft arms disturb short segments less, encoder steps long ones. Both slow motors and soft arms
+/// round a bend, so the delay is between the estimates of bends and of slow motion.
 /// \param slow  slow_fit
-OrWhy<Measured> delay_by_turns(const EvenSeries& series, TickRange ticks, double push_n,
-                               const std::optional<WindowFit>& slow,
-                               std::vector<std::pair<double, double>>& by_delay) {
+ValueOrReason<Measured> delay_by_turns(const EvenSeries& series, TickRange ticks, double push_n,
+                                       const std::optional<WindowFit>& slow,
+                                       std::vector<std::pair<double, double>>& by_delay) {
   constexpr double kShortHalf = 5.0;  // ticks
   constexpr double kFarHalf = 6.5;
   constexpr double kLongHalf = 8.0;
   constexpr double kNoLag = 1.0;
   constexpr double kSlowEarlyTicks = 0.5;  // as in the shipped models
   constexpr double kSlowTicksUnexplained = 10.0;
-  constexpr double kUnseenTicks = 0.5;  // for a slow motor that no long window shows
+  constexpr double kUnseenTicks = 0.5;  // for a slow motor without a usable long window
   constexpr std::size_t kMinTurns = 8;
   const std::vector<Turn> turns = turns_within(
       turns_in(series, ticks, push_n, static_cast<std::size_t>(kLongHalf) + 2), ticks, kLongHalf);
@@ -624,7 +623,7 @@ OrWhy<Measured> delay_by_turns(const EvenSeries& series, TickRange ticks, double
   return {Measured{0.5 * (bend + other) * ms, error * ms + kTurnsFloorMs}};
 }
 
-OrWhy<ShakeFigures> no_shake(std::string why) {
+ValueOrReason<ShakeFigures> no_shake(std::string why) {
   return {std::nullopt, std::move(why)};
 }
 
@@ -650,7 +649,7 @@ std::optional<RestFigures> rest_figures(std::span<const ServoSample> samples) {
                      norm((2.0 / n) * (halves[1] - halves[0]))};
 }
 
-OrWhy<Measured> encoder_step_mm(std::span<const ServoSample> samples) {
+ValueOrReason<Measured> encoder_step_mm(std::span<const ServoSample> samples) {
   AxisStep coarsest;
   bool all_resolved = true;
   for (const DeviceAxis axis : kDeviceAxes) {
@@ -670,7 +669,7 @@ OrWhy<Measured> encoder_step_mm(std::span<const ServoSample> samples) {
   return {Measured{coarsest.step_mm, coarsest.spread_mm + 0.05 * coarsest.step_mm}};
 }
 
-OrWhy<StrokeFigures> stroke_figures(const SlowStrokes& strokes, double step_mm) {
+ValueOrReason<StrokeFigures> stroke_figures(const SlowStrokes& strokes, double step_mm) {
   constexpr std::size_t kHalf = 50;  // ticks to either side, for the speed
   const Vec3 axis = direction_of(strokes.axis());
   if (strokes.ran_away()) return {std::nullopt, "the handle left its place"};
@@ -683,7 +682,7 @@ OrWhy<StrokeFigures> stroke_figures(const SlowStrokes& strokes, double step_mm) 
   const std::size_t period = ticks_of(SlowStrokes::kPeriodS);
   const std::size_t end = from + SlowStrokes::kPeriods * period;
   if (x.size() < end) return {std::nullopt, "the run ended early"};
-  if (series.left_out > kMaxLeftOut) return {std::nullopt, "the servo left out too many ticks"};
+  if (series.left_out > kMaxLeftOut) return {std::nullopt, "the servo missed too many ticks"};
   std::vector<double> sums;
   std::vector<double> differences;
   StrokeFigures figures;
@@ -708,7 +707,7 @@ OrWhy<StrokeFigures> stroke_figures(const SlowStrokes& strokes, double step_mm) 
       ++ticks[is_back ? 1 : 0];
     }
     const bool follows = std::min(ticks[0], ticks[1]) >= period / 15;
-    // Friction lets the first way lag behind, as the handle hangs to one side from the beginning.
+    // Friction makes the first stroke lag, because the handle starts off-centre.
     if (!follows && p == 0) continue;
     if (!follows) {
       return {std::nullopt, "the handle did not follow the strokes: it sticks, or a hand held it"};
@@ -728,12 +727,13 @@ OrWhy<StrokeFigures> stroke_figures(const SlowStrokes& strokes, double step_mm) 
   return {figures, ""};
 }
 
-OrWhy<ShakeFigures> shake_figures(const ShakenStrokes& strokes, double friction_n, double step_mm) {
+ValueOrReason<ShakeFigures> shake_figures(const ShakenStrokes& strokes, double friction_n,
+                                          double step_mm) {
   constexpr std::array<std::size_t, 4> kHalves = {8, 12, 20, 32};
   constexpr std::size_t kMinWindows = 60;
   if (strokes.ran_away()) return no_shake("the handle left its place");
   const EvenSeries series = even_series(strokes.samples(), direction_of(strokes.axis()));
-  if (series.left_out > kMaxLeftOut) return no_shake("the servo left out too many ticks");
+  if (series.left_out > kMaxLeftOut) return no_shake("the servo missed too many ticks");
   const std::size_t from = ticks_of(ShakenStrokes::begins_s());
   const std::size_t end = from + ticks_of(ShakenStrokes::kShakeS) - 1;
   if (series.position_mm.size() < end) return no_shake("the run ended early");
@@ -756,7 +756,7 @@ OrWhy<ShakeFigures> shake_figures(const ShakenStrokes& strokes, double friction_
   }
   const std::optional<WindowFit> slow = slow_fit(series, {from, end}, friction_n, least_mm);
   const std::optional<WindowFit>& best = fits.best;
-  if (!best) return no_shake("the handle's motion does not tell its mass");
+  if (!best) return no_shake("the mass cannot be estimated from the handle's motion");
   if (best->unexplained > kMaxUnexplained) {
     return no_shake(
         "the motion does not follow the force: a hand held the handle, it struck "
@@ -771,7 +771,7 @@ OrWhy<ShakeFigures> shake_figures(const ShakenStrokes& strokes, double friction_
                                   (kMassShare + 0.5 * best->unexplained) * mass_kg};
   figures.viscous_n_s_per_m = {
       viscous, 2.0 * best->errors[2] * mass_kg + kViscousFloor + 0.1 * std::abs(viscous)};
-  const OrWhy<Measured> by_turns =
+  const ValueOrReason<Measured> by_turns =
       delay_by_turns(series, {from, end}, strokes.push_n(), slow, figures.by_delay);
   figures.delay_ms = fits.delay_ms ? fits.delay_ms : by_turns.value;
   if (!figures.delay_ms) figures.no_delay = by_turns.why;

@@ -1,5 +1,5 @@
-/// \file What the motion of a handle tells about its device: noise, steps, load, friction, mass and
-/// delay from recorded runs. Pure functions. Source: docs/devices/acceptance.md.
+/// \file Estimates noise, steps, load, friction, mass and delay of a device from the recorded
+///   motion of its handle. Pure functions. Source: docs/devices/acceptance.md.
 #pragma once
 
 #include "core/vec.hpp"
@@ -13,16 +13,16 @@
 
 namespace touchtrial::device {
 
-/// A measured number, and the half-width of the interval that is stated for it: twice the standard
-/// error from the scatter, and a floor for what scatter does not show.
+/// A measured number, and the half-width of its stated interval: twice the standard error from the
+/// scatter, but at least a minimum for errors that do not scatter.
 struct Measured {
   double value = 0.0;
   double error = 0.0;  ///< >= 0
 };
 
-/// Either what was measured, or why there is none.
+/// A value, or the reason why there is none.
 template <typename Value>
-struct OrWhy {
+struct ValueOrReason {
   std::optional<Value> value;
   std::string why{};  ///< empty if there is a value
 };
@@ -37,39 +37,41 @@ struct RestFigures {
 
 /// The smallest difference between readings.
 /// \param samples  of a handle that a person moves slowly along all three axes
-[[nodiscard]] OrWhy<Measured> encoder_step_mm(std::span<const ServoSample> samples);
+[[nodiscard]] ValueOrReason<Measured> encoder_step_mm(std::span<const ServoSample> samples);
 
-/// What the slow strokes of one run took.
+/// The results of the slow strokes of one run.
 struct StrokeFigures {
-  Measured load_n;      ///< commanded along the axis against what pulls, either way of motion
-  Measured friction_n;  ///< half the difference between the two ways
-  /// Place along the axis from the middle, and commanded force without the load, for a picture.
+  Measured
+      load_n;  ///< commanded along the axis against the load, mean of both directions of motion
+  Measured friction_n;  ///< half the difference between the directions
+  /// Position along the axis from the middle, and commanded force without the load, for a plot.
   std::vector<std::pair<double, double>> loop{};
 };
 /// \param step_mm  encoder step; strokes must exceed five of them; 0: not known
-[[nodiscard]] OrWhy<StrokeFigures> stroke_figures(const SlowStrokes& strokes, double step_mm);
+[[nodiscard]] ValueOrReason<StrokeFigures> stroke_figures(const SlowStrokes& strokes,
+                                                          double step_mm);
 
 /// The parameters of m a = F(t - delay) - f sign(v) - b v + c, along one axis, by least squares
-/// over windows in which the handle moves one way by more than five encoder steps. Both sides are
-/// integrated with a smooth weight, whose derivatives stand in for those of the position: encoder
-/// steps are never differentiated.
+/// over windows in which the handle moves in one direction by more than five encoder steps. Both
+/// sides are integrated with a smooth weight, whose derivatives replace those of the position, so
+/// that encoder steps are never differentiated.
 struct ShakeFigures {
   Measured mass_kg;
   Measured viscous_n_s_per_m;
-  /// From a force's tick to the bend that it makes in the path, and the time constant of the motors
-  /// where it is seen.
+  /// From a force's tick to the resulting bend of the path, plus the motors' time constant if it is
+  /// detected.
   std::optional<Measured> delay_ms;
   std::string no_delay{};    ///< why there is none; empty if there is one
   double unexplained = 0.0;  ///< of the acceleration, as a share (root mean squares)
   std::size_t windows = 0;
-  /// Delay in ms, and what a bend after it explains of the path around turns, mm (root mean
-  /// square).
+  /// Delay in ms, and the deviation around reversals that a bend at this delay explains, mm (root
+  /// mean square).
   std::vector<std::pair<double, double>> by_delay{};
 };
-/// More than this share unexplained: something else moved the handle.
+/// If more than this share is unexplained, something else moved the handle.
 inline constexpr double kMaxUnexplained = 0.3;
 /// \param friction_n  of slow strokes, in commanded newtons
-[[nodiscard]] OrWhy<ShakeFigures> shake_figures(const ShakenStrokes& strokes, double friction_n,
-                                                double step_mm);
+[[nodiscard]] ValueOrReason<ShakeFigures> shake_figures(const ShakenStrokes& strokes,
+                                                        double friction_n, double step_mm);
 
 }  // namespace touchtrial::device

@@ -9,12 +9,12 @@ namespace {
 
 /// The scripted person's hand and weights.
 constexpr double kRehearsedWeightN = 1.0;
-constexpr double kWayMm = 8.0;  ///< of slow motion to either side
+constexpr double kWayMm = 8.0;  ///< slow motion to either side
 constexpr double kLongestWayS = 6.0;
 constexpr double kCarriedMm = 20.0;
-constexpr double kCarriedAfterS = 1.0;
+constexpr double kLiftDelayS = 1.0;
 constexpr double kPressN = 0.7;
-constexpr double kLettingGoS = 1.8;  ///< within the two seconds that the prompts give
+constexpr double kLettingGoS = 1.8;  ///< within the two seconds allowed by the prompts
 
 double seconds_of(std::chrono::nanoseconds time) {
   return std::chrono::duration<double>(time).count();
@@ -56,7 +56,7 @@ std::optional<double> Rehearsal::temperature_c(const std::string& /*question*/) 
   return std::nullopt;
 }
 
-std::string Rehearsal::saw(const std::string& /*question*/) {
+std::string Rehearsal::ask_observation(const std::string& /*question*/) {
   return "";
 }
 
@@ -79,7 +79,7 @@ DeviceDynamics::Outside Rehearsal::hand(double time_s, Vec3 position_mm) const {
       return {0.5 * (off_mm + way_mm) + weight_carried, 0.1, same_on_all(0.01)};
     }
     case Grip::carrying: {
-      const double share = std::clamp(time_s - began_s_ - kCarriedAfterS, 0.0, 1.0);
+      const double share = std::clamp(time_s - began_s_ - kLiftDelayS, 0.0, 1.0);
       return {0.5 * (off_mm + (share * kCarriedMm) * direction_of(axis_)) + weight_carried, 0.1,
               same_on_all(0.01)};
     }

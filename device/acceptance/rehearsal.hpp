@@ -1,5 +1,5 @@
-/// \file A rehearsal of an acceptance: a device model in virtual time, and a person who does what
-/// the prompts say. It tests the program, not a device.
+/// \file A rehearsal of an acceptance: a device model in virtual time, and a simulated person who
+///   follows the prompts. It tests the program, not a device.
 #pragma once
 
 #include "device/acceptance/acceptance.hpp"
@@ -28,16 +28,16 @@ class Rehearsal final : public AcceptanceBench, public AcceptancePerson {
   [[nodiscard]] std::optional<double> weight_n(DeviceAxis axis, double least_n,
                                                double most_n) override;
   [[nodiscard]] std::optional<double> temperature_c(const std::string& question) override;
-  [[nodiscard]] std::string saw(const std::string& question) override;
-  void tell(const std::string& result) override { told_.push_back(result); }
+  [[nodiscard]] std::string ask_observation(const std::string& question) override;
+  void show(const std::string& result) override { results_.push_back(result); }
 
   /// Every result, a line each.
-  [[nodiscard]] const std::vector<std::string>& told() const noexcept { return told_; }
+  [[nodiscard]] const std::vector<std::string>& results() const noexcept { return results_; }
 
  private:
   [[nodiscard]] DeviceDynamics::Outside hand(double time_s, Vec3 position_mm) const;
 
-  /// A hand that lets go, from the run's beginning on.
+  /// The hand's hold at a time of the run while it lets go.
   [[nodiscard]] DeviceDynamics::Outside letting_go(double time_s, Vec3 off_mm) const;
 
   ModelledDevice device_;
@@ -47,7 +47,7 @@ class Rehearsal final : public AcceptanceBench, public AcceptancePerson {
   DeviceAxis axis_ = DeviceAxis::y;
   double weight_n_ = 0.0;
   double began_s_ = 0.0;
-  std::vector<std::string> told_;
+  std::vector<std::string> results_;
 };
 
 /// Rehearses with a model.

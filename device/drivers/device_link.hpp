@@ -1,5 +1,5 @@
-/// \file The exchange of states and forces between a driver's own thread and the servo, and a
-/// device that uses it.
+/// \file Exchange of states and forces between a driver's thread and the servo, and a device that
+///   uses it.
 #pragma once
 
 #include "device/haptic_device.hpp"
@@ -14,13 +14,13 @@
 
 namespace touchtrial::device {
 
-/// Lock-free exchange for drivers whose link (USB transfers, a vendor's scheduler) lives on a
-/// thread of its own. HapticDevice's functions of the same names forward to it.
+/// Lock-free exchange for drivers whose link (USB transfers, a vendor's scheduler) runs on a
+/// separate thread. HapticDevice's functions of the same names forward to it.
 class DeviceLink {
  public:
   using Time = std::chrono::nanoseconds;  ///< of one monotonic clock, which the driver chooses
 
-  /// A force that the servo has not renewed for this long is sent as zero: the servo is stuck.
+  /// If the servo has not renewed a force for this long it is stuck, and zero is sent.
   static constexpr Time kForceLifetime = std::chrono::milliseconds(10);
 
   /// \name Servo thread
@@ -45,11 +45,11 @@ class DeviceLink {
   [[nodiscard]] DeviceFault fault() const noexcept {
     return fault_.load(std::memory_order_acquire);
   }
-  /// \return whether `halt` or `fail` holds back every force
+  /// \return whether `halt` or `fail` suppresses all force
   [[nodiscard]] bool is_stopped() const noexcept {
     return halted_.load(std::memory_order_acquire) || fault() != DeviceFault::none;
   }
-  /// Latches the first fault: the force is zero from now on. A link that failed is opened anew.
+  /// Latches the first fault: the force is zero from now on. Reopen a failed link.
   void fail(DeviceFault fault) noexcept {
     DeviceFault none = DeviceFault::none;
     fault_.compare_exchange_strong(none, fault, std::memory_order_acq_rel);
@@ -57,8 +57,7 @@ class DeviceLink {
   ///@}
 
   /// \name Driver's thread
-  ///@{
-  /// Hands a sample to the servo, and numbers it.
+  /// @{ Numbers a sample and passes it to the servo.
   void publish(DeviceSample sample) noexcept {
     sample.sequence = ++published_;
     samples_.set(sample);
@@ -66,7 +65,7 @@ class DeviceLink {
   /// \return the force to send now, device frame, N: the servo's newest, or zero if there is none,
   ///   if it is too old, or after `halt` or `fail`
   [[nodiscard]] Vec3 force_to_send(Time now) noexcept { return live_force(now).value_or(Vec3{}); }
-  /// The same for drivers that must know whether a servo renders: nothing in place of such a zero.
+  /// The same for drivers that must know whether a servo renders: nothing instead of such a zero.
   [[nodiscard]] std::optional<Vec3> live_force(Time now) noexcept {
     const TimedForce& newest = forces_.get();
     const bool usable = newest.any && now - newest.written_at <= kForceLifetime &&
@@ -95,20 +94,20 @@ class DeviceLink {
   std::atomic<DeviceFault> fault_{DeviceFault::none};
 };
 
-/// Time and rest of a driver's own thread, so that tests own them.
+/// The clock and sleep of a driver's thread, so that tests control them.
 class LinkPace {
  public:
   using Time = DeviceLink::Time;
   virtual ~LinkPace() = default;
   /// The monotonic time. May be called from any thread.
   [[nodiscard]] virtual Time now() noexcept = 0;
-  /// The driver's thread rests here until its next exchange is due.
+  /// Sleeps on the driver's thread until its next exchange is due.
   virtual void rest_until(Time time) noexcept = 0;
-  /// The driver's thread has waited this long for an answer that did not come. A clock that does
-  /// not go by itself moves on.
+  /// Called when the driver's thread has waited this long in vain for an answer; advances a virtual
+  /// clock.
   virtual void waited(Time /*time*/) noexcept {}
-  /// Ends the rest for good: the device is being closed, or the driver's thread has ended. May be
-  /// called from any thread.
+  /// Ends all sleeps because the device is being closed, or the driver's thread has ended.
+  /// Thread-safe.
   virtual void end() noexcept {}
 };
 
@@ -133,7 +132,7 @@ class LinkedDevice : public HapticDevice {
   [[nodiscard]] DeviceFault fault() const noexcept final { return link().fault(); }
 
  private:
-  /// The same one while the device lives.
+  /// The same object during the device's lifetime.
   [[nodiscard]] virtual DeviceLink& link() const noexcept = 0;
   /// The link's times are those of this clock.
   [[nodiscard]] virtual DeviceLink::Time link_time() const noexcept { return monotonic_now(); }

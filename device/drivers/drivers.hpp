@@ -8,34 +8,34 @@
 
 namespace touchtrial::device {
 
-/// `list` names every Falcon on the USB and what it lacks: permission, firmware, or that another
-/// program uses it. `open` takes the one that the settings name.
+/// `list` names every Falcon on the USB and its problem: permission, firmware, or use by another
+/// program. `open` opens the one named in the settings.
 [[nodiscard]] DeviceDriver falcon_driver();
 
 /// `list` loads the library, opens the device of the settings for a moment and closes it again,
-/// without force: the library has no other way to find out what is plugged in.
+/// without force: the library has no other way to detect devices.
 [[nodiscard]] DeviceDriver openhaptics_driver();
 
 /// `list` loads the library and opens each connected device for a moment, to read its name, without
 /// force.
 [[nodiscard]] DeviceDriver dhd_driver();
 
-/// `list` asks the Inverse service for its devices, over HTTP and with a short time limit.
+/// `list` queries the Inverse service for its devices, over HTTP with a short timeout.
 [[nodiscard]] DeviceDriver inverse3_driver();
 
 /// `list` loads the library of the settings, opens its device for a moment and closes it again,
 /// without force.
 [[nodiscard]] DeviceDriver plugin_driver();
 
-/// `list` finds a mouse where the environment names a display (DISPLAY, WAYLAND_DISPLAY). `open`
-/// throws DeviceError, as a window belongs to the application, which makes the MouseDevice too.
+/// `list` finds a mouse if the environment names a display (DISPLAY, WAYLAND_DISPLAY). `open`
+/// throws DeviceError, because the application owns the window and creates the MouseDevice.
 [[nodiscard]] DeviceDriver mouse_driver();
 
-/// `open` makes a hand that strokes a square plane of 100 mm for eight hours, always along the same
-/// path. It moves once for every tick, so in real time the servo's clock paces it.
+/// `open` creates a hand that strokes a square plane of 100 mm for eight hours, always along the
+/// same path. It moves once per tick, so in real time the servo's clock paces it.
 [[nodiscard]] DeviceDriver simulated_driver();
 
-/// Replays the file of DeviceSettings::replay. `list` reads it to find out whether `open` will
+/// Replays the file of DeviceSettings::replay. `list` reads it to check whether `open` will
 /// succeed.
 [[nodiscard]] DeviceDriver replay_driver();
 

@@ -1,4 +1,4 @@
-/// \file One user at a time, within this program, of what does not bear a second one.
+/// \file Exclusive use of a resource within this program.
 #pragma once
 
 #include "core/errors.hpp"
@@ -8,12 +8,12 @@
 
 namespace touchtrial::device {
 
-/// Holds a thing that a vendor's library serves once at a time. Any thread.
+/// Holds a resource that a vendor's library supports only once at a time. Any thread.
 class OnlyUser {
  public:
-  /// \param in_use  of that thing; must outlive this
-  /// \param refusal  one line: why there is no second user, and the remedy
-  /// \throws DeviceError in these words if there is one already
+  /// \param in_use  the resource's flag; must outlive this
+  /// \param refusal  one line: why a second use is refused, and the remedy
+  /// \throws DeviceError with `refusal` if it is in use
   OnlyUser(std::atomic<bool>& in_use, const std::string& refusal) : in_use_(in_use) {
     if (in_use_.exchange(true)) throw DeviceError(one_line(refusal));
   }

@@ -15,7 +15,7 @@
 namespace touchtrial::device {
 namespace {
 
-/// \return the driver's devices, or one entry that says why it cannot list them
+/// \return the driver's devices, or one entry with the reason why it cannot list them
 std::vector<DeviceListing> listings_of(const DeviceDriver& driver, const DeviceSettings& settings) {
   try {
     return driver.list(settings);
@@ -24,8 +24,8 @@ std::vector<DeviceListing> listings_of(const DeviceDriver& driver, const DeviceS
   }
 }
 
-/// \return settings whose limits are in the driver's newtons, for drivers that hand them on: with
-///   room for every felt force within them
+/// \return settings with limits converted to the driver's newtons, for drivers that pass them on;
+///   every felt force within the limits fits
 DeviceSettings in_drivers_newtons(DeviceSettings settings, const std::string& driver) {
   DeviceUse& use = settings.uses[driver];
   const Vec3 force = use.scale.force;
@@ -35,7 +35,7 @@ DeviceSettings in_drivers_newtons(DeviceSettings settings, const std::string& dr
   return settings;
 }
 
-/// Those that a model stands for, driver by driver.
+/// The products with a model, driver by driver.
 std::vector<DeviceProduct> modelled_products() {
   std::vector<DeviceProduct> all;
   for (const DeviceDriver& driver : device_drivers()) {

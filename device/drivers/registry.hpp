@@ -1,4 +1,4 @@
-/// \file The drivers by name: which devices are plugged in, what they lack, and how to open them.
+/// \file The drivers by name: listing connected devices with their problems, and opening them.
 #pragma once
 
 #include "device/device_settings.hpp"
@@ -15,46 +15,46 @@
 
 namespace touchtrial::device {
 
-/// One device that is plugged in, or a driver that found none.
+/// One connected device, or a driver that found none.
 struct DeviceListing {
-  std::string driver;  ///< the name that opens it
+  std::string driver;  ///< name to open it
   std::string model;   ///< "Novint Falcon"; empty if there is no device
   std::string serial;
   std::string where;  ///< bus and address, or the library's path
   bool present = false;
-  /// What keeps it from use (permission, firmware, library), a line each with its remedy; empty:
-  /// `open_device` will open it.
+  /// Problems that prevent its use (permission, firmware, library), a line each with its remedy;
+  /// empty: `open_device` will open it.
   std::vector<std::string> missing;
-  /// What a study has to know of the device, a line each.
+  /// Properties of the device that matter to a study, a line each.
   std::vector<std::string> notes{};
 };
 
 /// A product, or a line of products, that a driver serves.
 struct DeviceProduct {
-  std::string name;   ///< that opens its driver too, for instance "omega"
+  std::string name;   ///< also opens its driver, for instance "omega"
   std::string title;  ///< for people, "Force Dimension omega"
-  /// Name of the shipped model that stands for it where no device is at hand; empty: none does.
+  /// Name of the built-in model to use without the device; empty: none.
   std::string model{};
 };
 
-/// What one driver offers the registry.
+/// One driver's entry in the registry.
 struct DeviceDriver {
   std::string name;
   std::string what;  ///< a line for help
   std::function<std::vector<DeviceListing>(const DeviceSettings&)> list;
   std::function<std::unique_ptr<HapticDevice>(const DeviceSettings&)> open;
-  /// The workspace as the maker states it, for planning without a device. Nothing: any plane, as
-  /// for a DeviceInfo without one, unless `workspace_is_known` is false.
+  /// The maker's nominal workspace, for planning without a device. Nothing: any plane fits, as for
+  /// a DeviceInfo without workspace, unless `workspace_is_known` is false.
   std::optional<Workspace> nominal_workspace = std::nullopt;
-  /// False if models differ and only the device itself knows its workspace.
+  /// False if models differ and the workspace can only be read from the device.
   bool workspace_is_known = true;
-  /// Lets the device find its axes by moving itself, which only a person may ask for who keeps
-  /// clear of it; returns what it did, for instance "is initialised". Throws DeviceError with the
-  /// remedy. Null: a person moves the device, see HapticDevice::readiness.
+  /// Homes the device, which moves by itself; call it only on request of a person who keeps clear
+  /// of it. Returns what it did, for instance "is initialised". Throws DeviceError with the remedy.
+  /// Null: a person moves the device, see HapticDevice::readiness.
   std::function<std::string(const DeviceSettings&)> initialise = nullptr;
-  /// Under whose names it opens as well; one may have the driver's own name.
+  /// Their names open it too; one may equal the driver's own name.
   std::vector<DeviceProduct> products{};
-  /// What nobody has checked on a real device; empty for what has no hardware.
+  /// Facts not verified on a real device; empty for drivers without hardware.
   std::vector<UnverifiedFact> unverified{};
 
   /// Its name, then those of its products: each opens it, in commands and in settings.
@@ -64,21 +64,21 @@ struct DeviceDriver {
 /// \return all drivers, in the order in which the program lists them
 [[nodiscard]] const std::vector<DeviceDriver>& device_drivers();
 
-/// \return what is plugged in, and what each driver lacks; a driver's DeviceError or other Error
-///   becomes a line of its listing
+/// \return connected devices, and the problems of each driver; a driver's DeviceError or other
+///   Error becomes a line of its listing
 [[nodiscard]] std::vector<DeviceListing> list_devices(const DeviceSettings& settings);
 
 /// \return every name that model_of_device knows: those of models, then of products with a model
 [[nodiscard]] std::vector<std::string> modelled_names();
 
-/// \return the model of a device that is not at hand: for simulations, levels and planning
+/// \return the model of a device, for simulations, levels and planning
 /// \param name  of a shipped model, of a product with a model, or a model's file: a path that has a
 ///   slash or ends in ".json"
-/// \throws UsageError naming the nearest and listing what is known if there is none of this name; as
-///   read_device_model
+/// \throws UsageError naming the nearest and listing what is known if there is none of this name;
+///   as read_device_model
 [[nodiscard]] DeviceModel model_of_device(const std::string& name);
 
-/// \return the driver of the device that a model stands for; null: of none that a driver serves
+/// \return the driver of the modelled device; null: no driver serves it
 /// \param model  name of a model
 [[nodiscard]] const DeviceDriver* driver_of_model(std::string_view model);
 

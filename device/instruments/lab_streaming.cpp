@@ -94,8 +94,7 @@ struct LabStreaming::Outlets {
 
   [[nodiscard]] Outlet outlet(const std::string& name, const char* type, int channels,
                               double rate_hz, int format) const {
-    // Without an id of its own a stream is not taken up again by a recorder, which is what a new
-    // session wants.
+    // Without a source id, recorders do not resume the stream, which suits a new session.
     StreamInfo info = api.create_streaminfo(name.c_str(), type, channels, rate_hz, format, "");
     if (info == nullptr) {
       throw DeviceError(
@@ -106,7 +105,7 @@ struct LabStreaming::Outlets {
     api.destroy_streaminfo(info);
     if (made != nullptr) return made;
     throw DeviceError(one_line("instruments.lsl: the library makes no outlet '" + name +
-                               "'; see that the network lets it, or take instruments.lsl out"));
+                               "'; check that the network allows it, or remove instruments.lsl"));
   }
 
   void describe_channels(StreamInfo info) const {
@@ -131,7 +130,7 @@ struct LabStreaming::Outlets {
 };
 
 LabStreaming::LabStreaming(const LabStreamingSettings& settings, double rate_hz) {
-  expect_loading_survived(settings.library, kRemedy);
+  check_loads(settings.library, kRemedy);
   outlets_ = std::make_unique<Outlets>(settings, rate_hz);
   static_cast<void>(read_clock());
 }

@@ -1,5 +1,5 @@
-/// \file The Lab Streaming Layer: an outlet of markers, one of position and force, and its clock,
-/// through the user's own liblsl.
+/// \file The Lab Streaming Layer: one outlet of markers, one of position and force, and its clock,
+///   through the user's liblsl.
 #pragma once
 
 #include "core/vec.hpp"
@@ -17,23 +17,23 @@ struct LabStreamingSettings {
   std::string name = "Touchtrial";  ///< of the streams: "<name> markers" and "<name> hand"
 };
 
-/// How the layer's clock stands to the program's monotonic clock.
+/// The offset of the layer's clock to the program's monotonic clock.
 struct ClockOffset {
   double offset_s = 0.0;       ///< the layer's time less std::chrono::steady_clock's
-  double uncertainty_s = 0.0;  ///< half the time that the reading took
+  double uncertainty_s = 0.0;  ///< half the duration of the reading
 };
 
-/// Two outlets, visible to recorders on the network as long as the object lives. The library's
-/// functions may be called from any thread, and so may these.
+/// Two outlets, visible to recorders on the network during the object's lifetime. Thread-safe, like
+/// the library.
 ///
-/// Written from the library's public header and tested with a stand-in for it: unverified with
+/// Written from the library's public header and tested with a fake library; not verified with
 /// liblsl itself.
 class LabStreaming {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
   /// \param rate_hz  nominal, of position and force
-  /// \throws DeviceError with the remedy if the library cannot be used or makes no outlet
+  /// \throws DeviceError with the remedy if the library cannot be used or creates no outlet
   LabStreaming(const LabStreamingSettings& settings, double rate_hz);
   ~LabStreaming();
   LabStreaming(const LabStreaming&) = delete;
@@ -44,7 +44,7 @@ class LabStreaming {
   /// \param position_mm,force_n  plane frame
   void push(Vec3 position_mm, Vec3 force_n, TimePoint at) noexcept;
 
-  /// Reads both clocks, and dates what follows by them.
+  /// Reads both clocks; later timestamps use the offset.
   [[nodiscard]] ClockOffset read_clock() noexcept;
 
  private:

@@ -17,7 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A line that takes nothing for this long has lost its marker.
+/// Write timeout, after which the marker is lost.
 constexpr int kPatienceMs = 100;
 
 constexpr std::array<std::pair<int, speed_t>, 10> kRates = {{{9'600, B9600},
@@ -45,15 +45,15 @@ speed_t rate_of(const MarkerLineSettings& settings) {
     if (baud == settings.baud) return rate;
     known += (known.empty() ? "" : ", ") + std::to_string(baud);
   }
-  refuse_port(settings, std::to_string(settings.baud) +
-                            " baud is no rate of a serial line here; set one of " + known);
+  refuse_port(settings,
+              std::to_string(settings.baud) + " baud is not a supported rate; set one of " + known);
 }
 
 /// Raw bytes: 8N1, no flow control, no translation.
 void make_raw(const MarkerLineSettings& settings, int descriptor) {
   termios line{};
   if (::tcgetattr(descriptor, &line) != 0) {
-    refuse_port(settings, "is no serial line; name one, for instance /dev/ttyUSB0");
+    refuse_port(settings, "is not a serial line; name one, for instance /dev/ttyUSB0");
   }
   ::cfmakeraw(&line);
   line.c_cflag |= static_cast<tcflag_t>(CLOCAL | CREAD);

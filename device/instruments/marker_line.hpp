@@ -1,5 +1,5 @@
-/// \file Event codes on a serial line, for instruments that record beside a session: EEG
-/// amplifiers, trigger boxes, oscilloscopes.
+/// \file Event codes on a serial line, for instruments that record during a session: EEG
+///   amplifiers, trigger boxes, oscilloscopes.
 #pragma once
 
 #include <chrono>
@@ -15,7 +15,7 @@
 
 namespace touchtrial::device {
 
-/// How a marker goes over the line.
+/// The format of a marker on the line.
 enum class MarkerFormat {
   byte,  ///< the code as one byte, then the trial's number, most significant byte first
   text,  ///< for instance "E10 T007" and a line feed
@@ -25,10 +25,10 @@ struct MarkerLineSettings {
   std::filesystem::path port;  ///< for instance /dev/ttyUSB0; empty: no line
   int baud = 115'200;
   MarkerFormat format = MarkerFormat::byte;
-  /// 0 to 4. byte: how many bytes of the trial's number follow the code. text: the digits that the
-  /// number has at least.
+  /// 0 to 4. byte: how many bytes of the trial's number follow the code. text: the minimum number
+  /// of digits.
   int width = 0;
-  /// After this time the byte 0 follows, which sets trigger lines back; 0: never. byte only.
+  /// After this time the byte 0 is sent, which resets trigger lines; 0: never. byte only.
   double reset_ms = 0.0;
 };
 
@@ -36,22 +36,22 @@ struct MarkerLineSettings {
 /// \param trial  0 outside trials; as many of its low bytes as fit are sent
 [[nodiscard]] std::string marker_bytes(const MarkerLineSettings& settings, int code, int trial);
 
-/// What became of one marker.
+/// The result of one marker.
 struct SentMarker {
-  /// From the event to the return of the write; nothing: the line did not take it.
+  /// From the event to the return of the write; nothing: the write failed.
   std::optional<std::chrono::nanoseconds> latency;
 };
 
-/// A serial line (raw, 8 data bits, no parity, one stop bit, no flow control) and the thread that
-/// writes to it, so that nobody waits for the line. Any thread may call every function.
+/// A serial line (raw, 8 data bits, no parity, one stop bit, no flow control) and its writing
+/// thread, so that callers do not wait for the line. Thread-safe.
 class MarkerLine {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
-  /// \throws DeviceError with the remedy if the port cannot be opened, is no serial line, or does
-  ///   not have this rate
+  /// \throws DeviceError with the remedy if the port cannot be opened, is not a serial line, or
+  ///   does not support this rate
   explicit MarkerLine(const MarkerLineSettings& settings);
-  /// Writes what was sent before.
+  /// Writes pending markers.
   ~MarkerLine();
   MarkerLine(const MarkerLine&) = delete;
   MarkerLine& operator=(const MarkerLine&) = delete;
@@ -59,8 +59,8 @@ class MarkerLine {
   /// \param at  the time of the event
   void send(int code, int trial, TimePoint at) noexcept;
 
-  /// Waits until everything that was sent before is written, or the line has refused it.
-  /// \return what became of the markers sent since the last call, in their order
+  /// Waits until all pending markers are written or have failed.
+  /// \return the results of markers since the last call, in order
   [[nodiscard]] std::vector<SentMarker> take();
 
  private:

@@ -1,12 +1,13 @@
+/// \file Files of device models: every key, as it is read and written.
+#include "core/describe.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/nearest_name.hpp"
-#include "core/strict_json.hpp"
 #include "device/model/device_model.hpp"
+#include "device/settings_schemas.hpp"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <stdexcept>
 
 #include <nlohmann/json.hpp>
@@ -14,52 +15,9 @@
 namespace touchtrial::device {
 namespace {
 
-constexpr NumberRange kScale{.low = -10.0, .high = 10.0};
 constexpr NumberRange kTimeS{.low = 0.0, .high = 1e6};
 constexpr NumberRange kPlaceMm{.low = -1000.0, .high = 1000.0};
-constexpr std::int64_t kMaxDelayTicks = 100;
-constexpr std::int64_t kMaxVelocityReadings = 32;
 constexpr std::int64_t kMaxSeed = 9'007'199'254'740'991;  // the largest that JSON has exactly
-
-/// A number of a file's object, and its place in the struct.
-template <typename Struct>
-struct NumberField {
-  std::string_view key;
-  double Struct::*member;
-  NumberRange range;
-};
-
-constexpr std::array kFields = {
-    NumberField<DeviceModel>{"mass_kg", &DeviceModel::mass_kg, {0.0, 5.0}},
-    NumberField<DeviceModel>{"viscous_n_s_per_m", &DeviceModel::viscous_n_s_per_m, {0.0, 100.0}},
-    NumberField<DeviceModel>{"coulomb_n", &DeviceModel::coulomb_n, {0.0, 10.0}},
-    NumberField<DeviceModel>{"static_n", &DeviceModel::static_n, {0.0, 10.0}},
-    NumberField<DeviceModel>{"stribeck_mm_s", &DeviceModel::stribeck_mm_s, {0.0, 1000.0}},
-    NumberField<DeviceModel>{"position_step_mm", &DeviceModel::position_step_mm, {0.0, 1.0}},
-    NumberField<DeviceModel>{"force_step_n", &DeviceModel::force_step_n, {0.0, 1.0}},
-    NumberField<DeviceModel>{"max_force_n", &DeviceModel::max_force_n, {0.0, 100.0}},
-    NumberField<DeviceModel>{"continuous_force_n", &DeviceModel::continuous_force_n, {0.0, 100.0}},
-    NumberField<DeviceModel>{"lowpass_hz", &DeviceModel::lowpass_hz, {0.0, 5000.0}},
-    NumberField<DeviceModel>{
-        "max_stiffness_n_per_mm", &DeviceModel::max_stiffness_n_per_mm, {0.0, 100.0}}};
-
-constexpr std::array kStructureFields = {
-    NumberField<StructureModel>{
-        "stiffness_n_per_mm", &StructureModel::stiffness_n_per_mm, {0.0, 1000.0}},
-    NumberField<StructureModel>{"tip_share", &StructureModel::tip_share, {0.0, 1.0}},
-    NumberField<StructureModel>{"damping_ratio", &StructureModel::damping_ratio, {0.0, 2.0}}};
-
-constexpr std::array kPlantedFields = {
-    NumberField<DeviceModel::Planted>{
-        "position_noise_mm", &DeviceModel::Planted::position_noise_mm, {0.0, 1.0}},
-    NumberField<DeviceModel::Planted>{"gravity_n", &DeviceModel::Planted::gravity_n, {0.0, 10.0}},
-    NumberField<DeviceModel::Planted>{"silent_after_s", &DeviceModel::Planted::silent_after_s,
-                                      kTimeS},
-    NumberField<DeviceModel::Planted>{"lost_after_s", &DeviceModel::Planted::lost_after_s, kTimeS}};
-
-/// Other keys that a provenance may have.
-constexpr std::array<std::string_view, 6> kOtherParameters = {
-    "friction", "velocity_readings", "delay_ticks", "zero_order_hold", "structure", "workspace"};
 
 constexpr auto kFrictionShapes = std::to_array<Named<FrictionShape>>(
     {{"isotropic", FrictionShape::isotropic}, {"per_axis", FrictionShape::per_axis}});
@@ -73,217 +31,164 @@ constexpr auto kConfidences =
                                       {"guess", Confidence::guess},
                                       {"measured", Confidence::measured}});
 
-/// A parameter that is out of range, or contradicts another one.
-struct Problem {
-  std::string pointer;
-  std::string what;  ///< with the remedy
-};
-
-bool is_within(Vec3 a, const NumberRange& range) noexcept {
-  return range.contains(a.x) && range.contains(a.y) && range.contains(a.z);
+void describe_friction(ObjectIo& io, DeviceModel& model) {
+  io.number("viscous_n_s_per_m", model.viscous_n_s_per_m, {0.0, 100.0},
+            {"friction in proportion to speed"});
+  io.number("coulomb_n", model.coulomb_n, {0.0, 10.0}, {"friction that does not depend on speed"});
+  io.number("static_n", model.static_n, {0.0, 10.0},
+            {"friction at rest, at least `coulomb_n`; 0: as `coulomb_n`"});
+  io.number("stribeck_mm_s", model.stribeck_mm_s, {0.0, 1000.0},
+            {"speed over which static falls to Coulomb friction; 0: at once. Needs `static_n`"});
 }
 
-template <typename Struct, std::size_t size>
-std::optional<Problem> out_of_range(const std::array<NumberField<Struct>, size>& fields,
-                                    const Struct& values, const std::string& pointer) {
-  for (const NumberField<Struct>& field : fields) {
-    if (field.range.contains(values.*field.member)) continue;
-    return Problem{
-        pointer + "/" + std::string(field.key),
-        "must be in [" + number_text(field.range.low) + ", " + number_text(field.range.high) + "]"};
-  }
-  return std::nullopt;
+void describe_numbers(ObjectIo& io, DeviceModel& model) {
+  io.number("mass_kg", model.mass_kg, {0.0, 5.0}, {"apparent mass at the tip, without the hand"});
+  describe_friction(io, model);
+  io.number("position_step_mm", model.position_step_mm, {0.0, 1.0}, {"readings are whole steps"});
+  io.number("force_step_n", model.force_step_n, {0.0, 1.0}, {"forces are whole steps"});
+  io.number("max_force_n", model.max_force_n, {0.0, 100.0},
+            {"largest norm of a force; 0: no limit"});
+  io.number("continuous_force_n", model.continuous_force_n, {0.0, 100.0},
+            {"force without a time limit, at most `max_force_n`; 0: not known"});
+  io.number("lowpass_hz", model.lowpass_hz, {0.0, 5000.0},
+            {"corner of the motors' low-pass of first order; 0: none"});
+  io.number("max_stiffness_n_per_mm", model.max_stiffness_n_per_mm, {0.0, 100.0},
+            {"largest stiffness of a wall, as the maker states it; 0: not known"});
 }
 
-std::optional<Problem> problem_of_ranges(const DeviceModel& model) {
-  if (auto problem = out_of_range(kFields, model, "")) return problem;
-  if (auto problem = out_of_range(kStructureFields, model.structure, "/structure")) return problem;
-  if (auto problem = out_of_range(kPlantedFields, model.planted, "/planted")) return problem;
-  if (!is_within(model.planted.force_sign_scale, kScale)) {
-    return Problem{"/planted/force_sign_scale", "must be in [-10, 10] on each axis"};
-  }
-  if (model.planted.seed > static_cast<std::uint64_t>(kMaxSeed)) {
-    return Problem{"/planted/seed", "must be in [0, 9007199254740991]"};
-  }
-  if (model.delay_ticks < 0 || model.delay_ticks > kMaxDelayTicks) {
-    return Problem{"/delay_ticks", "must be in [0, 100]"};
-  }
-  if (model.velocity_readings < 0 || model.velocity_readings > kMaxVelocityReadings) {
-    return Problem{"/velocity_readings", "must be in [0, 32]"};
-  }
-  return std::nullopt;
+void describe_structure(ObjectIo& io, StructureModel& structure) {
+  io.number("stiffness_n_per_mm", structure.stiffness_n_per_mm, {0.0, 1000.0},
+            {"spring between motors and tip; 0: rigid. Needs `mass_kg`"});
+  io.number("tip_share", structure.tip_share, {0.0, 1.0},
+            {"share of the mass at the tip; between 0 and 1 with a spring"});
+  io.number("damping_ratio", structure.damping_ratio, {0.0, 2.0},
+            {"damping ratio of the tip while the motors are held"});
 }
 
-std::optional<Problem> problem_of_structure(const DeviceModel& model) {
-  const StructureModel& structure = model.structure;
-  if (structure.stiffness_n_per_mm == 0.0) return std::nullopt;
-  if (model.mass_kg == 0.0) {
-    return Problem{"/structure", "needs a mass that it can share; give mass_kg"};
-  }
-  if (structure.tip_share == 0.0 || structure.tip_share == 1.0) {
-    return Problem{"/structure/tip_share",
-                   "leaves one of the two without mass; give a number "
-                   "between 0 and 1"};
-  }
-  return std::nullopt;
+void describe_workspace(ObjectIo& io, Workspace& workspace) {
+  io.member("least_mm",
+            {.meaning = "corner of the device frame at the left, at the bottom, in the back",
+             .required = true},
+            true, [&](ValueIo& value) { value.axes(workspace.least_mm, kPlaceMm); });
+  io.member("greatest_mm",
+            {.meaning = "the opposite corner, greater on each axis", .required = true}, true,
+            [&](ValueIo& value) { value.axes(workspace.greatest_mm, kPlaceMm); });
+  io.choice("shape", workspace.shape, kWorkspaceShapes,
+            {"all of the box, or the ellipsoid that touches it from inside"});
 }
 
-std::optional<Problem> problem_of_workspace(const Workspace& workspace) {
-  const Vec3 least = workspace.least_mm;
-  const Vec3 greatest = workspace.greatest_mm;
-  if (!is_within(least, kPlaceMm) || !is_within(greatest, kPlaceMm)) {
-    return Problem{"/workspace", "must be in [-1000, 1000] mm"};
-  }
-  if (least.x < greatest.x && least.y < greatest.y && least.z < greatest.z) return std::nullopt;
-  return Problem{"/workspace/greatest_mm", "must be greater than least_mm on each axis"};
+/// What has a provenance.
+void describe_parameters(ObjectIo& io, DeviceModel& model) {
+  describe_numbers(io, model);
+  io.choice("friction", model.friction, kFrictionShapes,
+            {"friction against the velocity, or on each axis alone"});
+  io.integer("velocity_readings", model.velocity_readings, 0, 32,
+             {"readings of the line whose slope is the reported velocity, at least 2; 0: the true "
+              "velocity"});
+  io.integer("delay_ticks", model.delay_ticks, 0, 100,
+             {"ticks of the servo from a command to its force"});
+  io.truth("zero_order_hold", model.zero_order_hold,
+           {"whether a force acts over the tick; a structure always has it"});
+  io.part("structure", model.structure, {"a second mass at the tip, on a spring"},
+          describe_structure);
+  io.optional(
+      "workspace", model.workspace,
+      {"what the device reaches: x to the right, y up, z towards the person"},
+      [](ValueIo& value, Workspace& workspace) { value.part(workspace, describe_workspace); });
 }
 
-/// \return what the parameters have against each other
-std::optional<Problem> contradiction(const DeviceModel& model) {
-  if (model.static_n != 0.0 && model.static_n < model.coulomb_n) {
-    return Problem{"/static_n", "is less than coulomb_n; give at least that, or leave it out"};
-  }
-  if (model.stribeck_mm_s != 0.0 && model.static_n == 0.0) {
-    return Problem{"/stribeck_mm_s", "has no static friction to fall from; give static_n"};
-  }
-  if (model.max_force_n != 0.0 && model.continuous_force_n > model.max_force_n) {
-    return Problem{"/continuous_force_n", "is more than max_force_n; give at most that"};
-  }
-  if (model.velocity_readings == 1) {
-    return Problem{"/velocity_readings", "is 1, which has no slope; give 0, or at least 2"};
-  }
-  if (model.workspace) {
-    if (auto problem = problem_of_workspace(*model.workspace)) return problem;
-  }
-  return problem_of_structure(model);
+void describe_source(ObjectIo& io, Provenance& provenance) {
+  io.text("source", provenance.source, {},
+          {.meaning = "where the number comes from, a line for people", .required = true});
+  io.choice("confidence", provenance.confidence, kConfidences,
+            {.meaning = "`opened`: read in a public source; `transcript`: in a transcript of a "
+                        "paper; `derived`: computed from such; `memory`: remembered, unverified; "
+                        "`guess`: nobody knows; `measured`: on the very device",
+             .required = true});
 }
 
-template <typename Struct, std::size_t size>
-std::vector<std::string_view> keys_of(const std::array<NumberField<Struct>, size>& fields,
-                                      std::initializer_list<std::string_view> others) {
-  std::vector<std::string_view> keys;
-  for (const NumberField<Struct>& field : fields) keys.push_back(field.key);
-  keys.insert(keys.end(), others);
-  return keys;
-}
-
-std::vector<std::string_view> parameter_keys() {
-  std::vector<std::string_view> keys = keys_of(kFields, {});
-  keys.insert(keys.end(), kOtherParameters.begin(), kOtherParameters.end());
-  return keys;
-}
-
-template <typename Struct, std::size_t size>
-void read_fields(const JsonObject& object, const std::array<NumberField<Struct>, size>& fields,
-                 Struct& values) {
-  for (const NumberField<Struct>& field : fields) {
-    if (const auto member = object.find(field.key)) {
-      values.*field.member = member->number(field.range);
-    }
-  }
-}
-
-Vec3 read_axes_of(const JsonValue& place, const NumberRange& range) {
-  const std::vector<JsonValue> items = place.items(3, 3);
-  return {items[0].number(range), items[1].number(range), items[2].number(range)};
-}
-
-StructureModel read_structure(const JsonValue& place) {
-  StructureModel structure;
-  read_fields(place.object(keys_of(kStructureFields, {})), kStructureFields, structure);
-  return structure;
-}
-
-Workspace read_workspace(const JsonValue& place) {
-  const JsonObject object = place.object({"least_mm", "greatest_mm", "shape"});
-  Workspace workspace;
-  workspace.least_mm = read_axes_of(object.at("least_mm"), kPlaceMm);
-  workspace.greatest_mm = read_axes_of(object.at("greatest_mm"), kPlaceMm);
-  if (const auto shape = object.find("shape")) workspace.shape = shape->choice(kWorkspaceShapes);
-  return workspace;
-}
-
-DeviceModel::Planted read_planted(const JsonValue& place) {
-  const JsonObject object = place.object(keys_of(kPlantedFields, {"force_sign_scale", "seed"}));
-  DeviceModel::Planted planted;
-  read_fields(object, kPlantedFields, planted);
-  if (const auto scale = object.find("force_sign_scale")) {
-    planted.force_sign_scale = read_axes_of(*scale, kScale);
-  }
-  if (const auto seed = object.find("seed")) {
-    planted.seed = static_cast<std::uint64_t>(seed->integer(0, kMaxSeed));
-  }
-  return planted;
-}
-
-std::map<std::string, Provenance> read_provenance(const JsonValue& place) {
-  const std::vector<std::string_view> keys = parameter_keys();
-  const JsonObject object = place.object(keys);
-  std::map<std::string, Provenance> provenance;
+void describe_provenance(ObjectIo& io, std::map<std::string, Provenance>& provenance) {
+  DeviceModel any;
+  std::vector<std::string_view> keys =
+      keys_of([&any](ObjectIo& parameters) { describe_parameters(parameters, any); });
+  std::ranges::sort(keys);
   for (const std::string_view key : keys) {
-    const auto member = object.find(key);
-    if (!member) continue;
-    const JsonObject entry = member->object({"source", "confidence"});
-    provenance[std::string(key)] = {entry.at("source").text(),
-                                    entry.at("confidence").choice(kConfidences)};
-  }
-  return provenance;
-}
-
-void read_other_parameters(const JsonObject& object, DeviceModel& model) {
-  if (const auto shape = object.find("friction")) model.friction = shape->choice(kFrictionShapes);
-  if (const auto count = object.find("velocity_readings")) {
-    model.velocity_readings = static_cast<int>(count->integer(0, kMaxVelocityReadings));
-  }
-  if (const auto ticks = object.find("delay_ticks")) {
-    model.delay_ticks = static_cast<int>(ticks->integer(0, kMaxDelayTicks));
-  }
-  if (const auto hold = object.find("zero_order_hold")) model.zero_order_hold = hold->truth();
-  if (const auto structure = object.find("structure")) model.structure = read_structure(*structure);
-  if (const auto workspace = object.find("workspace")) model.workspace = read_workspace(*workspace);
-}
-
-using nlohmann::ordered_json;
-
-ordered_json axes_json(Vec3 a) {
-  return ordered_json::array({a.x, a.y, a.z});
-}
-
-template <typename Struct, std::size_t size>
-void add_fields(ordered_json& object, const std::array<NumberField<Struct>, size>& fields,
-                const Struct& values) {
-  for (const NumberField<Struct>& field : fields) {
-    if (values.*field.member != 0.0) object[std::string(field.key)] = values.*field.member;
+    std::optional<Provenance> source;
+    if (const auto found = provenance.find(std::string(key)); found != provenance.end()) {
+      source = found->second;
+    }
+    io.optional(key, source, {"of this number"},
+                [](ValueIo& value, Provenance& one) { value.part(one, describe_source); });
+    if (source) provenance[std::string(key)] = *source;
   }
 }
 
-ordered_json planted_json(const DeviceModel::Planted& planted) {
-  const DeviceModel::Planted none;
-  ordered_json object = ordered_json::object();
-  add_fields(object, kPlantedFields, planted);
-  if (planted.force_sign_scale != none.force_sign_scale) {
-    object["force_sign_scale"] = axes_json(planted.force_sign_scale);
-  }
-  if (planted.seed != none.seed) object["seed"] = planted.seed;
-  return object;
+void describe_planted(ObjectIo& io, DeviceModel::Planted& planted) {
+  io.member("force_sign_scale", {"factors of the delivered force on each axis"}, true,
+            [&](ValueIo& value) {
+              value.axes(planted.force_sign_scale, {-10.0, 10.0});
+            });
+  io.number("position_noise_mm", planted.position_noise_mm, {0.0, 1.0},
+            {"standard deviation of white noise on each axis of a reading"});
+  io.number("gravity_n", planted.gravity_n, {0.0, 10.0},
+            {"weight of the handle that nothing carries"});
+  io.number("silent_after_s", planted.silent_after_s, kTimeS,
+            {"when readings begin to repeat and no force comes; 0: never"});
+  io.number("lost_after_s", planted.lost_after_s, kTimeS, {"when the link is lost; 0: never"});
+  io.integer("seed", planted.seed, 0, kMaxSeed, {"of the noise"});
 }
 
-void add_other_parameters(ordered_json& object, const DeviceModel& model) {
-  if (model.friction != FrictionShape::isotropic) {
-    object["friction"] = name_in(kFrictionShapes, model.friction);
-  }
-  if (model.velocity_readings != 0) object["velocity_readings"] = model.velocity_readings;
-  if (model.delay_ticks != 0) object["delay_ticks"] = model.delay_ticks;
-  if (model.zero_order_hold) object["zero_order_hold"] = true;
-  if (model.structure.stiffness_n_per_mm != 0.0) {
-    object["structure"] = ordered_json::object();
-    add_fields(object["structure"], kStructureFields, model.structure);
-  }
+/// What parameters have against each other.
+void check_parameters(const JsonValue& place, const DeviceModel& model) {
+  const auto refuse_if = [&](bool is_wrong, const char* pointer, const char* what) {
+    if (is_wrong) place.refuse_below(pointer, what);
+  };
+  refuse_if(model.static_n != 0.0 && model.static_n < model.coulomb_n, "/static_n",
+            "is less than coulomb_n; give at least that, or leave it out");
+  refuse_if(model.stribeck_mm_s != 0.0 && model.static_n == 0.0, "/stribeck_mm_s",
+            "has no static friction to fall from; give static_n");
+  refuse_if(model.max_force_n != 0.0 && model.continuous_force_n > model.max_force_n,
+            "/continuous_force_n", "is more than max_force_n; give at most that");
+  refuse_if(model.velocity_readings == 1, "/velocity_readings",
+            "is 1, which has no slope; give 0, or at least 2");
   if (model.workspace) {
-    object["workspace"] = {{"least_mm", axes_json(model.workspace->least_mm)},
-                           {"greatest_mm", axes_json(model.workspace->greatest_mm)},
-                           {"shape", name_in(kWorkspaceShapes, model.workspace->shape)}};
+    const auto& [least, greatest] =
+        std::pair(model.workspace->least_mm, model.workspace->greatest_mm);
+    refuse_if(least.x >= greatest.x || least.y >= greatest.y || least.z >= greatest.z,
+              "/workspace/greatest_mm", "must be greater than least_mm on each axis");
   }
+  const StructureModel& structure = model.structure;
+  if (structure.stiffness_n_per_mm == 0.0) return;
+  refuse_if(model.mass_kg == 0.0, "/structure", "needs a mass that it can share; give mass_kg");
+  refuse_if(structure.tip_share == 0.0 || structure.tip_share == 1.0, "/structure/tip_share",
+            "leaves one of the two without mass; give a number between 0 and 1");
+}
+
+/// What a running model needs.
+void describe_device(ObjectIo& io, DeviceModel& model) {
+  describe_parameters(io, model);
+  io.part("planted", model.planted, {"faults of a broken specimen, for rehearsals alone"},
+          describe_planted);
+  io.rule([&model](const JsonValue& place, const JsonObject& /*object*/) {
+    check_parameters(place, model);
+  });
+}
+
+void describe(ObjectIo& io, DeviceModel& model) {
+  io.text("name", model.name, {.min_length = 1, .in_words = "not empty"},
+          {.meaning = "name for commands", .required = true});
+  io.text("title", model.title, {}, {"name for people"});
+  describe_parameters(io, model);
+  io.member("provenance",
+            {.meaning = "where each number comes from", .range = "by key: `source`, `confidence`"},
+            !model.provenance.empty(),
+            [&model](ValueIo& value) { value.part(model.provenance, describe_provenance); });
+  io.part("planted", model.planted, {"faults of a broken specimen, for rehearsals alone"},
+          describe_planted);
+  io.rule([&model](const JsonValue& place, const JsonObject& object) {
+    if (model.name.empty()) object.at("name").refuse("is empty; give a name");
+    check_parameters(place, model);
+  });
 }
 
 }  // namespace
@@ -293,27 +198,19 @@ std::string_view name_of(Confidence confidence) noexcept {
 }
 
 void check_device_model(const DeviceModel& model) {
-  auto problem = problem_of_ranges(model);
-  if (!problem) problem = contradiction(model);
-  if (!problem) return;
-  throw std::invalid_argument("device model " + model.name + ": " + problem->pointer + ": " +
-                              problem->what);
+  DeviceModel copy = model;
+  const Description description = [&copy](ObjectIo& io) { describe_device(io, copy); };
+  const std::string text = written_as_described(description, description);
+  try {
+    read_described(parse_strict_json(text, "device model " + model.name), description);
+  } catch (const StudyError& error) {
+    throw std::invalid_argument(error.what());
+  }
 }
 
 DeviceModel parse_device_model(std::string_view text, const std::string& source) {
-  std::vector<std::string_view> keys = parameter_keys();
-  keys.insert(keys.end(), {"name", "title", "provenance", "planted"});
-  const JsonValue root = parse_strict_json(text, source);
-  const JsonObject object = root.object(keys);
   DeviceModel model;
-  model.name = object.at("name").text();
-  if (model.name.empty()) object.at("name").refuse("is empty; give a name");
-  if (const auto title = object.find("title")) model.title = title->text();
-  read_fields(object, kFields, model);
-  read_other_parameters(object, model);
-  if (const auto planted = object.find("planted")) model.planted = read_planted(*planted);
-  if (const auto sources = object.find("provenance")) model.provenance = read_provenance(*sources);
-  if (const auto problem = contradiction(model)) root.refuse_below(problem->pointer, problem->what);
+  read_described(parse_strict_json(text, source), [&](ObjectIo& io) { describe(io, model); });
   return model;
 }
 
@@ -324,19 +221,23 @@ DeviceModel read_device_model(const std::filesystem::path& file) {
 }
 
 std::string device_model_json(const DeviceModel& model) {
-  ordered_json object;
-  object["name"] = model.name;
-  if (!model.title.empty()) object["title"] = model.title;
-  add_fields(object, kFields, model);
-  add_other_parameters(object, model);
-  for (const auto& [key, provenance] : model.provenance) {
-    object["provenance"][key] = {{"source", provenance.source},
-                                 {"confidence", name_of(provenance.confidence)}};
-  }
-  if (ordered_json planted = planted_json(model.planted); !planted.empty()) {
-    object["planted"] = std::move(planted);
-  }
-  return json_text(object);
+  DeviceModel copy = model;
+  DeviceModel usual;
+  return json_text(nlohmann::ordered_json::parse(
+      written_as_described([&](ObjectIo& io) { describe(io, copy); },
+                           [&](ObjectIo& io) { describe(io, usual); }, WrittenKeys::changed)));
+}
+
+std::string device_model_schema() {
+  DeviceModel usual;
+  return annotated_schema(
+      "Touchtrial device model",
+      "The parameters of a device in virtual time. Every key but the name has a default; a "
+      "parameter of zero leaves its stage out.",
+      R"([{"name": "heavy", "mass_kg": 0.5, "coulomb_n": 0.2,
+           "provenance": {"mass_kg": {"source": "kitchen scale", "confidence": "measured"}}},
+          {"name": "reversed", "mass_kg": 0.1, "planted": {"force_sign_scale": [-1, 1, 1]}}])",
+      [&](ObjectIo& io) { describe(io, usual); });
 }
 
 const std::vector<DeviceModel>& shipped_device_models() {

@@ -22,7 +22,7 @@ int load_flags(Unload unload, Binding binding) {
          (unload == Unload::never ? RTLD_NODELETE : 0);
 }
 
-/// \return the linker's reason, without the library's name in front, which begins our message
+/// \return the linker's reason without the library's name, with which our message begins
 std::string reason_for(const std::string& library) {
   const char* text = dlerror();
   if (text == nullptr) return "no reason given";
@@ -30,7 +30,7 @@ std::string reason_for(const std::string& library) {
   return reason.starts_with(library + ": ") ? reason.substr(library.size() + 2) : reason;
 }
 
-/// The child's work: crashes stay silent, and no code of the parent runs at the exit.
+/// Runs in the child: crashes are silent, and none of the parent's exit code runs.
 [[noreturn]] void load_and_end(const char* library, Binding binding) {
   for (const int crash : std::array{SIGSEGV, SIGBUS, SIGABRT, SIGILL, SIGFPE}) {
     signal(crash, SIG_DFL);
@@ -41,7 +41,7 @@ std::string reason_for(const std::string& library) {
   _exit(0);
 }
 
-/// \return the child's status; nothing if it had to be killed for hanging
+/// \return the child's status; nothing if it hung and was killed
 std::optional<int> status_of(pid_t child) {
   constexpr std::chrono::milliseconds kPatience{10'000};
   int status = 0;
@@ -56,12 +56,11 @@ std::optional<int> status_of(pid_t child) {
 
 }  // namespace
 
-void expect_loading_survived(const std::filesystem::path& library, const std::string& remedy,
-                             Binding binding) {
+void check_loads(const std::filesystem::path& library, const std::string& remedy, Binding binding) {
   const std::string name = library.string();
   const pid_t child = fork();
   if (child == 0) load_and_end(name.c_str(), binding);
-  if (child < 0) return;  // without a process, the loading itself has to tell
+  if (child < 0) return;  // without a child, loading itself will show
   const std::optional<int> status = status_of(child);
   if (status && !WIFSIGNALED(*status)) return;
   throw DeviceError(one_line(name + (status ? ": crashes" : ": hangs") +

@@ -1,4 +1,4 @@
-/// \file A shared library that the program loads while it runs, and the functions in it.
+/// \file A shared library loaded at run time, and its functions.
 #pragma once
 
 #include <filesystem>
@@ -12,13 +12,12 @@ enum class Unload {
   never,  ///< for libraries that break when they are loaded a second time
 };
 
-/// When the library's own references are resolved, and who else sees its functions.
+/// When the library's references are resolved, and whether its symbols are global.
 enum class Binding {
-  /// All at once, so that none is missing later, in the middle of a session; its functions are for
-  /// us alone.
+  /// All at once, so that none is missing later during a session; symbols are local.
   at_once,
-  /// Each when it is first used, and what it loads itself may use its functions too: for libraries
-  /// with references that no installed library has, and with parts of their own.
+  /// Lazily, with global symbols: for libraries with unresolved references, and with their own
+  /// plug-ins.
   as_needed,
 };
 
@@ -27,7 +26,7 @@ enum class Binding {
 class DynamicLibrary {
  public:
   /// Runs the library's initialisers.
-  /// \param remedy  what to do if it cannot be used; ends every error, without a full stop
+  /// \param remedy  the last part of every error, without a full stop
   /// \throws DeviceError naming the library, the linker's reason and the remedy
   DynamicLibrary(const std::filesystem::path& library, Unload unload, std::string remedy,
                  Binding binding = Binding::at_once);
@@ -61,11 +60,11 @@ class DynamicLibrary {
   void* handle_;
 };
 
-/// Loads the library in a child process, which ends at once: a truncated or damaged library may
-/// kill the process that loads it. Costs a fork.
+/// Test-loads the library in a child process, because a truncated or damaged library may crash the
+/// process that loads it. Costs a fork.
 /// \throws DeviceError naming library and remedy if the child crashes or hangs for ten seconds, but
-///   not for anything that DynamicLibrary itself throws
-void expect_loading_survived(const std::filesystem::path& library, const std::string& remedy,
-                             Binding binding = Binding::at_once);
+///   not for errors that DynamicLibrary itself reports
+void check_loads(const std::filesystem::path& library, const std::string& remedy,
+                 Binding binding = Binding::at_once);
 
 }  // namespace touchtrial::device

@@ -1,5 +1,5 @@
 /// \file Real time: scheduling, the monotonic clock, and the region in which no code may block. One
-/// source file a platform.
+///   source file per platform.
 #pragma once
 
 #include <chrono>
@@ -9,8 +9,8 @@
 namespace touchtrial::device {
 
 enum class SchedulingPolicy {
-  other,  ///< as every program: the thread shares the processor
-  fifo,   ///< real time: the thread runs before all ordinary threads
+  other,  ///< default scheduling
+  fifo,   ///< real time: the thread has priority over all ordinary threads
 };
 
 /// \return "other" or "fifo", as files and reports call the policy
@@ -21,8 +21,8 @@ enum class SchedulingPolicy {
 /// The scheduling that a servo thread requests.
 struct SchedulingRequest {
   SchedulingPolicy policy = SchedulingPolicy::fifo;
-  int priority = 80;        ///< of fifo, 1 to 99; clamped to what the system knows
-  bool lock_memory = true;  ///< the whole process stays in memory: no page is fetched in the loop
+  int priority = 80;        ///< of fifo, 1 to 99; clamped to the system's range
+  bool lock_memory = true;  ///< the whole process, so that the loop has no page faults
 };
 
 /// The scheduling that it obtained.
@@ -35,10 +35,9 @@ struct SchedulingObtained {
   std::string reason;
 };
 
-/// Requests scheduling for the calling thread and touches its stack, so that the loop finds it in
-/// memory. A thread without real time gets timers as exact as ordinary threads may have. Locked
-/// memory concerns the whole process and stays locked. What the system refuses stays as it was and
-/// is reported.
+/// Requests scheduling for the calling thread and prefaults its stack. A thread without real time
+/// gets the most precise timers of ordinary threads. Memory is locked for the whole process and
+/// stays locked. What the system refuses is unchanged and reported.
 [[nodiscard]] SchedulingObtained request_scheduling(const SchedulingRequest& request);
 
 /// \return the time of the monotonic clock. No allocation, lock or exception.
@@ -48,8 +47,8 @@ struct SchedulingObtained {
 void sleep_until(std::chrono::nanoseconds time) noexcept;
 
 /// Marks code in which nothing may allocate, lock or do I/O: the calling thread is in the servo's
-/// loop while one of these lives. The servo enters once a run, so it costs nothing; tests watch the
-/// allocations and locks of threads that are inside.
+/// loop during its lifetime. The servo enters once per run, so it costs nothing; tests check the
+/// allocations and locks of threads inside.
 class RealtimeRegion {
  public:
   RealtimeRegion() noexcept { ++depth_; }
@@ -61,7 +60,7 @@ class RealtimeRegion {
   [[nodiscard]] static bool entered() noexcept { return depth_ > 0; }
 
  private:
-  // A constant at first, so that the first use on a thread constructs nothing.
+  // Constant-initialised, so that the first use on a thread runs no constructor.
   static constinit inline thread_local int depth_ = 0;
 };
 

@@ -29,7 +29,7 @@ void add_reason(SchedulingObtained& obtained, const std::string& reason) {
   obtained.reason += (obtained.reason.empty() ? "" : "; ") + reason;
 }
 
-/// Writes to every page of the stack below this call, which the loop will use later.
+/// Prefaults the pages of the stack below this call, which the loop will use.
 [[gnu::noinline]] void touch_stack() noexcept {
   std::array<volatile std::byte, kStackTouched> room;
   constexpr std::size_t kMinPage = 4096;
@@ -50,9 +50,9 @@ void ask_for_fifo(int priority, SchedulingObtained& obtained) {
   obtained.priority = param.sched_priority;
 }
 
-/// Under a limit, later mappings that pass it would fail, so only the present memory is locked. A
-/// privileged process takes the limit off.
-int what_to_lock() noexcept {
+/// With a limit, later mappings beyond it would fail, so only current memory is locked. A
+/// privileged process removes the limit.
+int lock_flags() noexcept {
   const rlimit none{RLIM_INFINITY, RLIM_INFINITY};
   rlimit limit{};
   const bool unlimited =
@@ -62,7 +62,7 @@ int what_to_lock() noexcept {
 }
 
 void lock_memory(SchedulingObtained& obtained) {
-  if (mlockall(what_to_lock()) == 0) {
+  if (mlockall(lock_flags()) == 0) {
     obtained.memory_locked = true;
     return;
   }
@@ -70,7 +70,7 @@ void lock_memory(SchedulingObtained& obtained) {
                            "): raise the user's memlock limit in /etc/security/limits.d");
 }
 
-/// Makes the system wake the thread on time; it wakes ordinary threads up to 50 us late to save
+/// Disables the timer slack, by which the system wakes ordinary threads up to 50 us late to save
 /// power.
 void sharpen_timers() noexcept {
 #ifdef __linux__

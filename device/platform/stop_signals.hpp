@@ -1,4 +1,4 @@
-/// \file Sets the force to zero however the program ends. One source file a platform.
+/// \file Sets the force to zero in whatever way the program ends. One source file per platform.
 #pragma once
 
 #include "device/haptic_device.hpp"
@@ -12,28 +12,28 @@ namespace touchtrial::device {
 ///
 /// A request to end (SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXCPU) or to suspend (SIGTSTP, which is
 /// Ctrl-Z, SIGTTIN, SIGTTOU) halts the device, requests an emergency stop of the servo, and stores
-/// the signal, so that the command can close everything and exit with `exit_code`. After a second
-/// such signal, and 20 ms, the signal has its usual effect.
+/// the signal, so that the command can clean up and exit with `exit_code`. A second such signal has
+/// its usual effect after 20 ms.
 ///
 /// A crash (SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, or SIGQUIT, which is Ctrl-\) and
 /// std::terminate halt the device. After 20 ms, in which the driver's own thread sends zeros, the
-/// earlier handler or the default action follows. If the driver's thread itself crashed, or the
-/// process is killed (SIGKILL), only the device's own watch over its link is left.
+/// previous handler or the default action follows. If the driver's thread itself crashed, or the
+/// process is killed (SIGKILL), only the device's own link watchdog remains.
 class StopOnSignals {
  public:
   /// \param device,control  must outlive this
-  /// \throws std::logic_error if there is another
+  /// \throws std::logic_error if another exists
   StopOnSignals(HapticDevice& device, ServoControl& control);
-  /// Puts the earlier handlers back.
+  /// Restores the previous handlers.
   ~StopOnSignals();
   StopOnSignals(const StopOnSignals&) = delete;
   StopOnSignals& operator=(const StopOnSignals&) = delete;
 
   /// Sets a function that restores something, for instance the terminal, before a second signal or
-  /// a crash kills the program. The handler calls it after the device is halted, so it may only do
-  /// what is safe in a signal handler. This function may be called from any thread.
-  /// \param put_back  null: nothing
-  static void before_dying(void (*put_back)() noexcept) noexcept;
+  /// a crash ends the program. The handler calls it after halting the device, so it must be
+  /// async-signal-safe. Thread-safe.
+  /// \param put_back  null: none
+  static void set_crash_cleanup(void (*put_back)() noexcept) noexcept;
 
   /// May be called from any thread.
   /// \return whether the program was asked to end

@@ -15,16 +15,16 @@ namespace {
 
 constexpr long kTimeToSendNs = 20'000'000;
 constexpr int kExitBySignal = 128;
-// Also those that would suspend the program: the motors would hold their last force.
+// Including signals that would suspend the program, because the motors would hold their last force.
 constexpr std::array kAskSignals = {SIGINT,  SIGTERM, SIGHUP,  SIGPIPE,
                                     SIGXCPU, SIGTSTP, SIGTTIN, SIGTTOU};
 constexpr std::array kCrashSignals = {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGQUIT};
 
-// Handlers see lock-free atomics alone.
+// Handlers access only lock-free atomics.
 std::atomic<HapticDevice*> device_to_halt{nullptr};
 std::atomic<ServoControl*> servo_to_stop{nullptr};
 std::atomic<int> first_signal{0};
-std::atomic<void (*)() noexcept> last_act{nullptr};
+std::atomic<void (*)() noexcept> crash_cleanup{nullptr};
 static_assert(std::atomic<HapticDevice*>::is_always_lock_free);
 static_assert(std::atomic<ServoControl*>::is_always_lock_free);
 static_assert(std::atomic<int>::is_always_lock_free);
@@ -44,12 +44,12 @@ void halt() noexcept {
   if (servo != nullptr) servo->emergency_stop();
 }
 
-void put_the_rest_back() noexcept {
-  void (*const act)() noexcept = last_act.load();
+void run_crash_cleanup() noexcept {
+  void (*const act)() noexcept = crash_cleanup.load();
   if (act != nullptr) act();
 }
 
-void let_the_driver_send() noexcept {
+void wait_for_driver() noexcept {
   timespec left{0, kTimeToSendNs};
   while (nanosleep(&left, &left) != 0 && errno == EINTR) {
   }
@@ -66,8 +66,8 @@ extern "C" void on_ask(int signal) {
   halt();
   int none = 0;
   if (!first_signal.compare_exchange_strong(none, signal)) {
-    let_the_driver_send();
-    put_the_rest_back();
+    wait_for_driver();
+    run_crash_cleanup();
     put_back(kAskSignals, earlier.of_asks);
     raise(signal);  // delivered when this handler returns
   }
@@ -76,16 +76,16 @@ extern "C" void on_ask(int signal) {
 
 extern "C" void on_crash(int signal) {
   halt();
-  let_the_driver_send();
-  put_the_rest_back();
+  wait_for_driver();
+  run_crash_cleanup();
   put_back(kCrashSignals, earlier.of_crashes);
   raise(signal);
 }
 
 [[noreturn]] void on_terminate() {
   halt();
-  let_the_driver_send();
-  put_the_rest_back();
+  wait_for_driver();
+  run_crash_cleanup();
   if (earlier.terminate != nullptr) earlier.terminate();
   std::abort();
 }
@@ -122,8 +122,8 @@ StopOnSignals::~StopOnSignals() {
   device_to_halt.store(nullptr);
 }
 
-void StopOnSignals::before_dying(void (*put_back)() noexcept) noexcept {
-  last_act.store(put_back);
+void StopOnSignals::set_crash_cleanup(void (*put_back)() noexcept) noexcept {
+  crash_cleanup.store(put_back);
 }
 
 bool StopOnSignals::asked() noexcept {
@@ -146,7 +146,7 @@ std::string StopOnSignals::message() {
     case SIGHUP:
       return "stopped by SIGHUP (the terminal went away); the force is zero";
     case SIGPIPE:
-      return "stopped by SIGPIPE (nobody reads the output); the force is zero";
+      return "stopped by SIGPIPE (the output's reader has exited); the force is zero";
     case SIGXCPU:
       return "stopped by SIGXCPU (the limit of processor time); the force is zero";
     default:

@@ -1,4 +1,4 @@
-/// \file The safety chain, which every force passes on its way to a device. Source: docs/safety.md.
+/// \file The safety chain, which every force to a device must pass. Source: docs/safety.md.
 #pragma once
 
 #include "core/vec.hpp"
@@ -11,23 +11,23 @@
 
 namespace touchtrial::device {
 
-/// What the chain did with a force.
+/// The chain's action on a force.
 enum class SafetyVerdict {
   passed,   ///< sent as computed
-  limited,  ///< shortened or held back by a link of the chain, or by a limit of the device's own
-  fault,    ///< a fault now or earlier: zero is sent until `rearm`
+  limited,  ///< shortened or suppressed by a link of the chain, or by the device's own limit
+  fault,    ///< latched fault: zero is sent until `rearm`
 };
 
-/// Why a chain latched.
+/// The cause of a latched chain.
 enum class SafetyFault {
   none,
   not_finite,       ///< a force, position or velocity is not a finite number
-  emergency_stop,   ///< a person, or a signal, asked for it
+  emergency_stop,   ///< requested by a person or a signal
   not_ready,        ///< the device lost its homing while force was on
   overspeed,        ///< faster than a hand
   stale_sample,     ///< the device gives no new readings
-  frozen_encoders,  ///< its readings are new, but their position never changes under force
-  stalled,          ///< the servo itself stood still (watchdog)
+  frozen_encoders,  ///< new readings whose position never changes under force
+  stalled,          ///< the servo itself stalled (watchdog)
   device,           ///< the device reported a fault, see DeviceFault
 };
 
@@ -43,33 +43,32 @@ struct SafeForce {
 /// the force is zero at once, and until `rearm`. Belongs to the servo thread.
 class SafetyChain {
  public:
-  /// \param limits  unsound ones let no force pass
+  /// \param limits  invalid ones let no force pass
   /// \param tick_s  of the servo, finite, > 0, else no force passes
   explicit SafetyChain(const SafetyLimits& limits, double tick_s = 0.001) noexcept;
 
   /// A device that is not ready before engaging gets zero, without a fault. No allocation, lock or
   /// exception; about 10 ns.
-  /// \param force_n  as rendered: gate, norm limit and slew limit judge it alone
-  /// \param ticks  since the last call, more than 1 after an overrun; less counts as 1
+  /// \param force_n  as rendered: gate, norm limit and slew limit apply only to it
+  /// \param ticks  since the last call, above 1 after an overrun; less counts as 1
   /// \param support_n  HapticDevice::support_force_n: within SafetyLimits::max_support_n it is
   ///   added to the rendered force. The gate and the ramp hold for both, and both warm the motors
   /// \return the force that may be sent for this tick
   [[nodiscard]] SafeForce check(Vec3 force_n, const DeviceSample& sample, std::int64_t ticks = 1,
                                 Vec3 support_n = {}) noexcept;
 
-  /// Latches a fault that was seen elsewhere; the first one stays.
+  /// Latches a fault detected elsewhere; the first one remains.
   void trip(SafetyFault fault) noexcept;
   [[nodiscard]] bool faulted() const noexcept { return fault_ != SafetyFault::none; }
   [[nodiscard]] SafetyFault fault() const noexcept { return fault_; }
-  /// Lets forces pass again after a fault, beginning with the gate and the ramp. A person must have
-  /// decided to do so.
+  /// Enables forces again after a fault, starting with the gate and the ramp. A person must have
+  /// decided this.
   void rearm() noexcept;
   /// \name Heat of the motors, which outlasts a run; see ThermalBudget
   ///@{
   [[nodiscard]] double heat_n2() const noexcept { return thermal_.heat_n2(); }
   void begin_warm(double heat_n2, double rest_s) noexcept { thermal_.begin_warm(heat_n2, rest_s); }
-  ///@}
-  /// The force that the last `check` let pass, N.
+  /// @} The force passed by the last `check`, N.
   [[nodiscard]] Vec3 sent_n() const noexcept { return sent_n_; }
 
  private:
@@ -77,7 +76,7 @@ class SafetyChain {
   [[nodiscard]] SafetyFault fault_in(const DeviceSample& sample, double ticks) noexcept;
   [[nodiscard]] SafeForce stopped() noexcept;
   [[nodiscard]] SafeForce limited(Vec3 force_n, double force_squared_n2, Vec3 support_n) noexcept;
-  /// Without a support, the force itself with the signs of its zeros.
+  /// Without a support, the force itself, preserving the signs of zeros.
   [[nodiscard]] static Vec3 sum_of(Vec3 force_n, Vec3 support_n) noexcept {
     return support_n == Vec3{} ? force_n : force_n + support_n;
   }
@@ -95,7 +94,7 @@ class SafetyChain {
   Vec3 sent_n_;     ///< with the support
 };
 
-// Every simulated tick passes the chain, so its steps are compiled into the loop.
+// Inlined into the loop, because every simulated tick passes the chain.
 
 inline void SafetyChain::trip(SafetyFault fault) noexcept {
   if (fault_ == SafetyFault::none) fault_ = fault;
@@ -131,8 +130,8 @@ inline SafeForce SafetyChain::limited(Vec3 force_n, double force_squared_n2,
                                       Vec3 support_n) noexcept {
   const double share = ramp_.next_share();
   const double limit_n = thermal_.limit_n();
-  // A whole force alone that no limit shortens is sent as it is. Nearly all are, and the steps
-  // below would find the same.
+  // Fast path for an unlimited force without ramp or support, which is nearly every one; the steps
+  // below would give the same result.
   if (share == 1.0 && support_n == Vec3{} && force_squared_n2 <= limit_n * limit_n &&
       slew_.try_reach(force_n)) {
     sent_n_ = force_n;

@@ -1,4 +1,4 @@
-/// \file The limits of the safety chain: what a lab may set, and which values are sound.
+/// \file The limits of the safety chain and their valid ranges.
 #pragma once
 
 #include "device/haptic_device.hpp"
@@ -8,24 +8,24 @@
 
 namespace touchtrial::device {
 
-/// Every force can fall to zero within this time, whatever the slew limit: SafetyLimits whose slew
-/// limit needs longer from max_force_n to zero are unsound.
+/// Every force must be able to fall to zero within this time: SafetyLimits whose slew limit takes
+/// longer from max_force_n to zero are invalid.
 inline constexpr double kLongestLetGoS = 0.05;
 
 /// Limits that hold for every device. The defaults suit a hand that strokes a texture: in ordinary
-/// use only the norm limit takes effect. Infinity switches off a link whose limit may be infinite.
-/// Unsound limits let no force pass.
+/// use only the norm limit takes effect. Infinity disables a link whose limit may be infinite.
+/// Invalid limits let no force pass.
 struct SafetyLimits {
   double max_force_n = 3.3;          ///< of the force's norm, > 0, finite
-  double continuous_force_n = 0.0;   ///< the motors hold it for ever; 0: no thermal budget
+  double continuous_force_n = 0.0;   ///< sustainable without time limit; 0: no thermal budget
   double thermal_budget_s = 20.0;    ///< at peak force, from cold, before the limit falls; > 0
   double max_slew_n_per_s = 1000.0;  ///< of the force's change, >= max_force_n / kLongestLetGoS
   double max_speed_mm_s = 2000.0;    ///< reported, or by the change of position; more is a fault
-  double engage_force_n = 0.5;       ///< forces pass only once the computed one was this small
+  double engage_force_n = 0.5;       ///< forces pass only after a computed force below this
   double ramp_up_s = 0.1;            ///< from engaging to full force, >= 0, finite
   double stale_s = 0.010;            ///< longest time without a new reading; then a fault; > 0
-  /// Longest time at one and the same position under at least FrozenEncoders::kPressedN; then a
-  /// fault; > 0. Where a weight may hang on the handle without a hand, infinity.
+  /// Longest time at exactly the same position under at least FrozenEncoders::kPressedN; then a
+  /// fault; > 0. Infinity if a weight may hang on the handle without a hand.
   double frozen_s = 0.3;
   double max_support_n = 0.0;  ///< of the support's norm, >= 0, finite
 };
@@ -44,8 +44,8 @@ struct SafetyLimits {
 }
 
 /// \return the limits on this device: the smaller of the two peak forces, and of the two continuous
-///   forces; the device's limit of its support; frozen_s of devices with encoders alone. NaN stays
-///   NaN, so that no force passes.
+///   forces; the device's limit of its support; frozen_s only for devices with encoders. NaN is
+///   preserved, so that no force passes.
 [[nodiscard]] inline SafetyLimits limits_on(const DeviceInfo& device,
                                             SafetyLimits limits) noexcept {
   // Unlike std::min, NaN if either is.
@@ -60,7 +60,7 @@ struct SafetyLimits {
     limits.continuous_force_n = smaller(limits.continuous_force_n, device.continuous_force_n);
   }
   limits.max_support_n = device.max_support_n;
-  // A value that is unsound stays so.
+  // Preserves invalid values.
   if (!device.has_encoders && limits.frozen_s > 0.0) {
     limits.frozen_s = std::numeric_limits<double>::infinity();
   }

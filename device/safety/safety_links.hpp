@@ -1,8 +1,8 @@
 /// \file The links of the safety chain, in the order in which a force passes them. Source:
 /// docs/safety.md. Private to this folder.
 ///
-/// Every link belongs to the servo thread; none allocates, locks or throws. A link whose limit is
-/// infinite lets everything pass.
+/// Every link belongs to the servo thread; none allocates, locks or throws. A link with an infinite
+/// limit has no effect.
 #pragma once
 
 #include "core/vec.hpp"
@@ -17,12 +17,11 @@
 
 namespace touchtrial::device {
 
-/// A time this close to a whole number of ticks counts as that number: 0.010 / 0.001 is 10 ticks
-/// and not 11.
+/// Tolerance for whole numbers of ticks: 0.010 / 0.001 is 10 ticks, not 11.
 inline constexpr double kTickRounding = 1e-6;
 
-/// \return whether force, position and velocity are finite. The sum of their squares also overflows
-///   for values that are absurd without being infinite, so those count as not finite.
+/// \return whether force, position and velocity are finite. The sum of squares also overflows for
+///   absurdly large values, so those count as not finite.
 [[nodiscard]] inline bool is_finite_state(double force_squared_n2,
                                           const DeviceSample& sample) noexcept {
   const double all = force_squared_n2 + dot(sample.position_mm, sample.position_mm) +
@@ -30,8 +29,8 @@ inline constexpr double kTickRounding = 1e-6;
   return all <= std::numeric_limits<double>::max();
 }
 
-/// Prevents a force from starting with a blow. Opens once the computed force is small, which means
-/// that the hand is off the plane or only just touches it; then stays open until it is closed.
+/// Prevents a force from starting with a jolt. Opens once the computed force is small, that is,
+/// with the hand off the plane or barely touching it; then stays open until closed.
 class EngageGate {
  public:
   /// \param engage_force_n  >= 0; infinity: opens at once
@@ -51,10 +50,9 @@ class EngageGate {
   bool open_ = false;
 };
 
-/// Trips on motion faster than a hand's: by the speed that the device reports, and by the change of
-/// its position since the last new reading, over the time since that reading. Readings come from
-/// another thread or over a bus, and two may arrive together; so a change is judged over at least
-/// kWindowS, from a reading that old.
+/// Trips on motion faster than a hand's: by the reported speed, and by the change of position since
+/// an earlier reading. Readings come from another thread or a bus, and two may arrive together, so
+/// changes are taken over at least kWindowS.
 class VelocityTrip {
  public:
   static constexpr double kWindowS = 0.001;
@@ -66,7 +64,7 @@ class VelocityTrip {
         change_squared_(speed_squared_ * tick_s * tick_s),
         window_ticks_(std::max(1.0, std::ceil(kWindowS / tick_s - kTickRounding))) {}
 
-  /// Judges changes from this reading on.
+  /// Starts from this reading.
   void start(const DeviceSample& sample) noexcept {
     from_mm_ = sample.position_mm;
     sequence_ = sample.sequence;
@@ -96,8 +94,8 @@ class VelocityTrip {
   std::uint64_t sequence_ = 0;
 };
 
-/// Detects that a device gives no new readings. A device that is slower than the servo repeats its
-/// number between its readings; that is a fault only after stale_s.
+/// Detects missing new readings. A device slower than the servo repeats its sequence number between
+/// readings; that is a fault only after stale_s.
 class Freshness {
  public:
   /// \param stale_s  > 0; infinity: never
@@ -111,9 +109,8 @@ class Freshness {
     old_ticks_ = 0.0;
   }
 
-  /// \param ticks  since the last call, >= 1. After a pause a servo sees an old reading first,
-  ///   because the device's thread may have paused as well: one look counts for half of stale_s at
-  ///   most.
+  /// \param ticks  since the last call, >= 1. After a pause the first reading may be old, because
+  ///   the device's thread may have paused as well: one call counts for half of stale_s at most.
   [[nodiscard]] bool is_stale(std::uint64_t sequence, double ticks) noexcept {
     if (sequence != sequence_) {
       start(sequence);
@@ -130,12 +127,12 @@ class Freshness {
   std::uint64_t sequence_ = 0;
 };
 
-/// Detects encoders that stop while the device runs: its readings are new, and their position is
-/// the same to the last bit. A hand that presses always trembles by more than a step of an encoder.
-/// It counts calls and not time, because the ticks that a servo missed brought no reading.
+/// Detects encoders that stop while the device runs: new readings with exactly the same position. A
+/// pressing hand always trembles by more than an encoder step. It counts calls, not time, because
+/// missed ticks had no reading.
 class FrozenEncoders {
  public:
-  /// A hand that bears less may have let go of the handle.
+  /// Under less force the hand may have let go of the handle.
   static constexpr double kPressedN = 1.0;
 
   /// \param frozen_s  > 0; infinity: never
@@ -143,7 +140,7 @@ class FrozenEncoders {
   FrozenEncoders(double frozen_s, double tick_s) noexcept
       : frozen_ticks_(std::max(1.0, std::ceil(frozen_s / tick_s - kTickRounding))) {}
 
-  /// Judges positions from this one on.
+  /// Starts from this position.
   void start(Vec3 position_mm) noexcept {
     position_mm_ = position_mm;
     still_ticks_ = 0.0;
@@ -165,8 +162,8 @@ class FrozenEncoders {
   Vec3 position_mm_;
 };
 
-/// Lets forces grow to their full size after engaging: a factor that rises evenly from 0 to 1. It
-/// counts calls and not time, because the hand has not felt the ticks that a servo missed.
+/// Ramps forces up after engaging, by a factor that rises linearly from 0 to 1. It counts calls,
+/// not time, because the hand did not feel missed ticks.
 class RampUp {
  public:
   /// \param ramp_s  >= 0, finite; 0: none
@@ -193,15 +190,15 @@ class RampUp {
 
 /// \param force_n  a force whose square is finite
 /// \param limit_n  > 0, finite
-/// \return the force, shortened to the limit with its direction kept (to rounding)
+/// \return the force, shortened to the limit in the same direction (to rounding)
 [[nodiscard]] inline Vec3 within_norm(Vec3 force_n, double limit_n) noexcept {
   const double squared_n2 = dot(force_n, force_n);
   if (squared_n2 <= limit_n * limit_n) return force_n;
   return (limit_n / std::sqrt(squared_n2)) * force_n;
 }
 
-/// Follows the forces that it is given, by at most one step per call. The step after a pause is not
-/// larger: the hand feels the step, however long the pause was.
+/// Follows the given forces by at most one step per call. The step after a pause is not larger,
+/// because the hand feels the step, not the pause.
 class SlewLimit {
  public:
   /// \param max_slew_n_per_s  > 0; infinity: no limit
@@ -211,13 +208,13 @@ class SlewLimit {
   [[nodiscard]] Vec3 towards(Vec3 force_n) noexcept {
     const Vec3 change_n = force_n - sent_n_;
     const Vec3 step_n = within_norm(change_n, step_n_);
-    // A sum of differences would round, so a force within one step is taken as it is.
+    // A force within one step is used directly, because adding differences would round.
     sent_n_ = step_n == change_n ? force_n : sent_n_ + step_n;
     return sent_n_;
   }
 
-  /// The same where one step is enough; else does nothing.
-  /// \return whether it was
+  /// The same if one step suffices; else no effect.
+  /// \return whether it sufficed
   [[nodiscard]] bool try_reach(Vec3 force_n) noexcept {
     const Vec3 change_n = force_n - sent_n_;
     if (!(dot(change_n, change_n) <= step_n_ * step_n_)) return false;
@@ -225,7 +222,7 @@ class SlewLimit {
     return true;
   }
 
-  /// Goes to zero at once, for a fault.
+  /// Sets zero at once, for a fault.
   void drop() noexcept { sent_n_ = {}; }
   [[nodiscard]] Vec3 sent_n() const noexcept { return sent_n_; }
 

@@ -1,6 +1,5 @@
-/// \file How long motors may give more than they can hold for ever. The safety chain has one budget
-/// for the force's norm; a driver that knows its motors may have one for each. Source:
-/// docs/safety.md.
+/// \file How long motors may exceed their continuous force. The safety chain has one budget for the
+/// force's norm; a driver may have one for each motor. Source: docs/safety.md.
 ///
 /// A budget belongs to one thread; nothing here allocates, locks or throws.
 #pragma once
@@ -13,14 +12,13 @@
 
 namespace touchtrial::device {
 
-/// The force that the motors can hold without a time limit, and for a while. Motors warm with the
-/// square of the force. Their heat is modelled as its running mean, which fades exponentially; the
-/// continuous force gives the greatest heat allowed. Below the share kWarm of that heat the peak
-/// force is allowed; above it the limit falls in proportion, down to the continuous force, so that
-/// the greatest heat is never passed. The time constant follows from the time in which peak force
-/// brings a cold motor to kWarm. Nobody has measured it on a device's motors.
+/// Limits the force by the motors' heat, which is modelled as the exponentially weighted mean of
+/// the squared force. The heat of the continuous force is the maximum. Below the share kWarm of it
+/// the peak force is allowed; above, the limit falls linearly to the continuous force, so that the
+/// maximum is never exceeded. The time constant follows from the time in which peak force warms a
+/// cold motor to kWarm. It has not been measured on real motors.
 ///
-/// "Force" is whatever the motors' current is proportional to: newtons, or a motor's own command.
+/// "Force" is any quantity proportional to the motors' current: newtons, or a motor command.
 class ThermalBudget {
  public:
   static constexpr double kWarm = 0.9;
@@ -44,9 +42,9 @@ class ThermalBudget {
       : ThermalBudget(limits.max_force_n, limits.continuous_force_n, limits.thermal_budget_s,
                       tick_s) {}
 
-  /// \param carried_n  force that the motors bear beside the one that is limited, >= 0
-  /// \return the limit of the force's norm for this tick: from the peak down to what the carried
-  ///   force leaves of the continuous one
+  /// \param carried_n  force of the motors in addition to the limited one, >= 0
+  /// \return the limit of the force's norm for this tick: from the peak down to the continuous
+  ///   force minus the carried one
   [[nodiscard]] double limit_n(double carried_n = 0.0) const noexcept {
     if (heat_ <= kWarm * most_heat_) return peak_;
     const double cold = std::max(0.0, 1.0 - heat_ / most_heat_) / (1.0 - kWarm);
@@ -64,7 +62,7 @@ class ThermalBudget {
   /// \return the running mean of the force's square, N^2, for `begin_warm` of a later run on the
   ///   same motors; 0 without a budget
   [[nodiscard]] double heat_n2() const noexcept { return heat_; }
-  /// Begins with motors that are warm from earlier work.
+  /// Starts with motors that are warm from earlier runs.
   /// \param heat_n2  when that work ended; a value that is negative or not finite is ignored
   /// \param rest_s  without force since then, >= 0
   void begin_warm(double heat_n2, double rest_s) noexcept {
@@ -77,7 +75,7 @@ class ThermalBudget {
   double continuous_;
   double most_heat_ = std::numeric_limits<double>::infinity();  ///< infinite: no budget
   double tau_s_ = 1.0;                                          ///< in which heat fades to 1/e
-  double share_per_tick_ = 0.0;  ///< of the way to the present force's heat
+  double share_per_tick_ = 0.0;  ///< of the approach to the current force's heat
   double heat_ = 0.0;            ///< the force's square
 };
 

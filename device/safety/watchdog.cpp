@@ -8,7 +8,7 @@
 namespace touchtrial::device {
 namespace {
 
-constexpr int kLooksInSilence = 5;
+constexpr int kChecksPerSilence = 5;
 constexpr int kPriority = 85;  ///< of SCHED_FIFO, above the servo's
 
 class SystemTime final : public WatchdogTime {
@@ -31,7 +31,7 @@ Watchdog::Watchdog(HapticDevice& device, ServoControl& control,
       control_(control),
       heartbeat_(heartbeat),
       silence_(silence),
-      pause_(std::max(silence / kLooksInSilence, std::chrono::nanoseconds(1))),
+      pause_(std::max(silence / kChecksPerSilence, std::chrono::nanoseconds(1))),
       time_(time) {
   if (silence <= std::chrono::nanoseconds(0)) {
     throw std::invalid_argument("Watchdog: the silence must be > 0");
@@ -60,7 +60,7 @@ bool Watchdog::disarm() {
 }
 
 void Watchdog::watch() noexcept {
-  // Without the permission it watches as an ordinary thread.
+  // Without permission it runs as an ordinary thread.
   static_cast<void>(request_scheduling(
       {.policy = SchedulingPolicy::fifo, .priority = kPriority, .lock_memory = false}));
   WatchdogTime::Time last = time_.now();

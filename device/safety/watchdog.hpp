@@ -1,4 +1,4 @@
-/// \file A thread that sets the force to zero when the servo itself stands still.
+/// \file A thread that sets the force to zero when the servo itself stalls.
 #pragma once
 
 #include "device/haptic_device.hpp"
@@ -12,8 +12,8 @@
 
 namespace touchtrial::device {
 
-/// The watchdog's time, so that tests own it. Belongs to the watchdog's thread; any thread may call
-/// `now`.
+/// The watchdog's clock, so that tests control it. Belongs to the watchdog's thread; any thread may
+/// call `now`.
 class WatchdogTime {
  public:
   using Time = std::chrono::nanoseconds;
@@ -27,11 +27,11 @@ class WatchdogTime {
 /// The system's monotonic clock.
 [[nodiscard]] WatchdogTime& system_watchdog_time() noexcept;
 
-/// Checks a servo's heartbeat five times in `silence`. A servo that has begun to beat and is then
-/// silent for so long, although its run has not ended, has stalled: the watchdog halts the device,
-/// and the run ends as SafetyFault::stalled when the servo continues. A time in which the watchdog
-/// itself did not run (a virtual machine that stalls as a whole) is no evidence: one check never
-/// counts for more than two of its pauses.
+/// Checks a servo's heartbeat five times in `silence`. A servo whose heartbeat stops for this long
+/// before the end of its run has stalled: the watchdog halts the device, and the run ends as
+/// SafetyFault::stalled when the servo continues. Time in which the watchdog itself did not run
+/// (for example, a stalled virtual machine) does not count: one check counts for two of its pauses
+/// at most.
 ///
 /// The thread requests real-time scheduling above the servo's, so that a spinning servo cannot
 /// starve it, and works without it if it is refused. Any thread may call all functions.
@@ -42,8 +42,8 @@ class Watchdog {
   /// For any other.
   static constexpr std::chrono::milliseconds kForcelessSilence{1000};
 
-  /// A force that stays on pushes a hand. Nothing pushes a simulated hand, or a hand at a mouse, so
-  /// for those a busy machine is no fault; only a servo that does not continue is one.
+  /// A constant force pushes a real hand, but not a simulated hand or one at a mouse. For those a
+  /// busy machine is not a fault, only a servo that never continues.
   /// \return how long the servo of a device may be silent
   [[nodiscard]] static std::chrono::milliseconds silence_for(const DeviceInfo& device) noexcept {
     return device.simulated || device.visual ? kForcelessSilence : kSilence;
@@ -62,7 +62,7 @@ class Watchdog {
 
   /// Before a run. Silence counts from the first beat.
   void arm();
-  /// After a run: nothing trips the watchdog any more.
+  /// After a run: disables the watchdog.
   /// \return whether it tripped since `arm`; then the device stays halted until a person re-arms
   ///   it, even if the run had just ended by itself
   bool disarm();

@@ -7,7 +7,7 @@
 namespace touchtrial::device {
 namespace {
 
-/// Bins of one octave, and the width of the first ones: below it every nanosecond has its own.
+/// Bins of one octave, and the width of the first ones: below it every nanosecond has its own bin.
 constexpr std::int64_t kSteps = 32;
 constexpr int kStepBits = 5;
 
@@ -47,7 +47,7 @@ double DurationHistogram::percentile_us(double share) const noexcept {
   for (std::size_t i = 0; i < kBins; ++i) {
     below += counts_[i];
     if (static_cast<double>(below) < rank) continue;
-    // A bin holds whole nanoseconds, the last of them one before the next; the last bin has no end.
+    // The last nanosecond of a bin is one before the next bin; the last bin is unbounded.
     const std::int64_t last_ns = i + 1 == kBins ? worst_ns_ : least_of(i + 1) - 1;
     return static_cast<double>(std::min(last_ns, worst_ns_)) * 1e-3;
   }

@@ -1,4 +1,4 @@
-/// \file The last seconds of a run, tick by tick, to explain a fault afterwards.
+/// \file Records the last seconds of a run, tick by tick, to explain a fault.
 #pragma once
 
 #include "device/haptic_device.hpp"
@@ -13,13 +13,13 @@
 
 namespace touchtrial::device {
 
-/// Everything about one tick. Forces on a texture identify it, so in a blind session this is as
-/// secret as the trace.
+/// The data of one tick. Forces on a texture identify it, so in a blind session this is as secret
+/// as the trace.
 struct FlightTick {
   std::int64_t tick = 0;            ///< as ServoSample::tick
   std::chrono::nanoseconds time{};  ///< since the first tick, when this one began
   DeviceSample sample;              ///< as the servo read it
-  Vec3 requested_n;                 ///< by force source and support, after the fade
+  Vec3 requested_n;                 ///< from force source and support, after the fade
   Vec3 sent_n;                      ///< after the safety chain
   SafetyVerdict verdict = SafetyVerdict::passed;
   SafetyFault fault = SafetyFault::none;
@@ -40,7 +40,7 @@ class FlightRecorder {
 
   /// \return the ticks that it holds, oldest first
   [[nodiscard]] std::vector<FlightTick> ticks() const;
-  /// Forgets all ticks, before the next trial.
+  /// Discards all ticks, before the next trial.
   void clear() noexcept { recorded_ = 0; }
 
  private:
@@ -49,8 +49,7 @@ class FlightRecorder {
 };
 
 /// \return a header and one row per tick, by RFC 4180, with a decimal point whatever the locale;
-/// each
-///   number has the fewest digits that give it back exactly
+/// numbers have the fewest digits that round-trip exactly
 [[nodiscard]] std::string flight_csv(std::span<const FlightTick> ticks);
 
 }  // namespace touchtrial::device

@@ -1,5 +1,4 @@
-/// \file Two forces, one after the other in one run of the servo, and how the hand met each of
-///   them.
+/// \file Two forces in sequence in one run of the servo, with contact statistics of each.
 #pragma once
 
 #include "device/servo/servo.hpp"
@@ -10,27 +9,27 @@
 
 namespace touchtrial::device {
 
-/// Force source and sample sink in one. The two forces share a run because a hand that rests on a
-/// plane would fall through it at the start of a second run: the chain's small-force gate lets a
-/// force in only once the hand is off the plane (docs/safety.md). Everything is known before the
-/// run, so nothing is handed over during it. Belongs to the servo thread while a run lasts.
+/// Both force source and sample sink. The two forces share a run because a hand resting on a plane
+/// would fall through it at the start of a second run: the chain's small-force gate opens only once
+/// the hand is off the plane (docs/safety.md). Everything is known before the run, so threads
+/// exchange nothing during it. Belongs to the servo thread while a run lasts.
 class ForceSequence final : public ForceSource, public SampleSink {
  public:
   struct Part {
     std::int64_t ticks = 0;
     std::int64_t contact_ticks = 0;  ///< with a force out of the plane
-    double greatest_force_n = 0.0;   ///< that was sent
+    double greatest_force_n = 0.0;   ///< sent to the device
   };
 
-  /// \param first,second  must outlive this; the servo asks the first until the change ends, the
-  ///   second from where it begins
+  /// \param first,second  must outlive this; the servo calls the first until the change ends, the
+  ///   second from its start
   /// \param change_tick  the tick at which the change to the second begins, >= 0
   /// \param blend_ticks  duration of the change, >= 1: the second's share rises by 3 u^2 - 2 u^3
   ForceSequence(ForceSource& first, ForceSource& second, std::int64_t change_tick,
                 std::int64_t blend_ticks) noexcept
       : first_(first), second_(second), change_tick_(change_tick), blend_ticks_(blend_ticks) {}
 
-  /// After an overrun the share is that of the first tick left out; the next tick catches up.
+  /// After an overrun the share is that of the first missed tick; the next tick catches up.
   [[nodiscard]] Vec3 force_n(const DeviceSample& sample) noexcept override {
     const std::int64_t changing = tick_ - change_tick_;
     if (changing < 0) return first_.force_n(sample);
@@ -49,7 +48,7 @@ class ForceSequence final : public ForceSource, public SampleSink {
   }
 
   /// May be called from any thread.
-  /// \return whether a tick counts as the second's, which it does from the change's beginning on
+  /// \return whether a tick counts as the second's, that is, from the start of the change
   [[nodiscard]] bool is_second(std::int64_t tick) const noexcept { return tick >= change_tick_; }
 
   /// \name After the run
@@ -63,7 +62,7 @@ class ForceSequence final : public ForceSource, public SampleSink {
   ForceSource& second_;
   std::int64_t change_tick_;
   std::int64_t blend_ticks_;
-  std::int64_t tick_ = 0;  ///< the one that is asked for next
+  std::int64_t tick_ = 0;  ///< the next one
   std::array<Part, 2> parts_{};
 };
 

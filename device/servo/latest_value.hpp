@@ -1,4 +1,4 @@
-/// \file The newest of a series of values, handed from one thread to another without a lock.
+/// \file Lock-free transfer of the newest value from one thread to another.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 
 namespace touchtrial::device {
 
-/// A triple buffer for one writer and one reader, each on its own thread. Neither ever waits for
-/// the other. The reader gets the newest value, always a whole one, and may miss earlier ones.
+/// A triple buffer for one writer and one reader, each on its own thread. Neither ever blocks the
+/// other. The reader gets the newest complete value, and may miss earlier ones.
 template <typename T>
 class LatestValue {
   static_assert(std::is_trivially_copyable_v<T>, "copies must not allocate");

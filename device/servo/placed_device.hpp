@@ -1,11 +1,12 @@
-/// \file The virtual plane's place in a device's workspace, and the device as seen from the plane.
+/// \file The virtual plane's placement in a device's workspace, and an adapter of the device to the
+///   plane frame.
 #pragma once
 
 #include "device/haptic_device.hpp"
 
 namespace touchtrial::device {
 
-/// How the plane stands before the person.
+/// The orientation of the plane.
 enum class PlaneOrientation {
   horizontal,  ///< x to the right, y towards the person, z up: a table
   vertical,    ///< x to the right, y down, z towards the person: a wall
@@ -17,7 +18,7 @@ struct PlanePlacement {
   Vec3 origin_mm;  ///< the plane's top-left corner, device frame
 };
 
-/// \name Turns velocities and forces, of which only the direction matters
+/// \name Rotate velocities and forces
 ///@{
 [[nodiscard]] constexpr Vec3 to_plane_direction(Vec3 device,
                                                 PlaneOrientation orientation) noexcept {
@@ -31,8 +32,8 @@ struct PlanePlacement {
 }
 ///@}
 
-/// A device as the servo needs it: the same device in the plane frame. Lengths and magnitudes of
-/// forces stay the same. Threads as HapticDevice.
+/// Adapts a device to the plane frame, which the servo uses. Lengths and magnitudes of forces are
+/// unchanged. Threads as HapticDevice.
 class PlacedDevice final : public HapticDevice {
  public:
   /// \param device  must outlive this

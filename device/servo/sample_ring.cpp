@@ -17,7 +17,7 @@ struct SampleRing::Queue {
 SampleRing::SampleRing(std::size_t capacity) {
   if (capacity == 0) throw std::invalid_argument("SampleRing: capacity must be at least 1");
   queue_ = std::make_unique<Queue>(capacity);
-  // Touches every page now, so that the loop fetches none.
+  // Prefaults every page, so that the loop has no page faults.
   while (push({})) {
   }
   std::array<ServoSample, 256> read;

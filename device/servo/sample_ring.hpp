@@ -1,4 +1,4 @@
-/// \file The ring by which samples leave the servo's thread: one writer, one reader, no lock.
+/// \file The ring that passes samples from the servo's thread: one writer, one reader, no lock.
 #pragma once
 
 #include "device/servo/servo.hpp"
@@ -11,8 +11,8 @@
 
 namespace touchtrial::device {
 
-/// A ring of a fixed capacity between two threads. The constructor takes and touches all its
-/// memory. Neither side ever waits for the other.
+/// A ring of a fixed capacity between two threads. The constructor allocates and prefaults all its
+/// memory. Neither side ever blocks the other.
 class SampleRing {
  public:
   /// \param capacity  in samples, >= 1; 56 bytes each
@@ -29,11 +29,10 @@ class SampleRing {
   [[nodiscard]] bool push(const ServoSample& sample) noexcept;
 
   /// \name Reader's thread
-  ///@{
-  /// Takes the oldest samples out, into the first places of `into`.
+  /// @{ Moves the oldest samples to the front of `into`.
   /// \return how many
   [[nodiscard]] std::size_t pop(std::span<ServoSample> into) noexcept;
-  /// \return the number of samples that wait; more may have come since
+  /// \return the number of waiting samples, a lower bound for the reader
   [[nodiscard]] std::size_t waiting() const noexcept;
   ///@}
 
@@ -42,7 +41,7 @@ class SampleRing {
   std::unique_ptr<Queue> queue_;
 };
 
-/// Puts the servo's samples into a ring and counts those that found no room.
+/// Puts the servo's samples into a ring and counts those that did not fit.
 class RingSink final : public SampleSink {
  public:
   /// \param ring  must outlive this

@@ -1,5 +1,5 @@
-/// \file A device whose newtons or millimetres a lab has measured to be others than its driver's,
-/// and its correction. Source: docs/devices/README.md, "Force and length".
+/// \file Corrects a device whose newtons or millimetres differ from its driver's, as measured by a
+///   lab. Source: docs/devices/README.md, "Force and length".
 #pragma once
 
 #include "device/haptic_device.hpp"
@@ -10,7 +10,7 @@
 
 namespace touchtrial::device {
 
-/// \name What a scale may be
+/// \name The range of scales
 ///@{
 inline constexpr double kMinScale = 0.2;
 inline constexpr double kMaxScale = 5.0;
@@ -21,15 +21,15 @@ inline constexpr double kMaxScale = 5.0;
 [[nodiscard]] Workspace scaled(const Workspace& workspace, Vec3 length) noexcept;
 
 /// \param info  in the driver's newtons and millimetres
-/// \return the same in true ones. Limits of force, stiffness and damping hold in the driver's
-///   newtons and in true ones, whichever is stricter, in every direction.
+/// \return the same in true ones. Limits of force, stiffness and damping apply in both the driver's
+///   newtons and true ones, whichever is stricter, in every direction.
 [[nodiscard]] DeviceInfo scaled(DeviceInfo info, const DeviceScale& scale);
 
 /// \return "force_scale 1, 1.02, 1 and length_scale 1, 1, 1"
 [[nodiscard]] std::string scale_text(const DeviceScale& scale);
 
-/// Corrects a driver's readings and forces, so that everything above it, the safety chain's limits
-/// among it, means newtons as they are felt and millimetres as they are. Threads as HapticDevice.
+/// Corrects a driver's readings and forces, so that everything above it, including the safety
+/// chain's limits, uses true newtons and millimetres. Threads as HapticDevice.
 class ScaledDevice final : public HapticDevice {
  public:
   /// \param scale  every number within kMinScale and kMaxScale

@@ -18,9 +18,9 @@ namespace {
 
 constexpr double kMinRateHz = 1'000.0;
 constexpr double kMaxRateHz = 10'000.0;
-constexpr double kComfortStopS = 0.1;  ///< from the first tick that sees the request
-constexpr double kShareS = 0.1;        ///< in which the share goes from 0 to 1
-/// Forces below this are not compared with what the device says it exerted.
+constexpr double kComfortStopS = 0.1;  ///< from the first tick after the request
+constexpr double kShareS = 0.1;        ///< for a change of the share from 0 to 1
+/// Smaller forces are not compared with the device's reported force.
 constexpr double kComparedN = 0.1;
 
 double share_of(const ServoParameters& parameters) noexcept {
@@ -45,14 +45,14 @@ struct TickStart {
 template <typename Clock>
 class Pacing {
  public:
-  /// In virtual time no tick is late and nobody looks at the clock, so it does not advance.
+  /// In virtual time no tick is late and the clock is not read, so it does not advance.
   static constexpr bool kIsVirtual = std::is_same_v<Clock, VirtualClock>;
 
   Pacing(Clock& clock, double rate_hz) noexcept
       : clock_(clock), rate_hz_(rate_hz), first_(clock.now()) {}
 
   /// Waits for this tick.
-  /// \return the tick that is due then: a later one if this one was missed
+  /// \return the tick due then: a later one if this one was missed
   TickStart wait_for(std::int64_t tick) noexcept {
     if constexpr (kIsVirtual) return {tick, {}, {}};
     const ServoClock::Time due = time_of(tick);
@@ -132,9 +132,9 @@ class ServoRun {
     {
       const RealtimeRegion region;
       end = run_ticks(pacing);
-      // Where a maker's library carries the weight, a force of zero leaves the motors on.
+      // If a maker's library compensates the weight, a force of zero leaves the motors on.
       if (end == ServoEnd::fault) device_.halt();
-      // The loop has ended; a lost device takes no zero either.
+      // The loop has ended; a lost device does not accept a zero either.
       static_cast<void>(device_.write({}));
       if (hooks_.heartbeat != nullptr) {
         hooks_.heartbeat->store(kServoAtRest, std::memory_order_release);
@@ -169,7 +169,7 @@ class ServoRun {
     return std::nullopt;
   }
 
-  /// A comfort stop lasts until the slew limit has let go as well.
+  /// A comfort stop lasts until the slew limit has also reached zero.
   [[nodiscard]] std::int64_t end_of_ticks() const noexcept {
     const bool may_let_go = end_of_comfort_stop_ > end_of_fade();
     return may_let_go && safety_.sent_n() != Vec3{} ? end_of_comfort_stop_ : end_of_fade();
@@ -184,15 +184,15 @@ class ServoRun {
     if (hooks_.control->finish_asked()) fade_out(tick, ServoEnd::hand_stopped);
   }
 
-  /// Begins the fade now, if none has begun.
+  /// Starts the fade now unless one has started.
   void fade_out(std::int64_t tick, ServoEnd end) noexcept {
     if (tick >= fade_from_) return;
     fade_from_ = tick;
     end_of_fade_ = end;
   }
 
-  /// Fades from the present share, unless a fade that has begun ends sooner. The fade leaves the
-  /// slew limit the part of the 100 ms that it may need.
+  /// Fades from the current share, unless a running fade ends sooner. The fade leaves the slew
+  /// limit the time that it may need of the 100 ms.
   void stop_in_comfort(std::int64_t tick) noexcept {
     const bool fades = tick >= fade_from_;
     if (fades && end_of_fade() <= tick + comfort_ticks_) return;
@@ -216,7 +216,7 @@ class ServoRun {
     return fade_share_ * (1.0 - gone / static_cast<double>(fade_ticks_));
   }
 
-  /// All of a driver's tick and of the chain is compiled into this, if the driver is known here.
+  /// A known driver's tick and the chain are inlined into this.
   /// \return why the loop must end, or nothing
   [[gnu::flatten]] std::optional<ServoEnd> run_tick(const TickStart& start) noexcept {
     DeviceSample sample;
@@ -244,7 +244,7 @@ class ServoRun {
     return std::nullopt;
   }
 
-  /// Compares the device's report with the force of the tick before.
+  /// Compares the device's report with the force of the previous tick.
   void note_delivered(Vec3 delivered_n) noexcept {
     const Vec3 sent_n = safety_.sent_n();
     if (dot(sent_n, sent_n) < kComparedN * kComparedN) return;
@@ -274,7 +274,7 @@ class ServoRun {
     report_.contact_ticks += safe.rendered_n.z > 0.0 ? 1 : 0;
   }
 
-  /// Shows this tick to the watcher and to the flight recorder.
+  /// Publishes this tick to the observer and the flight recorder.
   void show(const TickStart& start, const DeviceSample& sample, Vec3 requested_n,
             const SafeForce& safe) noexcept {
     if constexpr (!kIsWatched) return;
@@ -313,7 +313,7 @@ template <typename Clock, typename Device>
 ServoReport run(Device& device, ForceSource& force, SampleSink& sink, const ServoOptions& options,
                 Clock& clock, const ServoHooks& hooks) {
   check(options);
-  // Nobody watches or controls a run in virtual time.
+  // A run in virtual time is neither observed nor controlled.
   constexpr bool kIsWatched = !Pacing<Clock>::kIsVirtual;
   ServoRun<kIsWatched, Device> servo(device, force, sink, options, hooks);
   return servo.run(Pacing<Clock>(clock, options.rate_hz));

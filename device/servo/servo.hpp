@@ -20,21 +20,21 @@ constexpr std::chrono::nanoseconds kServoTick{1'000'000};
 constexpr double kServoRateHz = 1000.0;
 constexpr double kServoTickS = 1.0 / kServoRateHz;
 
-/// Gives the servo its forces. Called on the servo thread: no heap, lock, log or I/O.
+/// Computes the servo's forces. Called on the servo thread: no heap, lock, log or I/O.
 class ForceSource {
  public:
   virtual ~ForceSource() = default;
   /// \return the force on the hand in this state, N, in the plane frame
   [[nodiscard]] virtual Vec3 force_n(const DeviceSample& sample) noexcept = 0;
-  /// Asked after each force: whether the run is to end, with a fade, as if the hand were done.
+  /// Called after each force: whether the run is to end, with a fade, as if the hand were done.
   [[nodiscard]] virtual bool is_done() const noexcept { return false; }
 };
 
-/// One tick: where the stylus was, and the force that was sent.
+/// One tick: the stylus' position, and the sent force.
 struct ServoSample {
   Vec3 position_mm;
   Vec3 force_n;           ///< without the device's support (HapticDevice::support_force_n)
-  std::int64_t tick = 0;  ///< place in time since plane-on; an overrun leaves out numbers
+  std::int64_t tick = 0;  ///< time since plane-on in ticks; overruns skip numbers
 };
 
 /// Receives the samples. Called on the servo thread, so it reserves room for all of them in
@@ -50,7 +50,7 @@ struct ServoOptions {
   std::int64_t limit_ticks = 60'000;
   /// Ticks in which the force fades to zero when time is up, >= 0; recorded like the others.
   std::int64_t fade_ticks = 100;
-  /// The device's own maximum and continuous force hold as well.
+  /// The device's own maximum and continuous force also apply.
   SafetyLimits limits{};
   double rate_hz = kServoRateHz;  ///< 1,000 to 10,000
 };
@@ -59,12 +59,12 @@ struct ServoOptions {
 enum class ServoEnd {
   hand_stopped,  ///< the hand is done, by the device or by ServoControl::finish
   time_limit,    ///< time was up, and the force has faded
-  comfort_stop,  ///< a person asked for it, and the force has faded
+  comfort_stop,  ///< requested by a person; the force has faded
   fault,         ///< see SafetyFault
 };
 
-/// How late ticks began, from a DurationHistogram. A tick after others that were left out counts
-/// from the first of those, so the worst shows how long the loop stood still.
+/// The lateness of ticks, from a DurationHistogram. A tick after missed ones counts from the first
+/// of those, so the worst shows how long the loop stalled.
 struct Lateness {
   double p50_us = 0.0;
   double p99_us = 0.0;
@@ -79,18 +79,18 @@ struct ServoReport {
   std::int64_t ticks = 0;          ///< recorded samples
   std::int64_t limited_ticks = 0;  ///< changed by the safety chain, or by the device's own limits
   std::int64_t contact_ticks = 0;  ///< with a force out of the plane
-  std::int64_t overruns = 0;       ///< ticks left out because the loop stood still too long
-  double force_limit_n = 0.0;      ///< in force: the smaller of the options' and the device's
+  std::int64_t overruns = 0;       ///< ticks missed because the loop stalled
+  double force_limit_n = 0.0;  ///< the applied limit: the smaller of the options' and the device's
   /// Measured from the first tick to the last; 0 with fewer than two ticks. In virtual time, that
   /// of the options.
   double rate_hz = 0.0;
   Lateness lateness;  ///< zeros in virtual time
-  /// The share of the commanded force that the device says it exerted (DeviceSample::delivered_n):
-  /// the factor that explains its reports best, over ticks with at least 0.1 N; 0: it says nothing.
+  /// The share of the commanded force that the device reports (DeviceSample::delivered_n): the
+  /// best-fitting factor over ticks with at least 0.1 N; 0: no reports.
   double delivered_share = 0.0;
 };
 
-/// What a watcher sees of the loop.
+/// The loop's state for an observer.
 struct ServoState {
   DeviceSample sample;
   Vec3 force_n;  ///< as sent, without the device's support
@@ -102,13 +102,13 @@ struct ServoState {
 class DurationHistogram;
 class FlightRecorder;
 
-/// The heat in the motors of one device, from run to run: they do not cool because a trial is over.
+/// The motors' heat of one device, carried from run to run.
 struct MotorHeat {
   double heat_n2 = 0.0;     ///< ThermalBudget::heat_n2 when the last run ended
   ServoClock::Time when{};  ///< that moment, on the clock of the runs
 };
 
-/// What other threads may change while the servo runs.
+/// Parameters that other threads may change while the servo runs.
 struct ServoParameters {
   /// Factor of every force, in [0, 1]; a value outside counts as the nearer end, NaN as 0. The
   /// servo follows it within 100 ms, without a step.
@@ -118,35 +118,35 @@ struct ServoParameters {
 /// The heartbeat outside of a run.
 inline constexpr std::int64_t kServoAtRest = -1;
 
-/// Objects of other threads that watch or control the loop; null: none.
+/// Objects of other threads that observe or control the loop; null: none.
 struct ServoHooks {
   ServoControl* control = nullptr;
   LatestValue<ServoState>* state = nullptr;  ///< set every tick, for one reader
   /// Counts ticks, for a Watchdog; kServoAtRest once the run has ended.
   std::atomic<std::int64_t>* heartbeat = nullptr;
-  FlightRecorder* recorder = nullptr;     ///< takes every tick, that of a fault included
+  FlightRecorder* recorder = nullptr;     ///< records every tick, including that of a fault
   DurationHistogram* lateness = nullptr;  ///< this run's ticks are added to it at the end
   MotorHeat* heat = nullptr;              ///< read at the beginning, written at the end
-  /// Read as a whole at every tick; one writer.
+  /// Read atomically at every tick; one writer.
   LatestValue<ServoParameters>* parameters = nullptr;
 };
 
-/// Runs the loop until it ends. Tick i is due i / rate_hz after the first. A loop that is so late
-/// that the next tick is due as well leaves out the ticks that it missed, so that they never come
-/// in a burst. Every force goes through the safety chain; the last one written is zero, and after a
-/// fault the device is halted. No allocation, lock or exception inside the loop. Blocks: the
-/// calling thread becomes the servo's.
+/// Runs the loop until it ends. Tick i is due i / rate_hz after the first. A loop that is late by a
+/// tick or more skips the missed ticks, so that they never come in a burst. Every force goes
+/// through the safety chain; the last one written is zero, and after a fault the device is halted.
+/// No allocation, lock or exception inside the loop. Blocks: the calling thread becomes the
+/// servo's.
 /// \throws std::invalid_argument before the first tick if an option is out of its range
 [[nodiscard]] ServoReport run_servo(HapticDevice& device, ForceSource& force, SampleSink& sink,
                                     const ServoOptions& options, ServoClock& clock,
                                     const ServoHooks& hooks = {});
 
-/// The same in virtual time, as fast as the processor goes; no tick is late.
+/// The same in virtual time, as fast as possible; no tick is late.
 /// \throws std::invalid_argument as run_servo
 [[nodiscard]] ServoReport run_servo_in_virtual_time(HapticDevice& device, ForceSource& force,
                                                     SampleSink& sink, const ServoOptions& options);
 
-/// \name What files and reports call the states of the servo: lower case, with underscores
+/// \name Names of the servo's states in files and reports: lower case, with underscores
 ///@{
 [[nodiscard]] std::string_view name_of(ServoEnd end) noexcept;
 /// The names of a report's faults: "device (link_lost)", or "none".

@@ -1,5 +1,4 @@
-/// \file The clock that paces the servo. The loop asks nothing else for the time, so that tests own
-/// it.
+/// \file The clock that paces the servo. The loop uses no other clock, so that tests control time.
 #pragma once
 
 #include "device/platform/realtime.hpp"
@@ -8,7 +7,7 @@
 
 namespace touchtrial::device {
 
-/// Monotonic time since any fixed moment. Belongs to the servo thread.
+/// Monotonic time since some fixed moment. Belongs to the servo thread.
 class ServoClock {
  public:
   using Time = std::chrono::nanoseconds;
@@ -19,7 +18,7 @@ class ServoClock {
   virtual void wait_until(Time time) noexcept = 0;
 };
 
-/// Time that goes as fast as the processor: to wait for a time is to be there.
+/// Virtual time: waiting for a time sets it.
 class VirtualClock final : public ServoClock {
  public:
   [[nodiscard]] Time now() noexcept override { return now_; }
@@ -35,8 +34,8 @@ class VirtualClock final : public ServoClock {
 /// deadline and spins for the rest.
 class PacedClock final : public ServoClock {
  public:
-  /// \return the spin that suits a thread's policy: a real-time thread can afford to outlast most
-  ///   late wake-ups, an ordinary one that spins for long loses its turn sooner
+  /// \return the spin that suits a thread's policy: a real-time thread can spin longer than most
+  ///   late wake-ups, while an ordinary thread that spins for long is preempted
   [[nodiscard]] static Time usual_spin(SchedulingPolicy policy) noexcept {
     return std::chrono::microseconds(policy == SchedulingPolicy::fifo ? 150 : 50);
   }

@@ -6,24 +6,23 @@
 
 namespace touchtrial::device {
 
-/// Requests to one run of the servo. Any thread and any signal handler may call every function;
-/// none waits. A request holds until `reset`.
+/// Requests to one run of the servo. All functions are thread-safe, async-signal-safe and
+/// non-blocking. A request persists until `reset`.
 class ServoControl {
  public:
-  /// The person is done: the force fades as it does when time is up; the run ends as hand_stopped.
+  /// The person is done: the force fades as at the time limit; the run ends as hand_stopped.
   void finish() noexcept { ask(kFinish); }
   /// The force goes to zero within 100 ms, without a step; the run ends as comfort_stop.
   void comfort_stop() noexcept { ask(kComfortStop); }
-  /// Zero from the next tick on; the run ends as a fault.
+  /// Zero force from the next tick on; the run ends with a fault.
   void emergency_stop() noexcept { ask(kEmergencyStop); }
   /// The servo stopped ticking (Watchdog): like an emergency stop, but the run ends as stalled.
   void stall() noexcept { ask(kStall); }
-  /// To be called before a new run: forgets every request. Nothing else cancels an emergency stop
-  /// or a stall.
+  /// Call before a new run: clears all requests. Only this cancels an emergency stop or a stall.
   void reset() noexcept { requests_.store(0, std::memory_order_release); }
-  /// To be called before a new run: forgets all requests except an emergency stop and a stall, so
-  /// that one of these is not lost if it arrives at this very moment.
-  void forget_wishes() noexcept {
+  /// Call before a new run: clears all requests except an emergency stop and a stall, so that one
+  /// arriving at this moment is not lost.
+  void clear_requests() noexcept {
     requests_.fetch_and(kEmergencyStop | kStall, std::memory_order_acq_rel);
   }
 

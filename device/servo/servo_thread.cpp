@@ -11,7 +11,7 @@ namespace touchtrial::device {
 struct ServoThread::State {
   using Work = std::packaged_task<void()>;
 
-  /// The thread itself: does work until `end`.
+  /// The thread's main function: does work until `end`.
   void serve(const SchedulingRequest& request, std::promise<SchedulingObtained> scheduled) {
     scheduled.set_value(request_scheduling(request));
     for (Work work = next(); work.valid(); work = next()) work();
@@ -89,11 +89,11 @@ RunningServo::RunningServo(ServoThread& thread, ServoControl& control, std::func
   auto promise = std::make_shared<std::promise<void>>();
   ended_ = promise->get_future();
   thread_.start([work = std::move(work), promise = std::move(promise)] {
-    struct EndTeller {  // also if the work throws
+    struct EndNotifier {  // also if the work throws
       std::promise<void>& promise;
-      ~EndTeller() { promise.set_value(); }
+      ~EndNotifier() { promise.set_value(); }
     };
-    const EndTeller teller{*promise};
+    const EndNotifier notifier{*promise};
     work();
   });
 }
@@ -103,7 +103,7 @@ RunningServo::~RunningServo() {
   control_.emergency_stop();
   try {
     finish();
-  } catch (...) {  // Another exception is on its way.
+  } catch (...) {  // another exception is propagating
   }
 }
 

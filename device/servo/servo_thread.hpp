@@ -1,5 +1,4 @@
-/// \file The thread on which a device's servo runs, and a run on it while another thread attends to
-/// the person.
+/// \file The servo's thread, and a run on it while another thread serves the user.
 #pragma once
 
 #include "device/platform/realtime.hpp"
@@ -12,13 +11,13 @@
 
 namespace touchtrial::device {
 
-/// A thread that requests real-time scheduling once, when it is made, and then runs one piece of
-/// work after another: every trial of a session. All functions belong to the thread that made it.
+/// A thread that requests real-time scheduling once and then runs work items in sequence: every
+/// trial of a session. All functions belong to the thread that created it.
 class ServoThread {
  public:
   /// Returns once the thread has its scheduling.
   explicit ServoThread(const SchedulingRequest& request = {});
-  /// Waits for the work to end. An exception that it ended with is lost.
+  /// Waits for the work to end. Its exception, if any, is lost.
   ~ServoThread();
   ServoThread(const ServoThread&) = delete;
   ServoThread& operator=(const ServoThread&) = delete;
@@ -27,11 +26,11 @@ class ServoThread {
   [[nodiscard]] const SchedulingObtained& scheduling() const noexcept;
 
   /// Runs this on the thread and returns at once.
-  /// \throws std::logic_error if work is running that nobody has waited for
+  /// \throws std::logic_error if previous work was not waited for
   void start(std::function<void()> work);
   /// \return whether work is running. False does not replace `wait`.
   [[nodiscard]] bool running() const noexcept;
-  /// Waits for the work to end and throws what it threw. Returns at once if there is none.
+  /// Waits for the work to end and rethrows its exception. Returns at once without work.
   void wait();
   /// `start` and `wait`.
   void run(std::function<void()> work);
@@ -41,9 +40,9 @@ class ServoThread {
   std::unique_ptr<State> state_;
 };
 
-/// One run on a ServoThread, in a scope. However the scope is left, also by an exception of the
-/// thread that attends, the force is off and the thread at rest before anything that the run uses
-/// is destroyed. Belongs to the thread that made it.
+/// One run on a ServoThread, as a scope. However the scope is left, even by an exception, the force
+/// is off and the thread idle before objects of the run are destroyed. Belongs to the thread that
+/// created it.
 class RunningServo {
  public:
   /// \param thread,control  must outlive this; the control is that of the run's ServoHooks
@@ -55,10 +54,10 @@ class RunningServo {
   RunningServo(const RunningServo&) = delete;
   RunningServo& operator=(const RunningServo&) = delete;
 
-  /// \param patience  how long to wait for the end
+  /// \param patience  timeout
   /// \return whether it still runs
   [[nodiscard]] bool runs(std::chrono::nanoseconds patience = {}) const;
-  /// Waits for the end and throws what the work threw. Call it once.
+  /// Waits for the end and rethrows the work's exception. Call it once.
   void finish();
 
  private:

@@ -1,4 +1,4 @@
-/// \file The velocity of a hand from a driver's own readings of its position.
+/// \file Estimates a hand's velocity from a driver's position readings.
 #pragma once
 
 #include "core/vec.hpp"
@@ -10,22 +10,20 @@
 
 namespace touchtrial::device {
 
-/// The slope of the straight line that fits the newest positions best, by least squares over the
-/// times of their arrival.
+/// The slope of the least-squares line through the newest positions, by arrival time.
 ///
-/// The difference of two readings moves in whole steps of the encoder over the time between them.
-/// The line over n readings at an interval T has a lag of (n - 1) T / 2, and noise of
-/// sqrt(12 / (n^3 - n)) times that of one reading, divided by T. Nothing here allocates or throws.
-/// Not thread-safe.
+/// The difference of two readings is quantised to encoder steps. The line over n readings at an
+/// interval T has a lag of (n - 1) T / 2, and noise of sqrt(12 / (n^3 - n)) times that of one
+/// reading, divided by T. Nothing here allocates or throws. Not thread-safe.
 /// \tparam kReadings  n, >= 2
 template <std::size_t kReadings>
 class VelocityEstimate {
  public:
   using Time = std::chrono::nanoseconds;
-  /// The age at which a reading says nothing about the present velocity.
+  /// Readings older than this are ignored.
   static constexpr Time kMemory = std::chrono::milliseconds(50);
 
-  /// \param at  never earlier than in the last call
+  /// \param at  not earlier than in the last call
   /// \return the velocity with this position, mm/s; zero from fewer than two readings
   [[nodiscard]] Vec3 add(Vec3 position_mm, Time at) noexcept {
     drop_old(at);
@@ -36,7 +34,7 @@ class VelocityEstimate {
     readings_[count_++] = {position_mm, at};
     return slope_mm_s();
   }
-  /// Returns to the state before the first reading.
+  /// Resets to the state before the first reading.
   void forget() noexcept { count_ = 0; }
 
  private:
@@ -54,7 +52,7 @@ class VelocityEstimate {
     count_ = static_cast<std::size_t>(end - kept);
   }
   [[nodiscard]] Vec3 slope_mm_s() const noexcept {
-    // Times from the newest reading, so that they stay small and exact.
+    // Times relative to the newest reading, so that they are small and exact.
     const Reading& newest = readings_[count_ - 1];
     double mean_s = 0.0;
     Vec3 mean_mm;

@@ -1,4 +1,4 @@
-/// \file A picture made ready for a Fourier transform. Private to engine.
+/// \file Prepares a picture for a Fourier transform. Private to engine.
 #pragma once
 
 #include "core/plane.hpp"

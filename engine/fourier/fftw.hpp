@@ -1,4 +1,4 @@
-/// \file FFTW's two libraries behind one name, and plans that are made together and kept. Private to
+/// \file A common interface to FFTW's two libraries, and cached groups of plans. Private to
 /// engine/fourier.
 #pragma once
 
@@ -62,7 +62,7 @@ inline std::mutex& planner_mutex() {
   return mutex;
 }
 
-/// Whether FFTW lacked memory once: its planner was left in the middle then, and plans no more.
+/// Whether FFTW once lacked memory; its planner state is then inconsistent and must not be used.
 inline std::atomic<bool>& lacked_memory() {
   static std::atomic<bool> lacked{false};
   return lacked;
@@ -95,9 +95,9 @@ template <typename Real>
   return reinterpret_cast<typename Fftw<Real>::Complex*>(numbers);
 }
 
-/// Plans that belong together, for any buffers of FftwBuffer. Those of up to 4096 samples take
-/// longer to make than to execute, so they are kept for reuse: a new sense of touch, for instance,
-/// is created for every exploration.
+/// A group of plans, for any buffers of FftwBuffer. Plans of up to 4096 samples take longer to make
+/// than to execute, so they are cached: a new sense of touch, for instance, is created for every
+/// exploration.
 template <typename Real>
 class FftwPlans {
  public:

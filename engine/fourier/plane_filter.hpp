@@ -53,8 +53,8 @@ template <typename Real>
 /// transformed together, as real and imaginary part of one. Real is float or double.
 ///
 /// Threads: different blocks of columns, and different pairs of rows, may be worked on at the same
-/// time, but not rows beside columns. Blocks have one size and all blocks one plan, so the digits
-/// do not depend on who does what.
+/// time, but not rows beside columns. Blocks have one size and all blocks one plan, so results do
+/// not depend on the assignment of threads.
 template <typename Real>
 class PlaneFilter {
  public:

@@ -55,8 +55,8 @@ void RealFft<Real>::inverse() {
                            state_->plane.data());
 }
 
-// FFTW's libraries call these, in place of their own of the same names, where they find no memory
-// to plan or to execute. Their own end the program.
+// They replace functions of the same names in FFTW's libraries, which call them when out of memory.
+// The originals terminate the program.
 extern "C" [[gnu::visibility("default")]] void fftw_assertion_failed(const char* /*what*/,
                                                                      int /*line*/,
                                                                      const char* /*file*/) {

@@ -7,7 +7,7 @@
 
 namespace touchtrial::engine {
 
-/// Where an error handler jumps to, and its message.
+/// The jump target of an error handler, and its message.
 struct Escape {
   std::jmp_buf back;
   std::array<char, 200> complaint{};

@@ -12,8 +12,8 @@
 namespace touchtrial::engine {
 namespace {
 
-/// A file in memory that stb_image reads byte by byte. It continues after the end of a file with
-/// zeros; the attempt is noted.
+/// A file in memory that stb_image reads byte by byte. After the end of the file it returns zeros;
+/// the attempt is recorded.
 struct ByteStream {
   ByteView left;
   bool ended = false;
@@ -22,7 +22,7 @@ struct ByteStream {
 int stream_bytes(void* user, char* to, int count) {
   auto& stream = *static_cast<ByteStream*>(user);
   const std::size_t taken = std::min(stream.left.size(), static_cast<std::size_t>(count));
-  // It asks for more than it needs, but only when it needs some.
+  // It requests more than it needs, but only when it needs data.
   if (taken == 0) stream.ended = true;
   std::memcpy(to, stream.left.data(), taken);
   stream.left = stream.left.subspan(taken);
@@ -69,7 +69,7 @@ GreyImage read_with_stb(ByteView file, GreyScale& scale) {
   return image;
 }
 
-/// Walks through the blocks of a GIF. Source: GIF89a.
+/// Iterates over the blocks of a GIF. Source: GIF89a.
 class GifBlocks {
  public:
   explicit GifBlocks(ByteView file) : file_(file) {

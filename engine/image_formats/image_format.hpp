@@ -1,5 +1,5 @@
-/// \file The readers of all kinds of pictures, and what they share: faults, numbers in files, and
-/// the conversion of samples to 8-bit grey. Source of the conversion: docs/method.md, "Images".
+/// \file The readers of all kinds of pictures, and their shared parts: faults, numbers in files,
+///   and conversion of samples to 8-bit grey. Source of the conversion: docs/method.md, "Images".
 #pragma once
 
 #include "core/bytes.hpp"
@@ -22,7 +22,7 @@ namespace touchtrial::engine {
 enum class ImageKind { png, jpeg, tiff, bmp, gif, pnm };
 
 /// Recognises a picture by the first bytes of its file.
-/// \throws ImageFault if it is a picture of an unsupported kind, or no picture
+/// \throws ImageFault if it is a picture of an unsupported kind, or not a picture
 [[nodiscard]] ImageKind kind_of_image(ByteView file);
 
 class GreyScale;
@@ -50,14 +50,14 @@ class GreyScale;
 [[nodiscard]] Bytes png_of_samples(int height, int width, int channels,
                                    std::span<const std::uint8_t> samples);
 
-/// What is wrong with a picture. The caller adds the file's name.
+/// A fault of a picture. The caller adds the file's name.
 struct ImageFault {
   std::string what;    ///< the rest of a sentence that starts with the file's name
   std::string remedy;  ///< what the user can do
 };
 
 [[noreturn]] void throw_truncated_image();
-/// \param complaint  of the library; may be empty
+/// \param complaint  the library's message; may be empty
 [[noreturn]] void throw_damaged_image(const std::string& complaint);
 [[noreturn]] void throw_unsupported_image(const std::string& what);
 
@@ -118,25 +118,26 @@ enum class ByteOrder { little, big };
   return static_cast<std::uint8_t>((299U * red + 587U * green + 114U * blue + 500U) / 1000U);
 }
 
-/// What the second channel of grey, or the fourth of colour, is.
+/// The meaning of the second channel of grey, or the fourth of colour.
 enum class Alpha {
   straight,    ///< opacity; the pixel is composited on black
-  multiplied,  ///< opacity by which the colours are multiplied already
+  multiplied,  ///< opacity, with premultiplied colours
   none,        ///< something else
 };
 
-/// How many samples of a scale of 0 to 65535 take how many bits.
+/// A histogram of 16-bit samples by number of bits.
 class WideSamples {
  public:
   void add(std::uint32_t sample) noexcept {
     ++of_bits_[static_cast<std::size_t>(std::bit_width(sample))];
   }
-  /// How many do not fit into so many bits.
+  /// The number of samples that need more than this many bits.
   [[nodiscard]] std::uint64_t above(int bits) const noexcept {
     return std::accumulate(of_bits_.begin() + bits + 1, of_bits_.end(), std::uint64_t{0});
   }
   [[nodiscard]] std::uint64_t count() const noexcept { return of_bits_[0] + above(0); }
-  /// The bits that they take, but for one in a thousand at most: hot pixels of a camera take all.
+  /// The number of bits used, except by at most one sample in a thousand, because hot pixels use
+  /// all bits.
   [[nodiscard]] int bits() const noexcept {
     int bits = 16;
     while (bits > 0 && above(bits - 1) * 1000 <= count()) --bits;
@@ -147,7 +148,7 @@ class WideSamples {
   std::array<std::uint64_t, 17> of_bits_{};
 };
 
-/// Makes 8-bit grey of the samples of one picture, and notes what that loses.
+/// Converts the samples of one picture to 8-bit grey, and records the loss.
 class GreyScale {
  public:
   explicit GreyScale(const SampleScale& samples) noexcept
@@ -168,8 +169,7 @@ class GreyScale {
   template <typename Sample>
   [[nodiscard]] std::uint8_t grey_of(const Sample* pixel, int channels, Alpha alpha) noexcept {
     const bool has_alpha = channels % 2 == 0 && alpha != Alpha::none;
-    // Files of few bits have an opacity of 16 bits all the same, which tells nothing of the
-    // colours.
+    // Opacity may have 16 bits even with fewer bits of colour, so it does not count.
     std::uint32_t opacity = has_alpha ? to_8_bit(pixel[channels - 1]) : 255U;
     if (opacity < 255U) ++transparent_;
     if (shows_opacity_) return opacity < 255U ? 0 : 255;
@@ -189,7 +189,7 @@ class GreyScale {
     }
   }
 
-  /// In place of what was noted, where the samples were inverted first.
+  /// Replaces the histogram if the samples were inverted first.
   void set_wide(const WideSamples& samples) noexcept { wide_ = samples; }
 
   [[nodiscard]] int bits() const noexcept { return bits_; }

@@ -63,7 +63,7 @@ bool is_baseline_or_progressive(std::uint32_t marker) {
 
 /// Whether a segment only has metadata: profiles, thumbnails, orientation. JFIF and Adobe segments
 /// are kept, because they define the meaning of the channels.
-bool is_note(std::uint32_t marker) {
+bool is_metadata(std::uint32_t marker) {
   return marker == kComment || (marker > kApp0 && marker <= kApp15 && marker != kApp14);
 }
 
@@ -98,7 +98,7 @@ std::size_t end_of_scan_data(ByteView file, std::size_t at) {
   }
 }
 
-/// Walks through the segments and copies those that affect pixels.
+/// Iterates over the segments and copies those that affect pixels.
 class Walk {
  public:
   explicit Walk(ByteView file) : file_(file) { copy(0, 2); }
@@ -136,8 +136,8 @@ class Walk {
   [[nodiscard]] bool lacks_end() const noexcept { return lacks_end_; }
 
  private:
-  /// Some programs leave the end marker out. One scan of all channels then has every block, or
-  /// libjpeg complains about the first that is missing.
+  /// Some programs omit the end marker. One scan of all channels then has every block, or libjpeg
+  /// reports the first missing one.
   [[nodiscard]] bool is_whole_without_end() const {
     return scans_ == 1 && !frame_.progressive && channels_of_scan_ == frame_.channels;
   }
@@ -150,7 +150,7 @@ class Walk {
       if (frame_.width != 0) throw_truncated_image();
       frame_ = read_frame(marker, whole.subspan(2));
     }
-    if (!is_note(marker)) copy(at_, size);
+    if (!is_metadata(marker)) copy(at_, size);
     at_ += size;
     if (marker != kScan) return;
     channels_of_scan_ = number_at(whole, 4, 1, ByteOrder::big);

@@ -87,7 +87,7 @@ bool is_critical(std::string_view type) {
 }
 
 /// The file without colour profiles, gamma, texts and notes. libpng sees only this.
-Bytes what_decides_pixels(ByteView file) {
+Bytes pixel_chunks(ByteView file) {
   const PngHeader header = read_png_header(file);
   Bytes kept(file.begin(), file.begin() + kSignatureSize);
   std::uint64_t packed_bytes = 0;
@@ -199,7 +199,7 @@ void give_bytes(png_structp png, png_bytep from, std::size_t count) {
   if (!fits) png_error(png, "no memory is left");
 }
 
-void flush_nothing(png_structp /*png*/) {}
+void no_flush(png_structp /*png*/) {}
 
 }  // namespace
 
@@ -209,7 +209,7 @@ std::pair<int, int> size_of_png(ByteView file) {
 }
 
 GreyImage read_png(ByteView file, GreyScale& scale) {
-  const Bytes kept = what_decides_pixels(file);
+  const Bytes kept = pixel_chunks(file);
   return PngDecoder(kept, scale).read();
 }
 
@@ -222,7 +222,7 @@ Bytes png_of_samples(int height, int width, int channels, std::span<const std::u
     png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &escape, leave, stay_silent);
     info = png == nullptr ? nullptr : png_create_info_struct(png);
     if (info == nullptr) escape.leave("libpng has no memory or another version");
-    png_set_write_fn(png, &file, give_bytes, flush_nothing);
+    png_set_write_fn(png, &file, give_bytes, no_flush);
     // Filtered rows and zlib's best compression, because textures compress poorly.
     png_set_compression_level(png, Z_BEST_COMPRESSION);
     png_set_compression_strategy(png, Z_FILTERED);

@@ -84,7 +84,7 @@ std::uint32_t next_sample(Scanner& scanner, const Samples& samples, GreyScale& s
                          ", above its stated maximum of " + std::to_string(samples.maximum),
                      "export it again"};
   }
-  // A file of 12 bits may say so by its maximum, or leave it at 16 bits.
+  // A file of 12 bits may state that as its maximum, or state 16 bits.
   if (samples.maximum == kMaxSample) {
     return scale.level_of(static_cast<std::uint16_t>(sample));
   }

@@ -216,7 +216,7 @@ void require_same_view(TIFF* tiff, const TiffDirectory& directory, const Layout&
   }
 }
 
-/// A file in memory, and the first complaint of libtiff about it.
+/// A file in memory, and libtiff's first message about it.
 struct Source {
   ByteView file;
   std::size_t at = 0;
@@ -241,7 +241,7 @@ tmsize_t take_bytes(thandle_t handle, void* to, tmsize_t count) {
   return static_cast<tmsize_t>(taken);
 }
 
-tmsize_t give_nothing(thandle_t /*handle*/, void* /*from*/, tmsize_t /*count*/) {
+tmsize_t refuse_write(thandle_t /*handle*/, void* /*from*/, tmsize_t /*count*/) {
   return 0;
 }
 
@@ -272,7 +272,7 @@ void leave_mapped(thandle_t /*handle*/, void* /*start*/, toff_t /*size*/) {}
 
 constexpr int kHandled = 1;
 
-/// Keeps the first complaint.
+/// Stores the first message.
 [[gnu::format(printf, 4, 0)]] int keep_error(TIFF* /*tiff*/, void* handle, const char* module,
                                              const char* format, va_list values) {
   auto& complaint = source_of(handle).complaint;
@@ -306,7 +306,7 @@ TiffFile opened(Source& source, std::size_t directory) {
   TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), kMaxBlock);
   TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_error, &source);
   TIFFOpenOptionsSetWarningHandlerExtR(options.get(), weigh_warning, &source);
-  TiffFile tiff(TIFFClientOpenExt("picture", "rch", &source, take_bytes, give_nothing, move_to,
+  TiffFile tiff(TIFFClientOpenExt("picture", "rch", &source, take_bytes, refuse_write, move_to,
                                   leave_open, size_of_file, map_file, leave_mapped, options.get()),
                 TIFFClose);
   if (!tiff || TIFFSetSubDirectory(tiff.get(), directory) == 0) {
@@ -410,8 +410,8 @@ GreyImage read_samples(TIFF* tiff, const Source& source, const Layout& layout, c
   return image;
 }
 
-/// Refuses heights that stand for none: NaN, infinite, of a size that no specimen has, or what the
-/// file itself calls a gap, which programs write with six digits or more.
+/// Refuses heights that mark missing values: NaN, infinite, implausibly large, or the file's own
+/// no-data value, which programs write with six digits or more.
 template <typename Real>
 void refuse_gaps(std::span<const Real> heights, std::optional<double> gap) {
   constexpr double kLargest = 1e30;
@@ -428,7 +428,7 @@ void refuse_gaps(std::span<const Real> heights, std::optional<double> gap) {
 }
 
 /// Reads heights, and makes grey levels of the range that is given, or of their own.
-/// \param gap  the height that stands for none
+/// \param gap  the no-data value
 template <typename Real>
 GreyImage read_heights(TIFF* tiff, const Source& source, const Layout& layout, const Pieces& pieces,
                        std::optional<double> gap, const GreyScale& scale, ImageNotes& notes) {

@@ -95,7 +95,7 @@ std::optional<double> TiffDirectory::fraction(TiffTag tag) const {
 }
 
 TiffPictures pictures_of_tiff(ByteView file) {
-  constexpr int kMaxDirectories = 10'000;  // ends a chain that bites its own tail
+  constexpr int kMaxDirectories = 10'000;  // ends a cyclic chain
   TiffDirectory directory(file);
   TiffPictures pictures{directory.start(), 0};
   try {

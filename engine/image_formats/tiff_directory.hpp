@@ -62,7 +62,7 @@ class TiffDirectory {
   /// All values of an entry (BYTE, SHORT or LONG); none if it is absent or of another type.
   /// \throws ImageFault if they are truncated
   [[nodiscard]] std::vector<std::uint32_t> values(TiffTag tag) const;
-  /// The characters of an ASCII entry but for NUL and blanks; none if it is absent.
+  /// The characters of an ASCII entry without NUL and blanks; empty if it is absent.
   /// \throws ImageFault if they are truncated
   [[nodiscard]] std::string text(TiffTag tag) const;
   /// The first value of an entry, or `otherwise`.

@@ -46,8 +46,8 @@ void fill_flat(Extraction<float>& result) {
   std::ranges::fill(result.picture.samples(), std::uint8_t{128});
 }
 
-/// Clears what an extraction by another method may have left.
-void forget_other_methods(Extraction<float>& result) {
+/// Clears results of a previous extraction by another method.
+void clear_other_methods(Extraction<float>& result) {
   result.cartoon = {};
   result.components.clear();
   result.gap = 0.0;
@@ -134,7 +134,7 @@ void second_pass(const GreyImage& image, int radius, const HalfGradient& gradien
 
 void extract_adaptive(const GreyImage& image, int radius, const WantedPlanes& wanted,
                       Extraction<float>& result) {
-  forget_other_methods(result);
+  clear_other_methods(result);
   for (Plane<float>* const plane : sub_bands_of(result)) {
     if (!wanted.sub_bands) *plane = {};
   }
@@ -154,7 +154,7 @@ void extract_adaptive(const GreyImage& image, int radius, const WantedPlanes& wa
 
 void extract_fixed(const GreyImage& image, int radius, double order, const WantedPlanes& wanted,
                    Extraction<float>& result) {
-  forget_other_methods(result);
+  clear_other_methods(result);
   for (Plane<float>* const plane : sub_bands_of(result)) *plane = {};
   result.csgv = {};
   reshape_if(wanted.order, result.order, image);

@@ -202,7 +202,7 @@ HWY_INLINE void texture_row(const ExtendedRows& rows, int radius, const Orders& 
   Workspace work;
   for (int x0 = 0; x0 < rows.width(); x0 += kTile) {
     const Tile tile{x0, std::min(kTile, rows.width() - x0)};
-    if (radius == 2) {  // the usual radius has code of its own
+    if (radius == 2) {  // specialised for the usual radius
       sum_columns_of_two(rows, tile, work);
       texture_tile<2>(work, rows.row(0), radius, tile, orders, texture);
     } else {

@@ -19,8 +19,8 @@ class HalfGradient {
  public:
   /// \param image  not empty
   /// \param room  a plane of the image's shape, which is overwritten. Two rows of a tile of it
-  ///   (for_each_tile) belong to each row of CSGV there, and nothing else is kept
-  ///   there: who has read row(y, tile) may write rows 2 y and 2 y + 1 of the tile. Must outlive
+  ///   (for_each_tile) belong to each row of CSGV there, and nothing else is stored there: after
+  ///   reading row(y, tile), rows 2 y and 2 y + 1 of the tile may be overwritten. Must outlive
   ///   this.
   HalfGradient(const GreyImage& image, Plane<float>& room);
 

@@ -1,4 +1,4 @@
-/// \file Asks for rows of a large plane before they are needed.
+/// \file Prefetches rows of a large plane.
 ///
 /// Processors look ahead within a page of memory, and a row of a large picture is a page or more.
 #pragma once

@@ -1,5 +1,5 @@
-/// \file Strips of a picture's rows, for kernels that use all cores on one large picture, and tiles of
-/// its columns, whose rows stay in the first-level cache.
+/// \file Strips of a picture's rows, for kernels that use all cores on one large picture, and tiles
+/// of its columns, whose rows stay in the first-level cache.
 #pragma once
 
 #include "core/parallel.hpp"
@@ -23,7 +23,7 @@ struct Columns {
   [[nodiscard]] int count() const noexcept { return last - first; }
 };
 
-/// From this size on a picture is worth several threads: a megapixel takes half a millisecond.
+/// From this size on several threads pay off: a megapixel takes half a millisecond.
 inline constexpr std::int64_t kThreadsFromPixels = 1'000'000;
 
 /// Calls work(strip) for strips that together are all rows, on all cores if the picture has
@@ -49,8 +49,8 @@ void for_each_strip(int height, int width, Work work) {
 inline constexpr std::int64_t kLargeFromPixels = std::int64_t{1} << 21;
 
 /// Calls work(columns) for tiles of some 512 columns that together are all, from left to right, or
-/// for all at once if the picture is not large. What a kernel keeps of a tile's rows stays in the
-/// first-level cache. Tiles begin at even columns.
+/// for all at once if the picture is not large. A tile's rows fit into the first-level cache. Tiles
+/// begin at even columns.
 template <typename Work>
 void for_each_tile(int height, int width, Work work) {
   constexpr int kColumns = 512;

@@ -18,7 +18,8 @@ namespace touchtrial::engine {
 struct PackEntry {
   std::string code;    ///< opaque name, see is_pack_code; the file is <code>.field
   Digest checksum{};   ///< SHA-256 of the file
-  Digest input_tag{};  ///< keyed hash of everything that decides the field; noise without the key
+  Digest input_tag{};  ///< keyed hash of all inputs of the field; indistinguishable from noise
+                       ///< without the key
   Gains gains;         ///< finite, >= 0
 
   friend bool operator==(const PackEntry&, const PackEntry&) = default;
@@ -28,18 +29,18 @@ struct PackEntry {
 struct PackManifest {
   std::string study_id;            ///< the key's public identity, hexadecimal
   std::vector<PackEntry> entries;  ///< sorted by code, no code twice
-  Digest seal{};                   ///< of the study as it was when the pack was made
+  Digest seal{};                   ///< of the study when the pack was made
   PublicKey investigator_box{};    ///< seals for the investigator
-  /// Of the pictures that participants see, and feel in practice: sorted, so that their order says
-  /// nothing of codes.
+  /// Of the pictures that participants see, and feel in practice: sorted, so that their order
+  /// reveals nothing about codes.
   std::vector<Digest> pictures{};
   Signature signature{};  ///< the investigator's, of digest_of
 
   friend bool operator==(const PackManifest&, const PackManifest&) = default;
 };
 
-/// What the investigator signs, and by which a database recognises its pack: SHA-256 over all of
-/// the table of contents but the signature.
+/// The digest that the investigator signs, and that identifies the pack in a database: SHA-256 over
+/// the table of contents without the signature.
 [[nodiscard]] Digest digest_of(const PackManifest& manifest);
 
 /// Whether a text may name a field: 16 lower-case letters and digits, as in base32 and hexadecimal,
@@ -73,7 +74,7 @@ class MappedField {
 };
 
 /// Maps a field's file. Header and size are checked; pages of samples are read when they are
-/// touched, and only a checksum says whether they are those that were written.
+/// touched, and only the checksum verifies them.
 /// \throws FileError if the file is missing, truncated or not a field
 [[nodiscard]] MappedField map_field(const std::filesystem::path& file);
 

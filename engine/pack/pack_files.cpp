@@ -38,7 +38,7 @@ static_assert(std::endian::native == std::endian::little,
 constexpr std::uint32_t kFieldVersion = 3;
 constexpr std::int64_t kListVersion = 5;
 
-/// What the heights of a file are, by the model that renders them.
+/// The meaning of a file's heights, by rendering model.
 enum class Layout : std::uint32_t { coefficients = 2, heights = 3 };
 
 Layout layout_of(ModelKind model) {
@@ -273,7 +273,7 @@ PackManifest manifest_from_json(std::string_view text, const std::filesystem::pa
     if (manifest_to_json(manifest) != text) refuse(path, "is altered since it was written");
     return manifest;
   } catch (const StudyError& error) {
-    // The reader's own remedies are for files that people write; nobody writes this one.
+    // Omits the JSON reader's remedies, which are for files written by people.
     const std::string message = error.what();
     refuse(message.substr(0, message.find("; ", one_line(path.string()).size())));
   }

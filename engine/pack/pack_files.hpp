@@ -2,17 +2,11 @@
 /// Private to engine/pack. Formats: docs/data-dictionary.md, "Pack".
 ///
 /// A field file is little-endian: 64 bytes of header, then height x width samples, row-major:
-///   offset  type       content
-///        0  8 bytes    "TTFIELD1"
-///        8  u32        version, 3
-///       12  u32        sample layout, 1: f32 surface, f32 force_x, f32 force_y; 2: f32 coefficient
-///       16  u32        height, pixels
-///       20  u32        width, pixels
-///       24  f64        pitch, mm per pixel
-///       32  f64        the highest surface or coefficient
-///       40  24 bytes   zero
-/// The header holds all that a model needs before the stylus comes down, so that making a model
-/// reads no sample. The file's checksum ensures that header and samples agree.
+///   offset type content 0 8 bytes "TTFIELD1" 8 u32 version, 3 12 u32 sample layout, 1: f32
+///   surface, f32 force_x, f32 force_y; 2: f32 coefficient 16 u32 height, pixels 20 u32 width,
+///   pixels 24 f64 pitch, mm per pixel 32 f64 the highest surface or coefficient 40 24 bytes zero
+///   The header holds all that a model needs before contact, so that creating a model reads no
+///   sample. The file's checksum ensures that header and samples agree.
 #pragma once
 
 #include "core/bytes.hpp"
@@ -24,7 +18,7 @@
 
 namespace touchtrial::engine {
 
-/// The file has the view's layout; its highest point is computed anew.
+/// The file has the view's layout; its highest point is recomputed.
 /// \throws std::invalid_argument if the view is empty or too large, the number of samples does not
 ///   fit its geometry, its heights are not finite, or its pitch is not a finite number > 0
 [[nodiscard]] Bytes encode_field(FieldView field);

@@ -12,7 +12,7 @@
 namespace touchtrial::engine {
 namespace {
 
-/// Resolution of a feature: it keeps equal examples from making a class infinitely narrow.
+/// Resolution of a feature: it prevents equal examples from making a class infinitely narrow.
 constexpr double kResolution = 1e-3;
 
 /// A square matrix, row-major.

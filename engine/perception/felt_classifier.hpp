@@ -1,5 +1,5 @@
-/// \file Tells classes apart by felt intensities, like a person who has felt examples of each.
-/// Source: docs/method.md, "Felt features".
+/// \file Classifies felt intensities, like a person who has felt examples of each class. Source:
+/// docs/method.md, "Felt features".
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ struct FeltExample {
   std::vector<double> features;  ///< logarithms of intensities, the same number in every example
 };
 
-/// A summary of examples, enough to make a classifier and to forget any one of them again: for each
+/// A summary of examples, sufficient to make a classifier and to remove examples again: for each
 /// label the number of its examples and their mean; for all labels together the scatter, which is
 /// the sum of the outer products of the examples' deviations from their label's mean. Plain sums
 /// and sums of products would hold the same, but lose digits when they are subtracted.
@@ -56,13 +56,13 @@ class FeltStatistics {
   std::vector<double> scatter_;
 };
 
-/// Normal noise of perception on features, which are logarithms of intensities. Converts from the
-/// noise of each feature's own alone.
+/// Normal noise of perception on features, which are logarithms of intensities. Implicitly converts
+/// from independent noise only.
 struct FeltNoise {
   constexpr FeltNoise(double own_sd, double common_sd = 0.0)  // NOLINT(google-explicit-constructor)
       : own(own_sd), common(common_sd) {}
-  double own;     ///< standard deviation of what each feature has by itself, >= 0
-  double common;  ///< standard deviation of what is added to all features alike, >= 0
+  double own;     ///< standard deviation of each feature's independent noise, >= 0
+  double common;  ///< standard deviation of the noise common to all features, >= 0
 };
 
 /// Gaussian classes, each with its own mean, and one covariance for all: that of the examples

@@ -1,5 +1,5 @@
-/// \file The intensities by which a hand tells textures apart.
-/// Source: docs/method.md, "Felt features".
+/// \file The intensities by which a hand distinguishes textures. Source: docs/method.md, "Felt
+/// features".
 #pragma once
 
 #include <array>

@@ -51,12 +51,12 @@ class SummedPower {
   std::array<double, kBins + 1> sums_{};
 };
 
-/// Power of an intensity that is none by a curve, in thresholds.
+/// The power that counts as zero with a threshold curve, in thresholds.
 constexpr double kNoPower = 1e-12;
 
 using Weights = std::array<double, kBins + 1>;
 
-/// What a bin's power counts for.
+/// The weight of each bin's power.
 Weights weights_of(const SenseOptions& options) {
   Weights weights;
   weights.fill(1.0);
@@ -77,7 +77,7 @@ struct FeltSums {
   }
 };
 
-/// What half a window adds to its window.
+/// The contribution of half a window.
 struct HalfWindow {
   double path_mm = 0.0;
   int contacts = 0;
@@ -124,12 +124,12 @@ struct TextureSense::State {
   RealFft<float> fft;
   Samples hann = hann_window();
   Samples x{}, y{}, z{};
-  FeltSums sums, later_sums;  // of this window, and of the next one, which began in its middle
+  FeltSums sums, later_sums;  // of this window, and of the next one, which overlaps its second half
   int filled = 0;
   HalfWindow earlier, current;
   Vec3 last_mm;
   bool landed = false;
-  int unsettled = 0;  // samples after landing that are still to be left out
+  int samples_to_skip = 0;  // remaining samples to skip after landing
   FeltPower power;
 };
 
@@ -184,7 +184,7 @@ void TextureSense::State::add_window(double speed_mm_s, Vec3 middle_mm) noexcept
   const auto product = [](std::complex<float> a, std::complex<float> b) {
     return a.real() * b.real() + a.imag() * b.imag();
   };
-  // In two loops, because only the first one does several bins at a time.
+  // In two loops, because only the first one vectorises.
   std::array<float, kBins + 1> px, py, pz, pxy;
   for (int k = 1; k <= kBins; ++k) {
     px[k] = product(fx[k], fx[k]);
@@ -243,9 +243,9 @@ void TextureSense::feel(const Vec3& position_mm, const Vec3& force_n, const Vec3
   State& s = *state_;
   if (!s.landed) {
     s.landed = force_n.z > 0.0;
-    s.unsettled = static_cast<int>(kSettleS * s.options.rate_hz);
-  } else if (s.unsettled > 0) {
-    --s.unsettled;
+    s.samples_to_skip = static_cast<int>(kSettleS * s.options.rate_hz);
+  } else if (s.samples_to_skip > 0) {
+    --s.samples_to_skip;
   } else {
     s.take(position_mm, felt, force_n.z > 0.0);
   }

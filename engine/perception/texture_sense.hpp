@@ -1,5 +1,5 @@
-/// \file From positions and forces, sample by sample, to a few felt intensities.
-/// Source: docs/method.md, "Felt features".
+/// \file Computes a few felt intensities from positions and forces, sample by sample. Source:
+/// docs/method.md, "Felt features".
 #pragma once
 
 #include "core/plane_geometry.hpp"
@@ -19,9 +19,9 @@ inline constexpr int kSenseBins = kSenseWindow / 2;
 
 struct SenseOptions {
   double rate_hz = 1000.0;     ///< of the samples, > 0
-  double threshold_n = 0.002;  ///< intensities far below this feel like none, >= 0
+  double threshold_n = 0.002;  ///< intensities far below this are not felt, >= 0
   /// Intensities are in thresholds of this curve, of vibrations at their frequency in time;
-  /// nothing: as they are, with threshold_n. Who feels them adds the threshold: `above_threshold`.
+  /// nothing: unscaled, with threshold_n. The caller adds the threshold: `above_threshold`.
   std::optional<ThresholdCurve> curve = {};
   /// The plane, for its parts.
   PlaneGeometry plane{0.2, 500, 500};
@@ -42,7 +42,7 @@ class TextureSense {
   TextureSense(TextureSense&&) noexcept;
   TextureSense& operator=(TextureSense&&) noexcept;
 
-  /// Starts anew, for another exploration of a plane.
+  /// Resets, for another exploration of a plane.
   void reset(const PlaneGeometry& plane) noexcept;
 
   /// Adds the next sample; samples are evenly spaced in time. No allocation, lock or exception.
@@ -50,8 +50,8 @@ class TextureSense {
   void feel(const Vec3& position_mm, const Vec3& force_n) noexcept {
     feel(position_mm, force_n, force_n);
   }
-  /// The same for what a force does.
-  /// \param force_n  tells contact
+  /// The same for an effect of a force.
+  /// \param force_n  determines contact
   /// \param felt  the vector whose intensities are felt: the force, or the tip's acceleration in
   ///   m/s^2 for a curve
   void feel(const Vec3& position_mm, const Vec3& force_n, const Vec3& felt) noexcept;
@@ -59,8 +59,8 @@ class TextureSense {
   /// The intensities of all samples so far. Without a window that counts, each is the threshold.
   [[nodiscard]] FeltFeatures features() const noexcept;
 
-  /// One-sided powers of what was felt, summed over the three axes, in the mean over windows: by
-  /// bin, (m/s^2)^2 or N^2, without any weight. Zeros without a window that counts.
+  /// One-sided powers of the felt vector, summed over the three axes, mean over windows: by bin,
+  /// (m/s^2)^2 or N^2, unweighted. Zeros without a window that counts.
   [[nodiscard]] std::array<double, kSenseBins + 1> mean_powers() const noexcept;
 
   /// The number of windows that have counted so far.

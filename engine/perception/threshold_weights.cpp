@@ -57,8 +57,8 @@ Tone tone_at(ThresholdCurve curve, double place, double bin_hz, int bins) {
   return tone;
 }
 
-/// Starts from the bins' own thresholds and corrects every bin by the tones that it hears, again
-/// and again.
+/// Starts from the bins' own thresholds and iteratively corrects every bin by the tones that it
+/// contains.
 std::vector<double> weights_for(ThresholdCurve curve, int window, double rate_hz) {
   const double bin_hz = rate_hz / window;
   const int bins = window / 2;
@@ -84,10 +84,10 @@ std::vector<double> weights_for(ThresholdCurve curve, int window, double rate_hz
       }
     }
     for (std::size_t k = 1; k < size; ++k) {
-      constexpr double kHeardEnough = 0.05;
-      if (heard[k] > kHeardEnough) weights[k] *= std::exp(correction[k] / heard[k]);
+      constexpr double kMinGain = 0.05;
+      if (heard[k] > kMinGain) weights[k] *= std::exp(correction[k] / heard[k]);
     }
-    // What lies lower counts as the lowest frequency does.
+    // Lower frequencies count as the lowest one.
     const auto lowest = static_cast<std::size_t>(std::max(1.0, std::floor(kLowestHz / bin_hz)));
     std::fill(weights.begin() + 1, weights.begin() + static_cast<std::ptrdiff_t>(lowest),
               weights[lowest]);

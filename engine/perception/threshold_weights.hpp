@@ -1,5 +1,5 @@
-/// \file Weights that make a spectrum of the tip's acceleration one of thresholds.
-/// Source: docs/method.md, "Thresholds".
+/// \file Weights that scale a spectrum of the tip's acceleration to thresholds. Source:
+/// docs/perception.md, "What is felt".
 #pragma once
 
 #include "engine/perception/vibration_threshold.hpp"

@@ -1,6 +1,6 @@
-/// \file Published thresholds for vibrations of a held stylus. They are other people's, and hold for
-/// steady vibrations of a hand at rest: active movement raises thresholds.
-/// Source: docs/method.md, "Thresholds".
+/// \file Published thresholds for vibrations of a held stylus. They were measured on other people,
+/// with steady vibrations of a hand at rest: active movement raises thresholds. Source:
+/// docs/perception.md, "Two published curves".
 #pragma once
 
 #include <array>

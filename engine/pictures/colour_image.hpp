@@ -1,5 +1,5 @@
-/// \file Colour pictures for people to look at, pictures as PNG files, and resizing. The engine
-/// computes with grey pictures only.
+/// \file Colour pictures for display, PNG encoding, and resizing. The engine computes only with
+///   grey pictures.
 #pragma once
 
 #include "core/bytes.hpp"

@@ -223,7 +223,8 @@ std::vector<double> power_shares_above(SampledView field,
       const std::complex<double>* line =
           fft.spectrum().data() + static_cast<std::size_t>(row) * columns;
       for (int column = 0; column < columns; ++column) {
-        // The conjugate, which is not stored, has the same power in another column.
+        // Whether a coefficient's conjugate, which has the same power, is in another column and not
+        // stored.
         const bool has_twin = column != 0 && 2 * column != width;
         const double power = (has_twin ? 2.0 : 1.0) * std::norm(line[column]);
         total += power;

@@ -9,8 +9,7 @@
 
 namespace touchtrial::engine {
 
-/// What a field has at a pixel's centre, before gains. In single precision, which costs the
-/// measures 6e-8.
+/// A field's values at a pixel's centre, before gains. Single precision causes an error of 6e-8.
 struct FieldSample {
   float height = 0.0F;   ///< T or h after the reconstruction filter, grey levels
   float force_x = 0.0F;  ///< tangential force to the right, grey levels per pixel
@@ -36,8 +35,7 @@ struct SampledField {
 /// Root mean square of the heights over all pixels, grey levels.
 [[nodiscard]] double height_rms(SampledView field) noexcept;
 
-/// The share of F_T that height and depth add while the load is on the touchdown ramp; zeros: no
-/// ramp.
+/// The slopes of the touchdown ramp's share of F_T by height and depth; zeros: no ramp.
 struct RampSlopes {
   double per_grey = 0.0;  ///< c / touchdown_ramp_n
   double per_mm = 0.0;    ///< k / touchdown_ramp_n
@@ -65,7 +63,7 @@ struct RampSlopes {
 
 /// The 99th percentile of a pool of stiffnesses, or its maximum where the percentile is below a
 /// thousandth of that: then most of the pool is flat, or contains the traces that a filter or a
-/// spline leaves far from any texture, and the percentile would limit nothing.
+/// spline leaves far from any texture, and the percentile would not be a limit.
 /// \param pools  finite values >= 0
 [[nodiscard]] double typical_stiffness(std::span<const std::vector<float>> pools);
 

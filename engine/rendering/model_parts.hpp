@@ -1,6 +1,6 @@
-/// \file What a rendering model provides besides its force law: the functions behind
-/// make_texture_field, choose_gains, field_statistics and lateral_field.
-/// Private to engine/rendering. How to add a model: docs/add-a-rendering-model.md.
+/// \file The parts of a rendering model besides its force law: the functions behind
+/// make_texture_field, choose_gains, field_statistics and lateral_field. Private to
+/// engine/rendering. How to add a model: docs/add-a-rendering-model.md.
 #pragma once
 
 #include "core/plane.hpp"
@@ -44,8 +44,8 @@ struct ModelParts {
 /// \param n_per_grey  newtons of one grey level per pixel
 [[nodiscard]] FieldStatistics lateral_statistics(SampledView field, double n_per_grey);
 
-/// The `jobs` of in_parallel for measuring fields: all cores, but one where a field is so large
-/// that all cores work on it alone; the samples of many large fields would take too much memory.
+/// The `jobs` of in_parallel for measuring fields: all cores, or 1 for large fields, each of which
+/// uses all cores itself, to limit memory.
 [[nodiscard]] inline int jobs_for(std::span<const FieldView> fields) noexcept {
   const auto is_large = [](const FieldView& field) {
     return static_cast<std::int64_t>(field.heights.size()) >= kThreadsFromPixels;

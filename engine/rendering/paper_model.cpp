@@ -50,8 +50,8 @@ Vec2 force_at_pixel(const FieldView& field, int y, int x) noexcept {
   return force;
 }
 
-/// The same for a neighbourhood of 3, without branches. Neighbours that do not exist are replaced
-/// by some that do, and count nothing.
+/// The same for a neighbourhood of 3, without branches. Missing neighbours are replaced by existing
+/// ones with weight 0.
 Vec2 force_at_any_pixel(const float* heights, const PlaneGeometry& plane, int y, int x) noexcept {
   const int left = x > 0 ? 1 : 0;
   const int right = x + 1 < plane.width_px ? 1 : 0;
@@ -210,7 +210,7 @@ SampledField sampled_paper(FieldView field) {
   return sampled;
 }
 
-/// What the two gains, k_t and c, depend on. One entry for each field.
+/// The inputs of one of the two gains, k_t or c. One entry for each field.
 struct Channel {
   std::vector<double> rms;
   std::vector<double> factors;                ///< equalising
@@ -219,8 +219,8 @@ struct Channel {
   explicit Channel(std::size_t fields) : rms(fields), factors(fields), stiffness(fields) {}
 };
 
-/// How the ramp adds to the lateral force's stiffness. Ramps shorter than any number that a hand
-/// could tell from a step count as this long, which keeps the numbers finite.
+/// How the ramp adds to the lateral force's stiffness. Ramps too short to be distinguished from a
+/// step count as this long, which keeps the numbers finite.
 RampSlopes ramp_slopes(const RenderingOptions& options, double normal_n) {
   constexpr double kShortestN = 1e-9;
   if (options.touchdown_ramp_n == 0.0) return {};
@@ -266,7 +266,7 @@ StudyGains gains_of_paper(std::span<const FieldView> fields, const RenderingOpti
   std::optional<Gains> given = options.gains;
   const ChannelGains normal =
       channel_gains(across, given ? std::optional(given->normal_n) : std::nullopt, options);
-  // On a ramp, heights count in the lateral stiffness, with the gain that they have by now.
+  // On a ramp, heights add to the lateral stiffness with the gain chosen before.
   if (options.touchdown_ramp_n != 0.0) {
     in_parallel(jobs_for(fields), fields.size(), [&](std::size_t i) {
       if (along.rms[i] == 0.0) return;

@@ -35,7 +35,7 @@ class PaperModel {
   [[nodiscard]] Vec3 force_n(const Vec3& position_mm, const Vec3& velocity_mm_s) const noexcept;
 
  private:
-  /// Whether no surface of this field could touch a hand that meets the wall with this force.
+  /// Whether a hand at this wall force is beyond every surface of the field.
   [[nodiscard]] bool is_out_of_reach(double wall_n) const noexcept;
 
   FieldView field_;

@@ -133,7 +133,7 @@ namespace {
 HWY_EXPORT(bilinear);
 HWY_EXPORT(spline);
 
-/// Chooses the processor's target, unless that was done before.
+/// Chooses the processor's target, once.
 void choose_target() {
   if (!hwy::GetChosenTarget().IsInitialized()) {
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());

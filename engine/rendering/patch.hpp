@@ -11,7 +11,7 @@
 
 namespace touchtrial::engine {
 
-/// What a sum finds: a value, and its gradient or a force.
+/// The result of a sum: a value, and its gradient or a force.
 struct PatchSums {
   double value = 0.0;
   double along_x = 0.0;  ///< per pixel
@@ -40,7 +40,7 @@ using SumOfPatch = PatchSums (*)(const float* corner, std::size_t stride, double
 /// The patches of a plane: every point but those in the outer pixels has one.
 class Patches {
  public:
-  /// No point has a patch.
+  /// An empty set: no point has a patch.
   Patches() = default;
   /// \param heights  row-major, height_px x width_px; must outlive this
   Patches(std::span<const float> heights, int height_px, int width_px, SumOfPatch sum) noexcept
@@ -54,8 +54,8 @@ class Patches {
     return px.x >= 1.0 && px.y >= 1.0 && px.x < end_px_.x && px.y < end_px_.y;
   }
 
-  /// The sum at a point that has a patch. Asks the memory for a height two rows above the patch and
-  /// for one two rows below, which a hand that moves across rows needs within a few ticks.
+  /// The sum at a point that has a patch. Prefetches a height two rows above the patch and one two
+  /// rows below, which a hand that moves across rows needs within a few ticks.
   [[nodiscard]] PatchSums at(Vec2 px) const noexcept {
     const auto left = static_cast<int>(px.x);
     const auto top = static_cast<int>(px.y);

@@ -1,4 +1,4 @@
-/// \file The rendering model of a study, for callers that need not know which one it is.
+/// \file The rendering model of a study, independent of its kind.
 #pragma once
 
 #include "engine/rendering/paper_model.hpp"
@@ -8,7 +8,7 @@
 
 namespace touchtrial::engine {
 
-/// The model that a study asks for. Copyable, without heap memory; refers to the field's samples.
+/// The model chosen by a study. Copyable, without heap memory; refers to the field's samples.
 /// Thread-safe.
 class RenderingModel {
  public:

@@ -1,5 +1,4 @@
-/// \file The options that decide how a texture becomes a force.
-/// Source: docs/method.md, "Rendering".
+/// \file The options of rendering a texture as force. Source: docs/method.md, "Rendering".
 #pragma once
 
 #include <array>
@@ -52,8 +51,8 @@ inline constexpr std::array kGains = {NamedGain{"tangential_n", &Gains::tangenti
   return true;
 }
 
-/// Whether stimuli keep their differences in strength. `level` is left to whoever knows levels, and
-/// `none` to choose_gains.
+/// Whether stimuli keep their differences in strength. `level` is handled by code that computes
+/// levels, the others by choose_gains.
 enum class Equalise { none, rms, level };
 
 /// Load at which the stiffness and the lateral forces of `surface` are stated, N: a typical load of

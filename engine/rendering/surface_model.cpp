@@ -126,8 +126,8 @@ double newtons_per_grey(FieldView field, Gains gains) noexcept {
   return kStatedLoadN * gains.height_mm / field.geometry.pitch_mm;
 }
 
-/// The fields of a study, each with the factor that equalises it. Every stiffness computes the
-/// reliefs anew: choosing alpha takes about six times their time, but not the memory of them all.
+/// The fields of a study, each with the factor that equalises it. Every stiffness recomputes the
+/// reliefs: choosing alpha takes about six times their time, but saves the memory of all of them.
 class Surfaces {
  public:
   Surfaces(std::span<const FieldView> fields, const RenderingOptions& options)
@@ -177,7 +177,7 @@ class Surfaces {
 
 /// The alpha, at most `most`, at which the lateral force is as stiff as the budget. Stiffness is
 /// nearly a power of alpha, with an exponent of 1 for small heights and up to 2 for large ones: a
-/// secant method on the logarithms, within a bracket, finds alpha in a few tries.
+/// secant method on the logarithms, within a bracket, finds alpha in a few iterations.
 double lateral_limit(const Surfaces& surfaces, double budget, double most) {
   const double linear = surfaces.linear_stiffness();
   if (linear == 0.0) return most;

@@ -8,15 +8,14 @@
 
 namespace touchtrial::engine {
 
-/// Friction as a bristle: a spring from the stylus to the point where it holds on to the plane,
-/// which slips when it is stretched too far. One bristle belongs to one presentation, and carries
-/// what the next tick needs. It depends on positions only, never on time: a path gives the same
-/// forces at any speed. It is passive: it stores only what the hand puts in, and slipping loses
-/// energy.
+/// Friction as a bristle: a spring from the stylus to its anchor on the plane, which slips when
+/// stretched too far. One bristle belongs to one presentation, and stores the state between ticks.
+/// It depends on positions only, never on time: a path gives the same forces at any speed. It is
+/// passive: it stores only energy from the hand, and slipping dissipates it.
 class Bristle {
  public:
-  /// The friction on a stylus that has moved to a point of the plane. At the first point after a
-  /// release the bristle takes hold. No allocation, lock or exception.
+  /// The friction on a stylus that has moved to a point of the plane. The first point after a
+  /// release becomes the anchor. No allocation, lock or exception.
   /// \param at_mm  finite
   /// \param limit_n  mu * F_N, >= 0: the bristle slips at this force
   /// \param stiffness_n_per_mm  of the bristle, > 0
@@ -42,7 +41,7 @@ class Bristle {
 };
 
 /// Width of the rim beyond the plane's edge in which the texture fades into the flat wall, mm. A
-/// step there would be an infinite force, and give energy to a hand that crosses it to and fro.
+/// step there would be an infinite force, and feed energy to a hand that crosses it repeatedly.
 inline constexpr double kRimMm = 2.0;
 
 /// The force on the stylus from one texture, in the frame of PaperModel: z out of the plane towards
@@ -89,7 +88,7 @@ class SurfaceModel {
   double mm_per_grey_;
   double slope_per_grey_;  ///< mm_per_grey_ for a change per pixel
   Patches patches_;        ///< of the coefficients
-  double reach_mm_;        ///< nothing is felt at this height above the plane or higher
+  double reach_mm_;        ///< no force at or beyond this height above the plane
 };
 
 }  // namespace touchtrial::engine

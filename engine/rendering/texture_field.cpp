@@ -34,7 +34,7 @@ void check_parts(std::span<const FieldWithGains> parts) {
   }
 }
 
-/// Takes the mean off, in double.
+/// Subtracts the mean, in double.
 void centre(Plane<double>& heights) {
   double sum = 0.0;
   for (const double height : heights.samples()) sum += height;

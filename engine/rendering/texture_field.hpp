@@ -20,7 +20,7 @@ struct FieldView {
   /// `paper`: T after the reconstruction filter. `surface`: coefficients of the cubic B-spline
   /// through it. Grey levels.
   std::span<const float> heights = {};
-  /// `paper`: the heights whose tangential force is felt, where they are others: in a sum of fields
+  /// `paper`: the heights of the tangential force if they differ from `heights`: in a sum of fields
   /// whose two gains differ. As many as `heights`, or none.
   std::span<const float> other_slopes = {};
   int neighbourhood = 3;  ///< `paper`: side of the tangential force's neighbourhood, pixels
@@ -65,8 +65,8 @@ struct FieldWithGains {
   Gains gains;
 };
 
-/// The sum of fields with their gains applied, less its mean height: the wall of a texture then
-/// lies where the wall without it does. A model renders it with gains of 1, and a reference of 128.
+/// The sum of fields with their gains applied, minus its mean height, so that a textured wall has
+/// the same position as a flat one. A model renders it with gains of 1, and a reference of 128.
 /// Thread-safe.
 /// \param parts  of one geometry and model
 /// \throws std::invalid_argument if there is none, or they differ

@@ -29,12 +29,12 @@ std::vector<Real> ring_laplacian(int n, int count) {
 }
 
 /// Watches nothing of a step.
-struct Unwatched {
+struct NoObserver {
   struct Sums {
     Sums& operator+=(const Sums&) noexcept { return *this; }
   };
 
-  explicit Unwatched(std::size_t, double) {}
+  explicit NoObserver(std::size_t, double) {}
   template <typename Real>
   void before(const AdmmRow<Real>&) {}
   template <typename Real>
@@ -151,12 +151,12 @@ void TvGaborAdmm<Real>::start_again(double penalty) {
 
 template <typename Real>
 void TvGaborAdmm<Real>::step(AdmmPace pace) {
-  map<Unwatched>(pace, false);
+  map<NoObserver>(pace, false);
 }
 
 template <typename Real>
 void TvGaborAdmm<Real>::last_step() {
-  map<Unwatched>(AdmmPace::cautious, true);
+  map<NoObserver>(AdmmPace::cautious, true);
 }
 
 template <typename Real>

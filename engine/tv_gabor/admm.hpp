@@ -12,8 +12,8 @@
 
 namespace touchtrial::engine {
 
-/// How eagerly an iteration moves: cautious steps relax more and have no momentum, eager ones relax
-/// less and have some.
+/// The pace of an iteration: cautious steps relax more, without momentum; eager ones relax less,
+/// with momentum.
 enum class AdmmPace { cautious, eager };
 
 /// The distance of a step from the fixed point: the changes of the scaled multiplier and of w, each

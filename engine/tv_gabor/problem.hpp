@@ -1,6 +1,6 @@
-/// \file What TV-Gabor minimises: J(u) + (lambda / 2) <f - u, K (f - u)> over u, on a torus. The
-/// torus, the operator M = K^-1, and gradient and divergence on the torus.
-/// Source: docs/method.md, "TV-Gabor".
+/// \file The objective of TV-Gabor: J(u) + (lambda / 2) <f - u, K (f - u)> over u, on a torus. The
+/// torus, the operator M = K^-1, and gradient and divergence on the torus. Source: docs/method.md,
+/// "TV-Gabor".
 #pragma once
 
 #include "core/plane.hpp"
@@ -24,7 +24,7 @@ inline constexpr int kTorusMargin = 16;
 template <typename Real>
 [[nodiscard]] Plane<Real> extended_to_torus(const GreyImage& image);
 
-/// The spectrum of M, which decides which oscillations count as texture: the sum over the
+/// The spectrum of M, which defines the oscillations that count as texture: the sum over the
 /// components of |g^|^2, scaled so that its maximum is 1, where g is an 11 x 11 even Gabor patch of
 /// standard deviation 2 px minus its own mean. Non-negative by construction, and zero at frequency
 /// zero.

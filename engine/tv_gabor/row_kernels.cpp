@@ -87,8 +87,8 @@ HWY_INLINE V mapped(V u, V z, V b, V relaxation) {
   return hn::Add(hn::MulAdd(relaxation, hn::Sub(u, w), w), b);
 }
 
-/// Asks for the sample that lies `width` further on, in the next row: by the time that it is
-/// reached, the transforms between two rows have hidden the way from memory.
+/// Prefetches the sample `width` further on, in the next row; the transforms between two rows hide
+/// the latency.
 template <typename Real>
 HWY_INLINE void prefetch(const Real* sample, std::size_t width) {
   hwy::Prefetch(sample + width);

@@ -63,7 +63,7 @@ constexpr double kMaxChange = 4.0;
 constexpr double kRange = 1e4;
 
 /// Momentum pauses after a check that finds more than this share of the last gap left.
-constexpr double kHardlyAnyProgress = 0.95;
+constexpr double kSlowProgress = 0.95;
 
 /// A solver stalls unless the gap falls to this share of itself within this many checks.
 constexpr double kShareLeft = 0.7;
@@ -80,8 +80,7 @@ bool PenaltySchedule::wants_residuals() const noexcept {
 
 void PenaltySchedule::next(double gap, const AdmmResiduals& residuals) {
   ++checks_;
-  pace_ =
-      checks_ > 1 && gap > kHardlyAnyProgress * last_gap_ ? AdmmPace::cautious : AdmmPace::eager;
+  pace_ = checks_ > 1 && gap > kSlowProgress * last_gap_ ? AdmmPace::cautious : AdmmPace::eager;
   last_gap_ = gap;
   if (checks_ <= kChecksOfFall) {
     penalty_ *= kFall;
@@ -112,7 +111,7 @@ SolverStop TvGaborSolver<Real>::run(int max_steps, Patience patience) {
   while (steps_ < max_steps) {
     step_to_check(max_steps);
     if (gap_ <= wanted_gap_) return SolverStop::converged;
-    // Without steps left nobody can continue: the steps are exhausted, not stalled.
+    // Without steps left the run is exhausted, not stalled.
     const bool may_stall = patience == Patience::limited && steps_ < max_steps;
     if (may_stall && is_stalled()) return SolverStop::stalled;
   }
@@ -131,7 +130,7 @@ void TvGaborSolver<Real>::step_to_check(int last) {
   if (schedule_.wants_residuals()) {
     residuals = admm_.measured_last_step();
   } else {
-    admm_.last_step();  // uninterrupted momentum can go round in circles
+    admm_.last_step();  // uninterrupted momentum can cycle
   }
   ++steps_;
   // The plane holds -div b, and -p = penalty b.

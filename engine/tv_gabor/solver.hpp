@@ -1,6 +1,6 @@
-/// \file The course of a TV-Gabor decomposition: steps, checks, and the schedule of the penalty; and
-/// the gap that certifies how far a result is from the optimum.
-/// Source: docs/method.md, "TV-Gabor". Private to engine/tv_gabor.
+/// \file The course of a TV-Gabor decomposition: steps, checks, and the schedule of the penalty;
+/// and the gap that certifies how far a result is from the optimum. Source: docs/method.md,
+/// "TV-Gabor". Private to engine/tv_gabor.
 #pragma once
 
 #include "core/plane.hpp"
@@ -79,17 +79,17 @@ class PenaltySchedule {
 enum class SolverStop {
   converged,  ///< the gap is small enough
   exhausted,  ///< no steps are left
-  stalled,    ///< the gap hardly shrinks any more
+  stalled,    ///< the gap hardly shrinks
 };
 
-/// Whether a run may stop because the gap hardly shrinks any more.
+/// Whether a run may stop because the gap hardly shrinks.
 enum class Patience { limited, unlimited };
 
 /// Where a solver stopped.
 template <typename Real>
 struct TvGaborState {
   VectorField<Real> z;
-  double penalty;  ///< of z; the schedule may have gone on
+  double penalty;  ///< of z; the schedule may have advanced
   PenaltySchedule schedule;
   int steps;
 };

@@ -127,7 +127,7 @@ class TorusPlane {
     [[nodiscard]] Real* along_x() noexcept { return along_x_; }
     [[nodiscard]] Real* along_y() noexcept { return along_y_; }
 
-    /// Writes the row, and goes on to the next.
+    /// Writes the row, and advances to the next.
     void next() {
       const std::size_t width = plane_.width();
       const int pair = y_ - y_ % 2;

@@ -19,8 +19,8 @@
 namespace touchtrial::engine {
 namespace {
 
-/// Frequencies of components, cycles per pixel: below lies shading, above little but the pixel
-/// grid.
+/// Frequencies of components, cycles per pixel: lower ones are shading, higher ones mostly the
+/// pixel grid.
 constexpr double kLowestPeakFrequency = 0.04;
 constexpr double kHighestPeakFrequency = 0.45;
 
@@ -68,7 +68,7 @@ TvGaborResult<Real> result_of(const TvGaborSolver<Precision>& solver, SolverStop
           stop == SolverStop::converged};
 }
 
-/// Float goes as far as its digits allow, and double continues if that is not enough: the texture's
+/// Float is used as far as its precision allows, and double continues if necessary: the texture's
 /// rounding reaches the multiplier at every step, and shows in the gap of images with large smooth
 /// parts, whose gradients are small.
 template <typename Real>

@@ -56,11 +56,13 @@ struct ThresholdEstimate {
 
 /// The threshold of answers at any levels, chosen by any procedure, with nothing assumed of the
 /// observer but the shape. The interval holds the thresholds whose likelihood, averaged over widths
-/// and lapse rates, is not rejected by its ratio to the largest (chi-square, one degree); an end
-/// outside the levels is open. The threshold has a number if both ends lie inside. If not, it is
-/// above (below) the levels if the whole interval with usual lapse rates is, and the highest
-/// (lowest) level is then its one end: somebody who always guesses might as well lapse in half of
-/// the trials.
+/// and lapse rates, is not rejected by its ratio to the largest (chi-square, one degree). The
+/// threshold has a number if that of usual observers lies inside the levels, and if they reject
+/// in the same way that nothing is felt at any level, and that everything is; an end farther from
+/// the levels than their range is then open. If not, an end outside the levels is open; and it is
+/// below the levels if the whole interval is, and above them if the whole interval with usual lapse
+/// rates is: somebody who always guesses might as well lapse in half of the trials. The lowest
+/// (highest) level is then its one end.
 /// \param counts    ascending; may be empty
 /// \param levels    those of the track in dB, ascending, at least one
 /// \param guess     in (0, 1)

@@ -123,10 +123,17 @@ Posterior::Posterior(std::span<const double> levels, ParameterGrid grid)
   correct_.reserve(level_count_ * observers.size());
   doubt_.reserve(level_count_ * observers.size());
   for (const double level : levels) {
-    for (const Observer& observer : observers) {
-      const AnswerShares shares = shares_at(observer, level);
-      correct_.push_back(shares.correct);
-      doubt_.push_back(-p_log_p(shares.correct) - p_log_p(shares.wrong));
+    AnswerShares felt;
+    for (std::size_t i = 0; i < observers.size(); ++i) {
+      const Observer& observer = observers[i];
+      // Neighbours differ in the lapse rate alone.
+      if (i % grid_.lapses.size() == 0) {
+        felt = shares_at({observer.shape, observer.threshold, observer.slope, 0.0, 0.0}, level);
+      }
+      const double scale = 1.0 - observer.guess - observer.lapse;
+      const double correct = observer.guess + scale * felt.correct;
+      correct_.push_back(correct);
+      doubt_.push_back(-p_log_p(correct) - p_log_p(observer.lapse + scale * felt.wrong));
     }
   }
 }

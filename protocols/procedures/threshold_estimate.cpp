@@ -17,16 +17,17 @@ namespace {
 
 constexpr std::size_t kWidths = 15;
 constexpr std::size_t kLapses = 15;
-constexpr std::size_t kBlocks = 200;  ///< of the threshold's cells
+constexpr std::size_t kBlocks = 120;  ///< of the threshold's cells
 constexpr std::size_t kCells = 5;     ///< of a block
 
 constexpr double kNarrowest_db = 2.0;
-constexpr double kWidest_db = 50.0;
+constexpr double kWidest_db = 60.0;
 constexpr double kMaxLapse = 0.5;
-constexpr double kWideShare = 0.5;  ///< widths of all observers have the density width^(this - 1)
+constexpr double kWideShare = 1.5;  ///< widths of all observers have the density width^(this - 1)
+constexpr double kAnyLapse = 3.0;   ///< their lapse rate is Beta(1, this) up to kMaxLapse
 constexpr double kUsualWidth_db = 10.0;  ///< median of usual observers
 constexpr double kUsualSpread = 0.8;     ///< SD of the logarithm of their width
-constexpr double kUsualLapse = 10.0;     ///< their lapse rate is Beta(1, this)
+constexpr double kUsualLapse = 10.0;     ///< their lapse rate is Beta(1, this), up to kMaxLapse
 constexpr double kShortestRange_db = 20.0;
 
 /// Where an integral is evaluated, and what each value counts.
@@ -119,7 +120,9 @@ class AveragedLikelihood {
       usual_width_[i] = log_widths_.weights[i] * std::exp(-0.5 * off * off);
     }
     for (std::size_t i = 0; i < kLapses; ++i) {
-      usual_lapse_[i] = lapses_.weights[i] * std::pow(1.0 - lapses_.values[i], kUsualLapse - 1.0);
+      const double attends = 1.0 - lapses_.values[i];
+      any_lapse_[i] = lapses_.weights[i] * std::pow(attends, kAnyLapse - 1.0);
+      usual_lapse_[i] = lapses_.weights[i] * std::pow(attends, kUsualLapse - 1.0);
     }
   }
 
@@ -133,7 +136,7 @@ class AveragedLikelihood {
       double usual = 0.0;
       double lapse = 0.0;
       for (std::size_t i = 0; i < kLapses; ++i) {
-        any += lapses_.weights[i] * likelihoods[i];
+        any += any_lapse_[i] * likelihoods[i];
         usual += usual_lapse_[i] * likelihoods[i];
         lapse += usual_lapse_[i] * likelihoods[i] * lapses_.values[i];
       }
@@ -184,6 +187,7 @@ class AveragedLikelihood {
   Nodes<kLapses> lapses_;
   std::array<double, kWidths> any_width_{};
   std::array<double, kWidths> usual_width_{};
+  std::array<double, kLapses> any_lapse_{};
   std::array<double, kLapses> usual_lapse_{};
 };
 
@@ -307,10 +311,24 @@ Observer usual_observer(const Profile& profile, const Ends& ends, Shape shape, d
           width_at_slope_one(shape) / std::exp(log_width / weight), guess, lapse / weight};
 }
 
-Threshold stated(const Ends& ends, std::span<const double> levels) {
+/// Whether usual observers who feel every level, or none, are rejected.
+bool is_rise(const Profile& profile, double loss) {
+  double largest = 0.0;
+  for (const Cell& cell : profile.cells) largest = std::max(largest, cell.found.weight);
+  const double least = std::exp(-loss) * largest;
+  return profile.cells.front().found.weight < least && profile.cells.back().found.weight < least;
+}
+
+Threshold numbered(double level, const Ends& ends) {
+  Threshold found;
+  found.level = level;
+  if (std::isfinite(ends.low)) found.low = ends.low;
+  if (std::isfinite(ends.high)) found.high = ends.high;
+  return found;
+}
+
+Threshold without_number(const Ends& ends, std::span<const double> levels) {
   const auto [low, high] = ends;
-  const bool has_low = low > levels.front();
-  const bool has_high = high < levels.back();
   Threshold found;
   if (low >= levels.back()) {
     found.low = levels.back();
@@ -319,9 +337,9 @@ Threshold stated(const Ends& ends, std::span<const double> levels) {
     found.high = levels.front();
     found.censored = Censored::below;
   } else {
-    if (has_low) found.low = low;
-    if (has_high) found.high = high;
-    found.censored = has_low && has_high ? Censored::no : Censored::undetermined;
+    if (low > levels.front()) found.low = low;
+    if (high < levels.back()) found.high = high;
+    found.censored = Censored::undetermined;
   }
   return found;
 }
@@ -361,15 +379,15 @@ ThresholdEstimate estimate_threshold(std::span<const LevelCounts> counts,
       profile_of(AveragedLikelihood(counts, shape, guess), levels, kNegligible * std::exp(-loss));
   const Ends ends = ends_of(profile, &AtThreshold::likelihood, loss);
   ThresholdEstimate estimate;
-  estimate.threshold = stated(ends, levels);
   estimate.observer = usual_observer(profile, ends, shape, guess);
-  if (estimate.threshold.censored == Censored::no) {
-    estimate.threshold.level = estimate.observer.threshold;
+  const double likeliest = estimate.observer.threshold;
+  if (levels.front() < likeliest && likeliest < levels.back() && is_rise(profile, loss)) {
+    estimate.threshold = numbered(likeliest, ends);
     return estimate;
   }
-  estimate.attentive = stated(ends_of(profile, &AtThreshold::attentive, loss), levels);
-  const Censored side = estimate.attentive.censored;
-  if (side == Censored::above || side == Censored::below) estimate.threshold = estimate.attentive;
+  estimate.threshold = without_number(ends, levels);
+  estimate.attentive = without_number(ends_of(profile, &AtThreshold::attentive, loss), levels);
+  if (estimate.attentive.censored == Censored::above) estimate.threshold = estimate.attentive;
   return estimate;
 }
 

@@ -4,8 +4,8 @@
 #include "core/strict_json.hpp"
 #include "core/text.hpp"
 #include "core/version.hpp"
-#include "study/languages.hpp"
 #include "study/protocol.hpp"
+#include "study/setting_words.hpp"
 #include "study/signed_pack.hpp"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ std::string line(const std::string& what, const std::string& value) {
   return "- " + what + ": " + value + "\n";
 }
 
-/// In alphabetical order, which does not reveal their order in the study.
+/// In alphabetical order, so that their order in the study is not revealed.
 std::string labels_of(const study::Study& study) {
   std::vector<std::string> labels;
   for (const study::StudyClass& shown : study.classes) labels.push_back(shown.label);
@@ -34,56 +34,21 @@ std::string participants_of(const study::Registration& registration) {
   return counted(registration.participants, "participant") + ".";
 }
 
-std::string practice_words(const study::Study& study) {
-  if (study.trials.practice == 0) return "none";
-  const study::PracticePlan& practice = study.practice;
-  return counted(study.trials.practice, "presentation") + " a round of " +
-         counted(static_cast<int>(practice.classes.size()), "texture") +
-         " that are not in the study; criterion " + std::to_string(practice.criterion) +
-         " correct, " + counted(practice.rounds, "round") + " at most";
+std::string lines_of(const study::SettingFields& fields) {
+  std::string lines;
+  for (const auto& [what, value] : fields) lines += line(what, value);
+  return lines;
 }
 
-/// The participants' language; texts are part of the instrument.
-std::string language_of(const study::Study& study) {
-  const std::string draft = study::draft_notice(study.session.language);
-  return study::language_of(study.session.language).name + (draft.empty() ? "" : ": " + draft);
-}
-
-/// Empty in a study with one visit.
-std::string visits_of(const study::VisitPlan& visits) {
-  if (visits.count == 1) return "";
-  std::string days = "at least " + number_text(visits.least_days);
-  if (visits.most_days) days += " and at most " + number_text(*visits.most_days);
-  const bool divided = visits.methods == study::VisitMethods::divided;
-  return line("visits", std::to_string(visits.count) + ", " + days + " days between them, " +
-                            (divided ? "the methods divided between them" : "all methods at each"));
-}
-
-std::string touch_of(const study::LeastTouch& touch) {
-  if (touch == study::LeastTouch{0.0, 0.0}) return "no touch needed";
-  return "at least " + number_text(touch.contact_s) + " s at the plane and " +
-         number_text(touch.path_mm) + " mm along it, unless time is up";
-}
-
-/// What a trial asks for whose planes have a clock; the numbers of its trials are in the rule of
-/// orders.
+/// What a trial with clocked planes requires; the rule of orders states the numbers of trials.
 std::string clocked(const study::Study& study, const study::Ask& ask,
                     const study::InContact& exploring) {
-  const study::HandRange& range = exploring.range;
-  const study::Practice practice = study::practice_of(study);
   return line("planes a trial", std::to_string(ask.planes)) +
-         line("exploration of each",
-              number_text(exploring.seconds) + " s in contact, at " +
-                  number_text(range.slowest_mm_s) + " to " + number_text(range.fastest_mm_s) +
-                  " mm/s and " + number_text(range.lightest_n) + " to " +
-                  number_text(range.strongest_n) + " N, within " +
-                  number_text(study.trials.explore_limit_s) + " s; else the trial is repeated") +
-         line("practice", practice.trials.empty()
-                              ? std::string("none")
-                              : counted(static_cast<int>(practice.trials.size()), "trial") +
-                                    " a round at the highest level; criterion " +
-                                    std::to_string(practice.criterion) + " correct, " +
-                                    counted(practice.rounds, "round") + " at most") +
+         line("exploration of each", number_text(exploring.seconds) + " s in contact, at " +
+                                         study::range_words(exploring.range) + ", within " +
+                                         number_text(study.trials.explore_limit_s) +
+                                         " s; else the trial is repeated") +
+         line("practice", study::practice_words(study)) +
          line("feedback in trials", ask.feedback ? "yes" : "no");
 }
 
@@ -94,43 +59,30 @@ std::string exploring_of(const study::Study& study) {
   }
   const study::TrialOptions& trials = study.trials;
   return line("time to explore", number_text(trials.explore_limit_s) + " s") +
-         line("before an answer", touch_of(trials.answer_after)) +
-         line("practice", practice_words(study)) +
+         line("before an answer", study::touch_words(trials.answer_after)) +
+         line("practice", study::practice_words(study)) +
          line("catch trials (not scored)", std::to_string(trials.catch_trials));
 }
 
 std::string design_of(const study::Study& study) {
+  const std::string visits = study::visits_words(study.visits);
   return line("protocol", study.protocol_name()) +
          line("classes", std::to_string(study.classes.size()) + " (" + labels_of(study) + ")") +
          line("methods presented", study.presented_labels()) +
          line("scored trials a participant", std::to_string(study.scored_trials())) +
-         visits_of(study.visits) +
+         (visits.empty() ? "" : line("visits", visits)) +
          (study.groups.labels.empty()
               ? ""
               : line("groups", listed(study.groups.labels) +
                                    (study.groups.open ? ", open to the experimenter" : ""))) +
-         exploring_of(study) + line("language", language_of(study)) +
+         exploring_of(study) + line("language", study::language_words(study.session)) +
+         line("what participants see", study::sight_words(study)) +
+         line("masking noise", study::masking_words(study.session.masking)) +
          line("orders", study.task->rule(study));
 }
 
 std::string validity_of(const study::ValidityRule& rule) {
-  return "A trial is valid if all of this holds:\n\n" +
-         line("exploration from landing",
-              "at least " + number_text(rule.least_exploring_s) + " s") +
-         line("contact", "at least " + number_text(rule.least_contact_s) + " s") +
-         line("path in contact", "at least " + number_text(rule.least_path_mm) + " mm") +
-         line("median force in contact", "from " + number_text(rule.least_median_n) + " to " +
-                                             number_text(rule.largest_median_n) + " N") +
-         line("samples at the force limit",
-              "less than " + number_text(100 * rule.saturated_share) + " % of those in contact") +
-         line("servo", "no tick missed in contact");
-}
-
-/// The registered analysis, which the program holds the study against.
-std::string analysis_of(const study::Registration& registration) {
-  std::string lines;
-  for (const auto& [what, value] : study::fields_of(registration)) lines += line(what, value);
-  return lines;
+  return "A trial is valid if all of this holds:\n\n" + lines_of(study::fields_of(rule));
 }
 
 std::string hashes_of(const study::StudyCodes& key, const engine::Pack& pack) {
@@ -201,11 +153,14 @@ std::string registration_page(const study::StudyCodes& key, const engine::Pack& 
          section("Exclusions", registration.exclusions) +
          section("Validity of trials", validity_of(study.trials.validity)) +
          section("Primary test", registration.primary_test) +
-         section("Analysis, as the program checks it", analysis_of(registration)) +
-         section("Design", design_of(study)) + section("Commitment", hashes_of(key, pack));
+         section("Analysis, as the program checks it", lines_of(study::fields_of(registration))) +
+         section("Design", design_of(study)) +
+         section("Extraction methods", lines_of(study::fields_of_methods(study))) +
+         section("Rendering", lines_of(study::fields_of_rendering(study))) +
+         section("Commitment", hashes_of(key, pack));
 }
 
-std::vector<std::string> unstated(const study::Registration& registration) {
+std::vector<std::string> missing_statements(const study::Registration& registration) {
   std::vector<std::string> places;
   const auto look = [&places](const char* key, bool stated) {
     if (!stated) places.push_back(std::string("/registration/") + key);

@@ -1,5 +1,5 @@
-/// \file What is fixed before the first participant: the commitment that a database begins with,
-/// and the preregistration page with the same hashes.
+/// \file What is fixed before the first participant: the commitment at the start of a database, and
+///   the preregistration page with the same hashes.
 #pragma once
 
 #include "engine/pack/pack.hpp"
@@ -20,7 +20,7 @@ namespace touchtrial::session {
                                                     const engine::Pack& pack, bool simulated,
                                                     bool pilot);
 
-/// Checks that key and pack belong to the study in its present state.
+/// Checks that key and pack belong to the study as it is now.
 /// \param study  newly read from its file
 /// \param key_file  that of `key`
 /// \throws UsageError with the difference and the remedy
@@ -36,6 +36,6 @@ void require_prepared(const study::Study& study, const study::StudyCodes& key,
 [[nodiscard]] std::string registration_page(const study::StudyCodes& key, const engine::Pack& pack);
 
 /// The missing parts of a registration, as JSON pointers.
-[[nodiscard]] std::vector<std::string> unstated(const study::Registration& registration);
+[[nodiscard]] std::vector<std::string> missing_statements(const study::Registration& registration);
 
 }  // namespace touchtrial::session

@@ -52,10 +52,10 @@ SupplyState DeviceStation::make_ready() {
   if (device::StopOnSignals::asked()) return SupplyState::stopped;
   const std::string need = missing();
   if (need.empty() && armed_) return SupplyState::ready;
-  const Attendant::Says says = attendant_.attend(need);
-  if (says == Attendant::Says::stop) return SupplyState::stopped;
-  if (says == Attendant::Says::at_reset && device_) device_->calibrate();
-  if (says != Attendant::Says::arm || !need.empty()) return SupplyState::not_yet;
+  const Attendant::Reply says = attendant_.attend(need);
+  if (says == Attendant::Reply::stop) return SupplyState::stopped;
+  if (says == Attendant::Reply::at_reset && device_) device_->calibrate();
+  if (says != Attendant::Reply::arm || !need.empty()) return SupplyState::not_yet;
   device_->rearm();
   armed_ = true;
   return SupplyState::ready;
@@ -72,7 +72,7 @@ std::string DeviceStation::missing() {
 
 std::string DeviceStation::open_again() try {
   device_ = open_();
-  // No force until somebody consents.
+  // No force before somebody consents.
   device_->halt();
   const device::DeviceInfo info = device_->info();
   if (!first_) first_ = info;
@@ -84,7 +84,7 @@ std::string DeviceStation::open_again() try {
   if (placement_) placed_.emplace(*device_, *placement_);
   return "";
 } catch (const Error& error) {
-  // A device that lost power may also need its firmware file; a person can remedy either.
+  // A device that lost power may also need its firmware file; a person can fix both.
   close();
   return error.what();
 }

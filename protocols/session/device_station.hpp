@@ -1,5 +1,5 @@
-/// \file Where a session's device comes from, and how it comes back after a fault: a real device is
-/// opened, placed, armed by consent, and opened again.
+/// \file Supplies a session with its device, and recovers it after a fault: a real device is
+///   opened, placed, armed by consent, and reopened.
 #pragma once
 
 #include "device/haptic_device.hpp"
@@ -17,7 +17,7 @@ namespace touchtrial::session {
 enum class SupplyState {
   ready,    ///< open, homed and armed: forces may be sent
   not_yet,  ///< something is missing; ask again
-  stopped,  ///< somebody gave up: the session has to end
+  stopped,  ///< a person stopped waiting: the session has to end
 };
 
 /// Provides the device. Used only between explorations, on the session's thread.
@@ -28,35 +28,35 @@ class DeviceSupply {
   /// Takes one step towards a device that is ready: opens it if it was lost, waits for its homing,
   /// or asks for consent to arm it. May block for a moment.
   [[nodiscard]] virtual SupplyState make_ready() = 0;
-  /// The last exploration was interrupted: no force until somebody consents.
+  /// Called after an interrupted exploration: no force before somebody consents.
   virtual void interrupted() {}
 };
 
-/// For a device that needs nothing: a simulated hand, made anew for each exploration.
+/// For a device that is always ready: a simulated hand, created for each exploration.
 class AlwaysReady final : public DeviceSupply {
  public:
   [[nodiscard]] SupplyState make_ready() override { return SupplyState::ready; }
 };
 
-/// The person who helps while a session waits for its device.
+/// The person who attends to the device while a session waits for it.
 class Attendant {
  public:
   virtual ~Attendant() = default;
-  enum class Says {
+  enum class Reply {
     wait,
     arm,
     stop,
     at_reset,  ///< the arm is at its reset position: HapticDevice::calibrate
   };
   /// Called repeatedly. May block for a moment, for instance to draw a screen.
-  /// \param need  a line on what is missing and its remedy; empty: nothing is missing, and force
-  ///   may come on if the hand is ready for it
+  /// \param need  one line on what is missing and its remedy; empty: nothing is missing, and force
+  ///   may be switched on if the hand is ready for it
   /// \return `arm` counts only if nothing is missing
-  [[nodiscard]] virtual Says attend(const std::string& need) = 0;
+  [[nodiscard]] virtual Reply attend(const std::string& need) = 0;
 };
 
-/// Opens the session's device, and opens it again after it was lost. Force never comes on by
-/// itself: at the beginning and after every interruption the attendant has to consent.
+/// Opens the session's device, and reopens it after it was lost. Force is never switched on
+/// automatically: at the start and after every interruption the attendant has to consent.
 class DeviceStation final : public DeviceSupply {
  public:
   /// Opens the device.
@@ -95,7 +95,7 @@ class DeviceStation final : public DeviceSupply {
   bool armed_ = false;
 };
 
-/// Fills in what a session's first event says about its device and servo thread.
+/// Fills in the device and servo thread of a session's first event.
 /// \param certificate  as StationRecord::calibration
 void describe_station(record::SessionOpening& opening, const device::DeviceInfo& device,
                       const device::SchedulingObtained& scheduling, double rate_hz,

@@ -1,4 +1,4 @@
-/// \file The experimenter, who runs a session: sees its state, and never what is presented.
+/// \file The interface to the experimenter, who sees a session's state but never what is presented.
 #pragma once
 
 #include <chrono>
@@ -9,7 +9,7 @@
 
 namespace touchtrial::session {
 
-/// Beside what participants are told.
+/// Compared with the instructions of participants.
 enum class HandLevel { low, right, high };
 
 /// How the hand presses across the plane and strokes along it.
@@ -25,17 +25,17 @@ struct SessionStatus {
   std::string participant{};
   /// "day sheet", "instructions", "practice", "ready", "exploring", "answering", ...
   std::string stage{};
-  /// As the participant's window counts: presentations begun, with the current one and with the one
-  /// that is announced; in practice, those of the round. 0: none yet.
+  /// As in the participant's window: presentations begun, including the current and the announced
+  /// one; in practice, those of the round. 0: none yet.
   int trial = 0;
   int of = 0;  ///< presentations in all, with repetitions; in practice, of the round
   bool practice = false;
-  bool participant_stopped = false;    ///< the participant's comfort stop is not settled yet
-  bool needs_consent = false;          ///< no force until the experimenter consents
+  bool participant_stopped = false;    ///< a comfort stop of the participant is pending
+  bool needs_consent = false;          ///< no force before the experimenter consents
   std::chrono::nanoseconds elapsed{};  ///< since the session's opening
   std::string device{};                ///< its name, and what it needs
-  std::string alert{};                 ///< what somebody must do now; empty: nothing
-  /// While a plane is on in real time, and the hand at it.
+  std::string alert{};                 ///< what a person must do now; empty: nothing
+  /// Set while a plane is on in real time and the hand is at it.
   std::optional<HandLevels> hand{};
   // Of the last exploration in real time.
   double rate_hz = 0.0;
@@ -53,18 +53,18 @@ struct ExperimenterRequest {
                    ///< in `text` as the deviation kComfortStopCode
     note,          ///< `text`
     deviation,     ///< `code`, and `text` which may be empty
-    delay,         ///< a deviation that kept the session waiting: a presentation that is under way
-                   ///< counts as after a pause
-    abort,         ///< `text` is the reason; the session is stopped and closed
-    leave,         ///< the program has to end, and `text` says why; the session stays open and can
-                   ///< be taken up again
+    delay,  ///< a deviation that delayed the session: the current presentation counts as after a
+            ///< pause
+    abort,  ///< `text` is the reason; the session is stopped and closed
+    leave,  ///< the program has to end for the reason in `text`; the session stays open and can be
+            ///< resumed
   };
   Kind kind{};
   std::string text;
   std::string code;
 };
 
-/// Code of the deviation whose text says why there was a comfort stop.
+/// Code of the deviation whose text is the reason for a comfort stop.
 inline constexpr const char* kComfortStopCode = "comfort-stop";
 
 /// An item of the day sheet.
@@ -85,12 +85,12 @@ class Experimenter {
   [[nodiscard]] virtual std::optional<ExperimenterRequest> request() { return std::nullopt; }
   /// Asks for the day sheet before the participant sits down. Called repeatedly until there is a
   /// reply. The default replies without a tick, and nothing is recorded.
-  /// \return what became of the items, in their order
+  /// \return the state of each item, in order
   [[nodiscard]] virtual std::optional<std::vector<Tick>> day_sheet(
       const std::vector<DaySheetItem>& /*items*/) {
     return std::vector<Tick>{};
   }
-  /// The response of a presentation is durable.
+  /// Called when the response of a presentation is durable.
   /// \param trial  its number
   virtual void acknowledged(int /*trial*/) {}
 };

@@ -73,7 +73,7 @@ bool is_interrupted(const device::ServoReport& report) noexcept {
   return report.end == device::ServoEnd::fault || report.end == device::ServoEnd::comfort_stop;
 }
 
-std::string words_in_clear(const device::ServoReport& report) {
+std::string public_reason(const device::ServoReport& report) {
   if (report.end == device::ServoEnd::comfort_stop) return "comfort stop";
   if (report.fault == device::SafetyFault::emergency_stop) return "emergency stop";
   if (report.device_fault == device::DeviceFault::link_lost) return "device lost";

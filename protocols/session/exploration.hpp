@@ -1,5 +1,5 @@
 /// \file One exploration: a participant's hand, a force model, the servo, and the trace of what
-/// they did. An explorer runs it, and decides how time passes.
+/// they did. An explorer runs it, in virtual or real time.
 #pragma once
 
 #include "device/device_settings.hpp"
@@ -19,7 +19,7 @@
 
 namespace touchtrial::session {
 
-/// The force of a rendering model, for the servo; made anew for each exploration.
+/// The force of a rendering model, for the servo; one object for each exploration.
 class ModelForce final : public device::ForceSource {
  public:
   /// \param model  must outlive this
@@ -34,8 +34,7 @@ class ModelForce final : public device::ForceSource {
   engine::Bristle touch_;
 };
 
-/// The servo's options in a study's trials: the limits of the study, or the lab's where they are
-/// stricter.
+/// The servo's options in a study's trials: the stricter of the study's and the lab's limits.
 /// \param rate_hz  of the servo
 /// \param lab  empty in virtual time
 [[nodiscard]] device::ServoOptions trial_servo_options(const study::Study& study, double rate_hz,
@@ -47,9 +46,8 @@ class ModelForce final : public device::ForceSource {
 /// When a tick is due, from the first tick on.
 [[nodiscard]] std::chrono::nanoseconds time_of_tick(std::int64_t tick, double rate_hz) noexcept;
 
-/// Height above the plane, mm, at which the stylus counts as landed. A height, because the place
-/// and time at which a force begins depend on the texture, and whether there was a first contact is
-/// stored in clear.
+/// Height above the plane, mm, at which the stylus counts as landed. Landing is defined by height
+/// because the onset of force depends on the texture, and the first contact is stored in clear.
 inline constexpr double kLandingHeightMm = 3.0;
 
 /// Turns the servo's samples into an evenly sampled trace. Where ticks are missing, because the
@@ -104,18 +102,18 @@ struct Exploration {
 /// Whether a fault or a comfort stop ended the exploration.
 [[nodiscard]] bool is_interrupted(const device::ServoReport& report) noexcept;
 
-/// The reason of an interruption, in clear: "comfort stop", "emergency stop" or "device lost" for
-/// what somebody did, else "device fault". Faults that follow from forces or motion depend on the
+/// The reason of an interruption, in clear: "comfort stop", "emergency stop" or "device lost" for a
+/// person's action, else "device fault". Faults that follow from forces or motion depend on the
 /// texture.
-[[nodiscard]] std::string words_in_clear(const device::ServoReport& report);
+[[nodiscard]] std::string public_reason(const device::ServoReport& report);
 
 /// Runs explorations. Participants get the plane's extent and the samples, and nothing else.
 class Explorer {
  public:
   virtual ~Explorer() = default;
 
-  /// Whether time passes by itself. A wait for the disk could then be felt, so every field has to
-  /// be in memory before.
+  /// Whether explorations run in real time. A wait for the disk could then be felt, so all fields
+  /// have to be in memory before.
   [[nodiscard]] virtual bool in_real_time() const noexcept { return false; }
   /// Puts a plane before a participant until the hand stops, time is up, or something fails. The
   /// last force written is zero.

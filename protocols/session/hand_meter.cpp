@@ -9,7 +9,7 @@ namespace touchtrial::session {
 namespace {
 
 constexpr double kStepS = 0.05;
-/// Steps of the mean, 0.5 s: plain at first, then with this time constant.
+/// Steps of the mean, 0.5 s: a plain mean at first, then exponential with this time constant.
 constexpr int kWholeSteps = 10;
 
 HandLevel level_of(double value, double least, double largest) noexcept {
@@ -24,7 +24,7 @@ HandMeter::HandMeter(const study::ValidityRule& rule, double rate_hz) noexcept
       largest_n_(std::min(study::kStrongestN, rule.largest_median_n)),
       rate_hz_(rate_hz),
       step_ticks_(std::max<std::int64_t>(1, std::llround(kStepS * rate_hz))) {
-  // A study may tell its participants something else.
+  // The instructions and the study's rule may exclude each other; the rule then applies.
   if (least_n_ < largest_n_) return;
   least_n_ = rule.least_median_n;
   largest_n_ = rule.largest_median_n;
@@ -33,11 +33,11 @@ HandMeter::HandMeter(const study::ValidityRule& rule, double rate_hz) noexcept
 void HandMeter::begin() noexcept {
   samples_ = 0;
   steps_ = 0;
-  told_.store(0, std::memory_order_relaxed);
+  levels_.store(0, std::memory_order_relaxed);
 }
 
 void HandMeter::feel(const device::ServoSample& sample) noexcept {
-  // Written so that a position that is no number is away too.
+  // Negated so that NaN counts as away.
   if (!(sample.position_mm.z <= kLandingHeightMm)) return begin();
   if (samples_ == 0) {
     first_ = sample;
@@ -57,19 +57,20 @@ void HandMeter::end_step(const device::ServoSample& last) noexcept {
   mean_n_ += (force_n_ / static_cast<double>(samples_) - mean_n_) / steps_;
   mean_mm_s_ += (mm_s - mean_mm_s_) / steps_;
   samples_ = 0;
-  if (steps_ == kWholeSteps) tell();
+  if (steps_ == kWholeSteps) publish_levels();
 }
 
-void HandMeter::tell() noexcept {
+void HandMeter::publish_levels() noexcept {
   const auto force = static_cast<int>(level_of(mean_n_, least_n_, largest_n_));
   const auto speed = static_cast<int>(level_of(mean_mm_s_, study::kSlowestMmS, study::kFastestMmS));
-  told_.store(static_cast<std::uint8_t>(1 + 3 * force + speed), std::memory_order_relaxed);
+  levels_.store(static_cast<std::uint8_t>(1 + 3 * force + speed), std::memory_order_relaxed);
 }
 
 std::optional<HandLevels> HandMeter::levels() const noexcept {
-  const int told = told_.load(std::memory_order_relaxed);
-  if (told == 0) return std::nullopt;
-  return HandLevels{static_cast<HandLevel>((told - 1) / 3), static_cast<HandLevel>((told - 1) % 3)};
+  const int levels = levels_.load(std::memory_order_relaxed);
+  if (levels == 0) return std::nullopt;
+  return HandLevels{static_cast<HandLevel>((levels - 1) / 3),
+                    static_cast<HandLevel>((levels - 1) % 3)};
 }
 
 }  // namespace touchtrial::session

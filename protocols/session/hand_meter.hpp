@@ -1,4 +1,5 @@
-/// \file How the hand presses and strokes while a plane is on, in words for the experimenter.
+/// \file How hard the hand presses and how fast it strokes while a plane is on, for the
+///   experimenter.
 #pragma once
 
 #include "device/servo/servo.hpp"
@@ -11,29 +12,29 @@
 
 namespace touchtrial::session {
 
-/// Means over about half a second of what the hand does by itself: its force across the plane,
-/// which over that time is its push whatever the relief, and its speed along the plane, over steps
-/// of 50 ms in which a texture moves it little. They are compared with what participants are told.
-/// Nothing but words leaves this object, so that they tell of the hand what everybody sees who
-/// looks at it, and nothing of the texture. Source: docs/decisions/0054-what-a-trial-shows.md.
+/// Means over about half a second of the hand's force across the plane and its speed along the
+/// plane. Over that time the force is the hand's push whatever the relief; speeds are taken over
+/// steps of 50 ms, in which a texture moves the hand little. Both are compared with the
+/// instructions. Only the levels leave this object, so that they reveal no more than a look at the
+/// hand, and nothing about the texture. Source: docs/decisions/0054-what-a-trial-shows.md.
 class HandMeter {
  public:
   /// \param rule  its windows of force hold too, where they are narrower than the instructions
   /// \param rate_hz  of the servo, > 0
   HandMeter(const study::ValidityRule& rule, double rate_hz) noexcept;
 
-  /// Forgets the hand. Not while another thread calls `feel`.
+  /// Resets the means. Not while another thread calls `feel`.
   void begin() noexcept;
-  /// Takes a sample of the plane frame. The thread that receives the servo's samples.
+  /// Adds a sample in the plane frame. Call on the thread that receives the servo's samples.
   void feel(const device::ServoSample& sample) noexcept;
   /// Any thread.
-  /// \return nothing until the hand has been at the plane (at most kLandingHeightMm above it) for
+  /// \return nothing before the hand has been at the plane (at most kLandingHeightMm above it) for
   ///   half a second
   [[nodiscard]] std::optional<HandLevels> levels() const noexcept;
 
  private:
   void end_step(const device::ServoSample& last) noexcept;
-  void tell() noexcept;
+  void publish_levels() noexcept;
 
   double least_n_;
   double largest_n_;
@@ -46,8 +47,8 @@ class HandMeter {
   int steps_ = 0;              ///< so far, counted up to kWholeSteps
   double mean_n_ = 0.0;
   double mean_mm_s_ = 0.0;
-  /// 0: nothing; else 1 + 3 * force + speed.
-  std::atomic<std::uint8_t> told_{0};
+  /// 0: no levels; else 1 + 3 * force + speed.
+  std::atomic<std::uint8_t> levels_{0};
 };
 
 }  // namespace touchtrial::session

@@ -12,8 +12,8 @@ namespace {
 using record::Mark;
 using Clock = std::chrono::steady_clock;
 
-/// The mark of an input that is told as it comes; that of an exploration's beginning and of the
-/// contact come from the servo's samples.
+/// The mark of an input that is sent at once. The marks of plane-on and contact are sent from the
+/// servo's samples.
 std::optional<Mark> mark_of(SessionInput input) {
   switch (input) {
     case SessionInput::end_exploring:
@@ -86,14 +86,14 @@ std::optional<record::MarksBody> SessionMarks::take(SessionClock& clock) {
   const TimePoint zero = now - clock.of(now);
   const Instruments::Report report = instruments_->take();
   if (report.latencies.size() != notices_.size()) {
-    throw std::logic_error("instruments: another number of marks was taken than was made");
+    throw std::logic_error("instruments: the number of latencies differs from the number of marks");
   }
   record::MarksBody body;
   for (std::size_t i = 0; i < notices_.size(); ++i) {
     const Notice& one = notices_[i];
     body.codes.push_back(static_cast<int>(one.mark));
     body.trials.push_back(one.trial);
-    // A session that is taken up again begins before its clock is known to instruments.
+    // The events of a resumed session begin before the instruments know its clock.
     body.at_ns.push_back(std::max<std::int64_t>(0, (one.at - zero).count()));
     body.latency_ns.push_back(std::max<std::int64_t>(
         0, report.latencies[i].value_or(std::chrono::nanoseconds(0)).count()));

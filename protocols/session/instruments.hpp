@@ -1,5 +1,5 @@
-/// \file Other instruments that record beside a session (EEG, video, physiology): what they are told
-/// of its events, and how that is recorded.
+/// \file Instruments that record during a session (EEG, video, physiology): the marks sent to them,
+///   and the record of these marks.
 #pragma once
 
 #include "device/servo/servo.hpp"
@@ -13,7 +13,7 @@
 
 namespace touchtrial::session {
 
-/// The instruments themselves. Any thread may call all functions; none but `take` waits.
+/// The instruments themselves. All functions are thread-safe; only `take` waits.
 class Instruments {
  public:
   using Mark = record::Mark;
@@ -26,8 +26,8 @@ class Instruments {
   virtual void feel(const device::ServoSample& sample, TimePoint at) noexcept = 0;
 
   struct Report {
-    /// One entry for each mark since the last call, in their order: from the event to the end of
-    /// its write; empty: there is no line, or it took nothing.
+    /// One entry for each mark since the last call, in order: the time from the event to the end of
+    /// its write; empty: there is no line, or the write failed.
     std::vector<std::optional<std::chrono::nanoseconds>> latencies;
     /// Time of another clock at the zero of the monotonic clock, s, and its uncertainty.
     std::optional<double> clock_zero_s;
@@ -37,15 +37,15 @@ class Instruments {
   [[nodiscard]] virtual Report take() = 0;
 };
 
-/// Tells instruments of a session's course, and collects what the session records of that. The
-/// session's thread makes all calls except `plane_is_on` and `feel`.
+/// Sends marks of a session's events to instruments, and collects what the session records about
+/// them. The session's thread makes all calls except `plane_is_on` and `feel`.
 class SessionMarks {
  public:
   using Mark = record::Mark;
   using TimePoint = Instruments::TimePoint;
 
-  /// \param instruments  null: there are none, and nothing happens; else must outlive this
-  /// \param session  told by this object from now on; must outlive it
+  /// \param instruments  null: none, and no mark is sent; else must outlive this
+  /// \param session  reports its inputs to this object from now on; must outlive it
   /// \param rate_hz  of the servo
   SessionMarks(Instruments* instruments, Session& session, double rate_hz);
   ~SessionMarks() { session_.set_observer({}); }
@@ -56,7 +56,7 @@ class SessionMarks {
   void end() { mark(Mark::session_ends, 0, std::chrono::steady_clock::now()); }
   /// Called on the servo's thread, before its first tick.
   void plane_is_on(TimePoint began) noexcept;
-  /// Called on the thread that takes the servo's samples.
+  /// Called on the thread that receives the servo's samples.
   void feel(const device::ServoSample& sample) noexcept;
 
   /// \param clock  of the session, in real time
@@ -79,7 +79,7 @@ class SessionMarks {
   int trial_ = 0;  ///< set between explorations
   TimePoint began_;
   bool has_landed_ = false;
-  std::vector<Notice> notices_;  ///< of the threads one after the other, never at once
+  std::vector<Notice> notices_;  ///< used by one thread after the other, never at once
 };
 
 }  // namespace touchtrial::session

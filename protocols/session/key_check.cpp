@@ -69,7 +69,7 @@ void require_same_secrets(const study::StudyKey& key, const study::StationKey& s
                 "was not signed with this key; give the station the file that was made with it");
 }
 
-/// What a station stores when it opens a session.
+/// The record that a station stores when it opens a session.
 struct TestRecord {
   int enrolment = 0;
   Bytes wrapped;  ///< the participant's key, for the investigator
@@ -121,7 +121,7 @@ void require_opens(const study::StudyKey& key, const study::StationKey& station,
   const TestRecord record = test_record(station);
   require_holds(record::kept_participant_key(station.station.secret, kTestSession, record.kept) ==
                     record::unwrap_participant_key(key.box(), kTestSession, record.wrapped),
-                "sealed a test record whose key the station cannot take up again");
+                "sealed a test record whose key the station cannot recover");
   const auto schedule = opened_schedule(key, record);
   require_holds(schedule.has_value(), "sealed a test record that the key does not open");
   require_holds(*schedule == study::make_schedule(

@@ -1,5 +1,5 @@
-/// \file Proves before the first participant that what a station seals will open with the
-/// investigator's key.
+/// \file Checks before the first participant that the investigator's key opens what a station
+///   seals.
 #pragma once
 
 #include "engine/pack/pack.hpp"
@@ -7,11 +7,10 @@
 
 namespace touchtrial::session {
 
-/// Checks that a station's file, the key and the pack belong together, and opens with the key what
-/// the station seals: the opening of a session, made in memory as `run` makes it, with the schedule
-/// of the station's first participant. Nothing is stored. Takes as long as reading the pack.
-/// \throws VerificationError with the first thing that does not hold and the remedy; it names no
-///   file
+/// Checks that a station's file, the key and the pack belong together. As a test it seals, in
+/// memory, the opening of a session with the schedule of the station's first participant, and opens
+/// it with the key. Nothing is stored. Takes as long as reading the pack.
+/// \throws VerificationError with the first mismatch and its remedy, without a file name
 /// \throws FileError as study::require_whole
 void require_opens(const study::StudyKey& key, const study::StationKey& station,
                    const engine::Pack& pack);

@@ -41,8 +41,8 @@ struct ReadyStep {
   bool hand_off = false;  ///< the device is only heard
 };
 
-/// Before each plane of a trial with several: the hand lifts off. Goes on by itself, after a moment
-/// in which it can be read.
+/// Shown before each plane of a trial with several planes, while the hand lifts off. Ends by itself
+/// once there was time to read it.
 struct IntervalStep {
   int trial = 0;  ///< its number in the schedule; in practice, in the round
   bool practice = false;
@@ -75,18 +75,18 @@ struct BreakStep {
   int of = 0;
 };
 
-/// Says what has just happened.
+/// Reports what has just happened.
 struct NoticeStep {
   enum class What {
     practice_over,  ///< the trials begin
     time_is_up,     ///< a presentation has ended without an answer
     stopped,        ///< a comfort stop: the force is off
     not_explored,   ///< an interval was not explored as asked for; its trial is repeated
-    hand_off,       ///< from here on the device is only heard
+    hand_off,       ///< from here on the device can only be heard
   };
   What what{};
   int presentations = 0;  ///< begun so far
-  /// false: the session goes on once the experimenter lets the force on again, and a reply has no
+  /// false: the session continues once the experimenter allows force again, and a reply has no
   /// effect
   bool may_go_on = true;
 };
@@ -96,7 +96,7 @@ struct PauseStep {};
 
 struct EndStep {};
 
-/// Data alone, which a window draws, a simulated participant answers, and a test scripts. Nothing
+/// Pure data: a window draws it, a simulated participant answers it, and tests script it. Nothing
 /// in a step depends on what is presented.
 using Step = std::variant<InstructionStep, QuestionStep, PracticeStep, ReadyStep, IntervalStep,
                           AnswerStep, FeedbackStep, BreakStep, NoticeStep, PauseStep, EndStep>;
@@ -104,19 +104,20 @@ using Step = std::variant<InstructionStep, QuestionStep, PracticeStep, ReadyStep
 struct StepReply {
   /// When the participant replied, on the servo's monotonic clock; empty: now.
   std::optional<std::chrono::steady_clock::time_point> at;
-  /// Time that the reply takes in virtual time; ignored in real time.
+  /// Duration of the reply in virtual time; ignored in real time.
   std::chrono::nanoseconds took{};
   bool explore_again = false;     ///< AnswerStep: back to the plane; ignore the members below
   Answer answer{};                ///< AnswerStep
   std::optional<int> confidence;  ///< AnswerStep, if asked for: from 1
-  /// QuestionStep, in the questions' order: of a choice the option's index from 0; empty if the
-  /// question was left out.
+  /// QuestionStep, in the order of questions: for a choice the option's index from 0; empty if the
+  /// question was skipped.
   std::vector<std::string> answers;
 };
 
-/// The calls below are all that reaches a participant: the pictures to choose from, the extent of
-/// the blank plane (the same in every trial), and what the device lets them feel. They get no code,
-/// label or file name of what is presented. The session's thread makes all calls except `feel`.
+/// These calls are a participant's only source of information: the pictures to choose from, the
+/// extent of the blank plane (the same in every trial), and the device's forces. They never contain
+/// a code, label or file name of what is presented. The session's thread makes all calls except
+/// `feel`.
 class Participant {
  public:
   virtual ~Participant() = default;
@@ -125,7 +126,7 @@ class Participant {
   /// \param labels  of the pictures, by position
   virtual void see_pictures(const std::vector<std::string>& labels) = 0;
 
-  /// Shows a step, and looks for a reply. Called repeatedly with the same step until there is one.
+  /// Shows a step and polls for a reply. Called repeatedly with the same step until there is one.
   /// May block for a moment, for instance to draw a screen.
   /// \return empty as long as there is no reply
   [[nodiscard]] virtual std::optional<StepReply> attend(const Step& step) = 0;
@@ -139,12 +140,12 @@ class Participant {
   /// `began`.
   virtual void plane_is_on(std::chrono::steady_clock::time_point /*began*/) noexcept {}
 
-  /// Called repeatedly in real time while the plane is on, to look for what the participant does:
-  /// `finish` when they are done, `comfort_stop` when they want no force.
+  /// Polled in real time while the plane is on: `finish` when the participant is done,
+  /// `comfort_stop` when they want no force.
   virtual void exploring(device::ServoControl& /*servo*/) {}
 
-  /// One tick of what the device did. In virtual time called on the servo's thread; in real time on
-  /// another thread, with a delay, but before the next step.
+  /// One sample of the servo. In virtual time called on the servo's thread; in real time on another
+  /// thread, with a delay, but before the next step.
   virtual void feel(const device::ServoSample& sample) noexcept = 0;
 };
 

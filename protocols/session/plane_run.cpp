@@ -10,12 +10,12 @@
 namespace touchtrial::session {
 namespace {
 
-// The stroke that is played: as instructions ask for.
+// The simulated stroke has the speed of the instructions.
 constexpr double kPlayedMmS = 100.0;
 constexpr double kPlayedLoadN = 0.7;
 constexpr double kShareOfPlane = 0.35;  ///< radius re the shorter side
 
-/// One of several planes that are explored freely. It comes on once the hand has been above it.
+/// One of several planes that are explored freely. It is rendered once the hand has been above it.
 class LiftedForce final : public device::ForceSource {
  public:
   explicit LiftedForce(const engine::RenderingModel& model) noexcept : force_(model) {}
@@ -30,7 +30,7 @@ class LiftedForce final : public device::ForceSource {
   bool has_lifted_ = false;
 };
 
-/// The force of a plane that is explored so.
+/// The force of a freely explored plane.
 /// \param planes  of the trial
 /// \param model  must outlive it
 std::unique_ptr<device::ForceSource> force_of(const study::Exploring& exploring, int planes,

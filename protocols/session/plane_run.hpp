@@ -11,9 +11,9 @@
 
 namespace touchtrial::session {
 
-/// One plane, until its clock has run down, which runs while the hand explores as asked for
-/// (study::InContact). It comes on once the hand has been above it, so that no plane begins inside
-/// the wall.
+/// One plane until its clock has run out; the clock runs while the hand explores as instructed
+/// (study::InContact). It is rendered once the hand has been above it, so that no plane begins
+/// inside the wall.
 class IntervalForce final : public device::ForceSource {
  public:
   /// \param stiffness_n_per_mm  of the wall
@@ -34,8 +34,8 @@ class IntervalForce final : public device::ForceSource {
   bool has_lifted_ = false;
 };
 
-/// The lateral forces of a stroke in circles, whatever the device does: what motors sound like,
-/// with the hand off (study::Played). Stops by itself.
+/// The lateral forces of a simulated stroke in circles, whatever the device's position: it
+/// reproduces the sound of the motors with the hand off (study::Played). Stops by itself.
 class PlayedForce final : public device::ForceSource {
  public:
   PlayedForce(const engine::RenderingModel& model, const PlaneGeometry& plane,
@@ -61,18 +61,18 @@ class PlayedForce final : public device::ForceSource {
 
 /// How the planes of a trial ended.
 enum class PlanesEnd {
-  explored,      ///< all as asked for
+  explored,      ///< all as instructed
   time_is_up,    ///< of a plane that is explored freely, in a study that then takes no response
-  not_explored,  ///< a plane's time was up before its clock had run down
+  not_explored,  ///< a plane's time was up before its clock ran out
   interrupted,   ///< by a fault or a comfort stop, in an exploration
-  paused,        ///< by the experimenter, in an exploration or between two; begin again after it
-  broken_off     ///< between two explorations: the session was stopped or left, or interrupted
+  paused,     ///< by the experimenter, during an exploration or between two; start over afterwards
+  broken_off  ///< between two explorations: the session was stopped or left, or interrupted
 };
 
-/// What is called in each exploration.
+/// Callbacks of each exploration.
 struct PlaneListener {
-  /// Before a plane comes on; gives the trace that the exploration fills. Null: the plane comes too
-  /// late, and the trial begins again.
+  /// Called before a plane is rendered; returns the trace to fill. Null: the plane is late, and the
+  /// trial starts over.
   std::function<record::Trace*()> plane_on;
   std::function<void(const Exploration&)> explored;
 };

@@ -22,16 +22,14 @@
 namespace touchtrial::session {
 namespace {
 
-/// How long the session's thread waits for the servo's end before it looks after the participant
-/// again.
-constexpr std::chrono::milliseconds kBetweenLooks{5};
+/// How long the session's thread waits for the servo's end before it polls the participant again.
+constexpr std::chrono::milliseconds kPollInterval{5};
 
 /// Capacity of the largest ring, samples: 6.5 s at 10 kHz. A writer that falls further behind loses
-/// some.
+/// samples.
 constexpr std::size_t kMaxRing = std::size_t{1} << 16U;
 
-// The servo must not spend time on waking the writer, so the writer looks by itself: often enough
-// for a ring that holds seconds.
+// The writer polls, because the servo must not spend time on waking it; the ring holds seconds.
 constexpr std::chrono::milliseconds kBetweenDrains{2};
 constexpr std::size_t kAtOnce = 256;
 
@@ -39,10 +37,10 @@ constexpr std::size_t kAtOnce = 256;
 /// fills gaps, and to the participant. Made and destroyed on one thread.
 class TraceWriter {
  public:
-  /// All must outlive this. Nobody else may use builder and `feel` as long as this lives.
+  /// All must outlive this, which has exclusive use of builder and `feel`.
   TraceWriter(device::SampleRing& ring, TraceBuilder& builder, Participant& participant)
       : ring_(ring), builder_(builder), participant_(participant), thread_([this] { write(); }) {}
-  /// Takes what is left in the ring. The servo must have ended.
+  /// Drains the ring. The servo must have ended.
   ~TraceWriter() {
     finishing_.store(true, std::memory_order_release);
     thread_.join();
@@ -53,14 +51,14 @@ class TraceWriter {
  private:
   void write() noexcept {
     while (!finishing_.load(std::memory_order_acquire)) {
-      if (!take_some()) std::this_thread::sleep_for(kBetweenDrains);
+      if (!drain_ring()) std::this_thread::sleep_for(kBetweenDrains);
     }
-    while (take_some()) {
+    while (drain_ring()) {
     }
   }
 
-  /// \return whether there was anything
-  bool take_some() noexcept {
+  /// \return whether there was a sample
+  bool drain_ring() noexcept {
     std::array<device::ServoSample, kAtOnce> samples;
     const std::size_t count = ring_.pop(samples);
     for (const device::ServoSample& sample : std::span(samples).first(count)) {
@@ -102,8 +100,8 @@ record::InterruptionDetail detail_of(const device::ServoReport& report,
 
 }  // namespace
 
-struct RealTimeExplorer::Machinery {
-  explicit Machinery(const RealTimeOptions& wanted) : options(wanted), thread(wanted.scheduling) {}
+struct RealTimeExplorer::Impl {
+  explicit Impl(const RealTimeOptions& wanted) : options(wanted), thread(wanted.scheduling) {}
 
   [[nodiscard]] std::unique_ptr<device::ServoClock> make_clock() const {
     if (options.clock) return options.clock();
@@ -111,7 +109,7 @@ struct RealTimeExplorer::Machinery {
         device::PacedClock::usual_spin(thread.scheduling().policy));
   }
 
-  /// Allocates what the servo will use, before it runs.
+  /// Allocates the servo's memory before it runs.
   void make_room(const device::ServoOptions& servo) {
     const std::size_t wanted = std::clamp(most_samples(servo), std::size_t{1}, kMaxRing);
     if (!ring || ring->capacity() < wanted) ring.emplace(wanted);
@@ -122,7 +120,7 @@ struct RealTimeExplorer::Machinery {
     recorder->clear();
   }
 
-  /// Runs the servo on its thread; the caller's looks after the participant meanwhile.
+  /// Runs the servo on its thread while the caller's thread polls the participant.
   /// \param began  set to the time at which the servo starts
   [[nodiscard]] device::ServoReport run(device::HapticDevice& device, device::ForceSource& force,
                                         device::SampleSink& sink, const device::ServoOptions& servo,
@@ -139,13 +137,13 @@ struct RealTimeExplorer::Machinery {
   device::ServoThread thread;
 };
 
-device::ServoReport RealTimeExplorer::Machinery::run(device::HapticDevice& device,
-                                                     device::ForceSource& force,
-                                                     device::SampleSink& sink,
-                                                     const device::ServoOptions& servo,
-                                                     Participant& participant,
-                                                     std::chrono::steady_clock::time_point& began) {
-  control.forget_wishes();
+device::ServoReport RealTimeExplorer::Impl::run(device::HapticDevice& device,
+                                                device::ForceSource& force,
+                                                device::SampleSink& sink,
+                                                const device::ServoOptions& servo,
+                                                Participant& participant,
+                                                std::chrono::steady_clock::time_point& began) {
+  control.clear_requests();
   const std::unique_ptr<device::ServoClock> clock = make_clock();
   device::ServoHooks hooks;
   hooks.control = &control;
@@ -162,10 +160,10 @@ device::ServoReport RealTimeExplorer::Machinery::run(device::HapticDevice& devic
     participant.plane_is_on(began);
     report = device::run_servo(device, force, sink, servo, *clock, hooks);
   });
-  while (running.runs(kBetweenLooks)) participant.exploring(control);
+  while (running.runs(kPollInterval)) participant.exploring(control);
   running.finish();
   if (watchdog.disarm() && !is_interrupted(report)) {
-    // It tripped while the run ended by itself. The device is halted: an interruption.
+    // The watchdog tripped as the run ended by itself. The device is halted: an interruption.
     report.end = device::ServoEnd::fault;
     report.fault = device::SafetyFault::stalled;
   }
@@ -177,22 +175,22 @@ device::ServoReport RealTimeExplorer::Machinery::run(device::HapticDevice& devic
 }
 
 RealTimeExplorer::RealTimeExplorer(const RealTimeOptions& options)
-    : machinery_(std::make_unique<Machinery>(options)) {}
+    : impl_(std::make_unique<Impl>(options)) {}
 
 RealTimeExplorer::~RealTimeExplorer() = default;
 
 const device::SchedulingObtained& RealTimeExplorer::scheduling() const noexcept {
-  return machinery_->thread.scheduling();
+  return impl_->thread.scheduling();
 }
 
 device::ServoControl& RealTimeExplorer::control() noexcept {
-  return machinery_->control;
+  return impl_->control;
 }
 
 Exploration RealTimeExplorer::explore(device::ForceSource& force, const PlaneGeometry& plane,
                                       Participant& participant, const device::ServoOptions& options,
                                       record::Trace& trace) {
-  Machinery& m = *machinery_;
+  Impl& m = *impl_;
   m.make_room(options);
   device::HapticDevice& device = participant.begin_exploring(plane);
   TraceBuilder builder(trace, options.rate_hz, most_samples(options));

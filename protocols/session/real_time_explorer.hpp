@@ -22,11 +22,11 @@ struct RealTimeOptions {
 };
 
 /// Runs the servo on its own thread, which has asked for real-time scheduling once. A ring takes
-/// the samples to a second thread, which writes the trace. The session's thread looks after the
-/// participant. A watchdog looks after the servo; signals and crashes halt the device
-/// (StopOnSignals). An interrupted exploration leaves the device halted, so that no force passes
-/// before a person decides so (HapticDevice::rearm). All functions belong to the session's thread,
-/// except those of the object that `control` returns.
+/// the samples to a second thread, which writes the trace. The session's thread polls the
+/// participant. A watchdog monitors the servo; signals and crashes halt the device (StopOnSignals).
+/// An interrupted exploration leaves the device halted, so that no force is sent before a person
+/// rearms it (HapticDevice::rearm). All functions belong to the session's thread, except those of
+/// the object that `control` returns.
 class RealTimeExplorer final : public Explorer {
  public:
   explicit RealTimeExplorer(const RealTimeOptions& options = {});
@@ -45,8 +45,8 @@ class RealTimeExplorer final : public Explorer {
   [[nodiscard]] device::ServoControl& control() noexcept;
 
  private:
-  struct Machinery;
-  std::unique_ptr<Machinery> machinery_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace touchtrial::session

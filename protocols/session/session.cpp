@@ -167,7 +167,7 @@ void Session::present(Time at) {
 }
 
 void Session::begin_presentation(Time at) noexcept {
-  // The first trial after a break, instructions or practice: until then the hand has rested.
+  // The hand has rested before the first trial after a break, instructions or practice.
   if (done_since_break_ == 0) rested_at_ = at;
   had_contact_ = false;
   was_timed_out_ = false;
@@ -206,7 +206,7 @@ void Session::interrupt(Time at, const std::string& reason,
   require(Input::interrupt, at);
   recorder_.interrupted(at, current()->place.trial, reason, detail);
   if (detail) note_force(detail->largest_force_n);
-  give_up_presentation(at, reason);
+  void_presentation(at, reason);
   restart_block(at);
 }
 
@@ -229,7 +229,7 @@ void Session::choose(int position) {
     throw std::invalid_argument("there is no picture at this position");
   }
   const auto* const before = answer_ ? std::get_if<Chosen>(&*answer_) : nullptr;
-  if (before != nullptr && before->position == position) return;  // not the one change allowed
+  if (before != nullptr && before->position == position) return;  // the same choice is not a change
   answer_ = before != nullptr ? Chosen{position, before->position} : Chosen{position};
   phase_ = Phase::chosen;
 }
@@ -237,7 +237,7 @@ void Session::choose(int position) {
 void Session::rate(std::vector<double> values) {
   require(Input::choose, last_);
   if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
-    throw std::invalid_argument("a rating is no number");
+    throw std::invalid_argument("a rating is not a finite number");
   }
   answer_ = Rated{std::move(values)};
   phase_ = Phase::chosen;
@@ -279,7 +279,7 @@ void Session::finish_presentation(Time at, const std::optional<Answer>& answer) 
   move_to(between_trials(), at);
 }
 
-void Session::give_up_presentation(Time at, const std::string& reason) {
+void Session::void_presentation(Time at, const std::string& reason) {
   if (reason != record::kPauseReason) course_.spoil();
   evidence_.reset();
   move_to(between_trials(), at);
@@ -287,7 +287,7 @@ void Session::give_up_presentation(Time at, const std::string& reason) {
 
 void Session::restart_block(Time at) {
   if (!course_.block_to_restart()) return;
-  const study::BlockRestart again = course_.drawn_again(*course_.block_to_restart());
+  const study::BlockRestart again = course_.redrawn_block(*course_.block_to_restart());
   recorder_.block_restarted(at, again.block, again.first_trial(), seal_block_(again.trials));
   course_.restart(again);
   done_since_break_ = 0;

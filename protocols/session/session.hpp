@@ -1,5 +1,5 @@
-/// \file The course of one session: which inputs are possible in each phase, and what they record.
-/// Simulated and real sessions use the same one. Knows neither participants nor clocks.
+/// \file The state machine of one session: which inputs each phase accepts, and what they record.
+///   Simulated and real sessions share it; it is independent of participants and clocks.
 #pragma once
 
 #include "record/payload.hpp"
@@ -58,7 +58,7 @@ enum class SessionInput {
   take_break,
   pause,
   resume,
-  note,  ///< and the other remarks: deviations, ticks, questionnaires, marks
+  note,  ///< and other remarks: deviations, ticks, questionnaires, marks
   stop,
   close,
 };
@@ -69,7 +69,7 @@ using SealBlock = std::function<std::string(const std::vector<study::Trial>&)>;
 /// \param codes  must outlive the session
 [[nodiscard]] SealBlock seal_with(const study::StudyCodes& codes);
 
-/// The remarks so far, so that nobody is asked twice.
+/// The remarks so far, so that no question is asked twice.
 struct SessionRemarks {
   std::set<std::string> ticked;                ///< items of the day sheet
   std::set<std::string> deviations;            ///< codes
@@ -92,14 +92,14 @@ class Session {
   Session(std::unique_ptr<study::Order> order, const study::TrialOptions& options,
           record::SessionRecorder recorder, SealBlock seal = {});
 
-  /// Brings a fresh session to the state that its stored events left; the recorder continues after
-  /// the last one. Records nothing.
+  /// Brings a fresh session to the state after its stored events; the recorder continues after the
+  /// last one. Records nothing.
   /// \param events  opened (record::opened_event)
   /// \throws StoreError if the events cannot be those of such a session
   void restore(std::span<const record::Event> events);
-  /// Takes the session up after the program that ran it ended: interrupts the current presentation,
-  /// if there is one, and ends a pause.
-  void take_up(Time at, const record::ResumedBody& body);
+  /// Resumes the session after the program ended: interrupts the current presentation, if there is
+  /// one, and ends a pause.
+  void resume_after_exit(Time at, const record::ResumedBody& body);
 
   /// Called for every input that is accepted, before it is recorded, with the current trial's
   /// number (0: none is left).
@@ -138,14 +138,14 @@ class Session {
   void contact(Time at);
   /// The participant is done exploring.
   void end_exploring(Time at);
-  /// Exploration time is up. An answer is still required; or, if the study says no-response, the
+  /// Exploration time is up. An answer is still required; or, with no-response in the study, the
   /// presentation is done without one, and its evidence is stored now.
   void time_out(Time at);
-  /// The presentation was spoilt by a comfort stop or a device fault. The study's on_interruption
+  /// A comfort stop or a device fault interrupted the presentation. The study's on_interruption
   /// decides whether it is repeated. Its evidence is discarded.
   /// \param reason  in clear: a fixed phrase that does not depend on the stimulus; after
   ///   record::kPauseReason the same presentation is the next one
-  /// \param detail  sealed but for the faults' names
+  /// \param detail  sealed except the faults' names
   void interrupt(Time at, const std::string& reason,
                  const std::optional<record::InterruptionDetail>& detail = std::nullopt);
   /// SessionRecorder::packed. May be called on another thread, except during `restore`.
@@ -173,8 +173,8 @@ class Session {
   /// One presentation of the practice, between instruction and the first trial.
   void practise(Time at, const record::PracticeBody& body);
   void take_break(Time at, const std::string& text = "");
-  /// Possible whenever the plane is off; `resume` returns to the phase before. While a presentation
-  /// is explored, `interrupt` it before, with record::kPauseReason.
+  /// Accepted whenever the plane is off; `resume` returns to the phase before. While a presentation
+  /// is explored, first `interrupt` it with record::kPauseReason.
   void pause(Time at, const std::string& reason);
   void resume(Time at);
   // Remarks, possible at any time between opening and closing.
@@ -184,15 +184,15 @@ class Session {
   void tick(Time at, const std::string& item);
   /// \param answers  JSON, sealed
   void question(Time at, const std::string& name, const std::string& answers);
-  /// Records what other instruments were told of.
+  /// Records the marks sent to other instruments.
   void mark(Time at, const record::MarksBody& marks);
   /// Ends the session early. The current presentation remains without an answer.
   /// \param reason  in the experimenter's words, sealed; may be empty
   /// \param code  in clear, if the program stops it
   void stop(Time at, const std::string& reason, const std::string& code = "");
-  /// \param may_name_one_key  the choices have places that are drawn (study::Choose::has_pictures);
-  ///   only then the end says in clear if 95 % of 20 answers or more are at one position: elsewhere
-  ///   a key means something by itself, and is the outcome
+  /// \param may_name_one_key  the choices have drawn positions (study::Choose::has_pictures). Only
+  ///   then does the end state in clear whether 95 % of 20 answers or more are at one position:
+  ///   otherwise a position is the outcome
   void close(Time at, bool may_name_one_key = false);
 
  private:
@@ -205,12 +205,12 @@ class Session {
   void count(const Answer& answer);
   [[nodiscard]] std::optional<int> trial_under_way() const noexcept;
   void note_force(double largest_n);
-  /// Takes the current presentation off, as the study's on_interruption has it; after kPauseReason
-  /// it is the next one.
-  void give_up_presentation(Time at, const std::string& reason);
-  /// Draws, records and begins a block anew, if the course waits for it.
+  /// Voids the current presentation as the study's on_interruption requires; after kPauseReason it
+  /// is the next one.
+  void void_presentation(Time at, const std::string& reason);
+  /// Redraws, records and restarts a block, if the course waits for it.
   void restart_block(Time at);
-  /// Where nothing is under way: between trials, or after the last.
+  /// The phase between trials, or after the last.
   [[nodiscard]] SessionPhase between_trials() const noexcept;
 
   // The effects of stored events, by group (session_restore.cpp).

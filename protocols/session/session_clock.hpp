@@ -12,8 +12,7 @@ class SessionClock {
   virtual ~SessionClock() = default;
 
   [[nodiscard]] virtual Time now() = 0;
-  /// Called after something that takes this long. Advances virtual time; real time has advanced by
-  /// itself.
+  /// Advances virtual time; no effect in real time, which has advanced already.
   virtual void pass(Time duration) = 0;
   /// Converts a time of the servo's monotonic clock. Virtual time returns `now`.
   [[nodiscard]] virtual Time of(std::chrono::steady_clock::time_point) { return now(); }
@@ -34,7 +33,7 @@ class VirtualSessionClock final : public SessionClock {
 /// Real time since the clock was made, by the machine's monotonic clock.
 class SteadySessionClock final : public SessionClock {
  public:
-  /// \param start  first value; not 0 in a session that is taken up again
+  /// \param start  first value; not 0 in a resumed session
   explicit SteadySessionClock(Time start = {}) : zero_(std::chrono::steady_clock::now() - start) {}
 
   [[nodiscard]] Time now() override { return of(std::chrono::steady_clock::now()); }

@@ -10,8 +10,8 @@ namespace touchtrial::session {
 namespace {
 
 constexpr std::chrono::milliseconds kBetweenShows{250};
-/// Pause between two looks for a reply, which leaves the processor to others.
-constexpr std::chrono::milliseconds kBreath{2};
+/// Sleep between two polls for a reply, so as not to busy-wait.
+constexpr std::chrono::milliseconds kPollPause{2};
 
 constexpr const char* kComfortStop = "comfort stop";
 constexpr const char* kStopped = "stopped";  ///< the stage after one
@@ -22,8 +22,8 @@ std::string with_text(const std::string& words, const std::string& text) {
 
 }  // namespace
 
-/// Lets the desk look at the experimenter's requests while the plane is on; all else is the
-/// participant's.
+/// Also polls the experimenter's requests while the plane is on; forwards everything else to the
+/// participant.
 class SessionDesk::AttendedParticipant final : public Participant {
  public:
   explicit AttendedParticipant(SessionDesk& desk)
@@ -118,10 +118,10 @@ void SessionDesk::show_now_and_then() {
 }
 
 void SessionDesk::sleep_briefly() const {
-  if (parts_.explorer.in_real_time()) std::this_thread::sleep_for(kBreath);
+  if (parts_.explorer.in_real_time()) std::this_thread::sleep_for(kPollPause);
 }
 
-bool SessionDesk::goes_on() const noexcept {
+bool SessionDesk::is_running() const noexcept {
   return !left_ && !is_aborted_ && session_.phase() != SessionPhase::stopped &&
          session_.phase() != SessionPhase::closed;
 }
@@ -158,7 +158,7 @@ device::ServoOptions SessionDesk::servo_options() const {
 
 void SessionDesk::look(device::ServoControl& servo) {
   show_now_and_then();
-  // A request to end the session may come again until it is obeyed.
+  // A request to end the session may be repeated until it is handled.
   while (!end_is_postponed()) {
     std::optional<Request> request = parts_.experimenter.request();
     if (!request) return;
@@ -185,7 +185,7 @@ void SessionDesk::handle_while_exploring(Request request, device::ServoControl& 
       servo.comfort_stop();
       break;
     case Request::Kind::pause:
-      // A participant who is done already goes on to the answer screen, and is paused there.
+      // A participant who is done already continues to the answer screen, and is paused there.
       was_cut_short_ = was_cut_short_ || !servo.finish_asked();
       servo.finish();
       break;
@@ -198,10 +198,10 @@ void SessionDesk::handle_while_exploring(Request request, device::ServoControl& 
 }
 
 std::string SessionDesk::note_interruption(const device::ServoReport& report) {
-  return count_interruption(words_in_clear(report));
+  return count_interruption(public_reason(report));
 }
 
-/// A reason that the experimenter gave takes precedence over the words.
+/// The experimenter's reason takes precedence.
 std::string SessionDesk::count_interruption(const std::string& words) {
   ++status_.interruptions;
   parts_.devices.interrupted();
@@ -218,7 +218,7 @@ std::optional<ExperimenterRequest> SessionDesk::next_request() {
 }
 
 bool SessionDesk::handle() {
-  if (!goes_on()) return false;
+  if (!is_running()) return false;
   if (device::StopOnSignals::asked()) return leave(device::StopOnSignals::message());
   while (const std::optional<Request> request = next_request()) {
     if (!handle(*request)) return false;
@@ -277,7 +277,7 @@ bool SessionDesk::handle_pause(const Request& request) {
   }
 }
 
-/// The time of an answer would contain the wait: it is recorded as a pause that is over.
+/// Recorded as a finished pause, because the wait would otherwise count as answering time.
 bool SessionDesk::handle_delay(const Request& request) {
   session_.deviate(now(), {request.code, request.text});
   if (!session_.in_presentation()) return true;
@@ -291,8 +291,8 @@ bool SessionDesk::handle_delay(const Request& request) {
   return true;
 }
 
-/// No force is on. Interrupts the current presentation, and has the device ask for consent before
-/// there is force again.
+/// Called without force. Interrupts the current presentation; the device asks for consent before
+/// force is sent again.
 bool SessionDesk::handle_comfort_stop(const Request& request) {
   if (session_.phase() == SessionPhase::paused) session_.resume(now());
   const bool interrupts = session_.accepts(SessionInput::interrupt);

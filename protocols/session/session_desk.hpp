@@ -1,7 +1,6 @@
-/// \file The desk at which a session's people, device and time are attended to. Whatever takes a
-/// while passes through it: it shows steps to the participant until they reply, runs explorations,
-/// waits for the device, and obeys the experimenter meanwhile. It calls neither trials nor stages.
-/// Private to protocols/session.
+/// \file Everything in a session that takes time: it shows steps to the participant until they
+/// reply, runs explorations, waits for the device, and handles the experimenter's requests
+/// meanwhile. It does not decide on trials or stages. Private to protocols/session.
 #pragma once
 
 #include "protocols/session/hand_meter.hpp"
@@ -31,17 +30,17 @@ class SessionDesk {
   /// The time of a reply; neither in the future nor before the session's last event.
   [[nodiscard]] Time when(const StepReply& reply);
 
-  /// Shows the experimenter that another stage has begun.
+  /// Shows a new stage to the experimenter.
   void enter(const std::string& stage);
   /// The same in practice.
   /// \param presentation  of the round, from 1; 0: none yet
   void enter_practice(const std::string& stage, int presentation, int of);
-  /// Shows a step until there is a reply, and lets its time pass.
-  /// \return empty if the step was broken off: the session was stopped or left, or the current
+  /// Shows a step until there is a reply, and advances the clock.
+  /// \return empty if the step was aborted: the session was stopped or left, or the current
   ///   presentation was interrupted
   [[nodiscard]] std::optional<StepReply> attend(const Step& step);
-  /// Runs an exploration, and lets its time pass. In real time the experimenter's requests end it,
-  /// or are obeyed after it.
+  /// Runs an exploration, and advances the clock. In real time the experimenter's requests end it,
+  /// or are handled after it.
   /// \param trace  gets every sample
   [[nodiscard]] Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
                                     const device::ServoOptions& options, record::Trace& trace);
@@ -51,17 +50,17 @@ class SessionDesk {
   [[nodiscard]] int pauses() const noexcept { return pauses_; }
   /// The options of the session's explorations.
   [[nodiscard]] device::ServoOptions servo_options() const;
-  /// Obeys the experimenter's requests.
-  /// \return whether the current step goes on
+  /// Handles the experimenter's requests.
+  /// \return whether the current step continues
   [[nodiscard]] bool handle();
-  /// Waits until forces may be sent, and after a comfort stop until the participant goes on or the
-  /// experimenter consents. Pauses the session meanwhile if the device is not ready.
+  /// Waits until forces may be sent, and after a comfort stop until the participant continues or
+  /// the experimenter consents. Pauses the session meanwhile if the device is not ready.
   /// \return whether forces may be sent
   [[nodiscard]] bool await_device();
 
   /// Whether the session was neither stopped nor aborted nor left.
-  [[nodiscard]] bool goes_on() const noexcept;
-  /// Why the session is to be left open; empty if it is not.
+  [[nodiscard]] bool is_running() const noexcept;
+  /// Why the session is left open; empty if it is not.
   [[nodiscard]] const std::optional<std::string>& left() const noexcept { return left_; }
   /// Marks the session's start and end in the other instruments' records.
   void mark_session_start() { marks_.begin(); }
@@ -80,7 +79,7 @@ class SessionDesk {
   /// Called repeatedly in real time while the plane is on.
   void look(device::ServoControl& servo);
   [[nodiscard]] bool end_is_postponed() const noexcept;
-  /// Ends the exploration if a request asks for it. Postpones what has to be recorded.
+  /// Ends the exploration if a request requires it. Postpones what has to be recorded.
   void handle_while_exploring(Request request, device::ServoControl& servo);
   [[nodiscard]] std::optional<Request> next_request();
   [[nodiscard]] bool handle(const Request& request);
@@ -92,8 +91,8 @@ class SessionDesk {
   [[nodiscard]] bool wait_for_device(SupplyState device);
   /// What the participant sees while the device is not ready.
   [[nodiscard]] Step waiting_page() const;
-  /// Shows the participant a page about a comfort stop until they go on.
-  /// \return whether they do; at once if there was none
+  /// Shows the participant a page about a comfort stop until they continue.
+  /// \return whether they continue; true at once if there was no stop
   [[nodiscard]] bool wait_for_consent();
   [[nodiscard]] std::string count_interruption(const std::string& words);
   void show();
@@ -109,9 +108,10 @@ class SessionDesk {
   HandMeter hand_;
   std::deque<Request> postponed_;
   std::optional<std::string> reason_;  ///< of an interruption that the experimenter asked for
-  bool is_stopped_ = false;            ///< a comfort stop is not settled yet
-  bool is_participants_stop_ = false;  ///< and not the experimenter's
-  bool announces_ = false;             ///< the next presentation is announced
+  bool is_stopped_ = false;            ///< a comfort stop is pending
+  bool is_participants_stop_ =
+      false;                ///< the comfort stop is the participant's, not the experimenter's
+  bool announces_ = false;  ///< the next presentation is announced
   bool was_cut_short_ = false;
   int pauses_ = 0;
   std::chrono::steady_clock::time_point shown_{};

@@ -25,15 +25,15 @@ void Session::restore(std::span<const record::Event> events) {
     follow(event);
     last_ = event.at;
   }
-  if (!events.empty()) recorder_.go_on_after(events.back());
+  if (!events.empty()) recorder_.continue_after(events.back());
 }
 
-void Session::take_up(Time at, const record::ResumedBody& body) {
+void Session::resume_after_exit(Time at, const record::ResumedBody& body) {
   require(SessionInput::note, at);
   recorder_.resumed(at, body);
   move_to(phase_ == Phase::paused ? before_pause_ : phase_, at);
   if (in_presentation()) interrupt(at, "program ended");
-  restart_block(at);  // the program may have ended before it could
+  restart_block(at);  // the program may have ended before restarting it
 }
 
 void Session::follow(const record::Event& event) {
@@ -90,7 +90,7 @@ bool Session::follow_trial(const record::Event& event) {
       {
         const record::TrialBody body = record::trial_from_json(event.body);
         note_force(body.largest_force_n);
-        give_up_presentation(event.at, body.reason);
+        void_presentation(event.at, body.reason);
       }
       return true;
     case record::EventKind::explored_again:
@@ -139,7 +139,7 @@ void Session::follow_course(const record::Event& event) {
       done_since_break_ = 0;
       return;
     case record::EventKind::block_restarted: {
-      course_.restart(course_.drawn_again(record::block_from_json(event.body).block));
+      course_.restart(course_.redrawn_block(record::block_from_json(event.body).block));
       done_since_break_ = 0;
       return;
     }

@@ -20,8 +20,8 @@ constexpr std::chrono::seconds kBetweenTrials{2};
 /// With less time than this left, the participant may not go back to the plane.
 constexpr double kMinAgainS = 0.5;
 
-/// The trials of a session, one after the other. Each presentation is a way from the schedule to
-/// the recorder: the participant is ready, explores, and answers; the session records it.
+/// The trials of a session, one after the other. In each presentation the participant gets ready,
+/// explores, and answers; the session records it.
 class TrialRun {
  public:
   TrialRun(SessionDesk& desk, SessionTally& tally)
@@ -34,11 +34,11 @@ class TrialRun {
   /// Runs the current presentation to its answer or interruption.
   /// \pre the session is ready
   void run();
-  /// How many trials are repeated because they were not explored as asked for.
+  /// Trials repeated because they were not explored as instructed.
   [[nodiscard]] int repeated() const noexcept { return repeated_; }
 
  private:
-  /// When an exploration began, by the servo's clock, and ended.
+  /// Start and end of an exploration by the servo's clock.
   struct Span {
     Time began;
     Time ended;
@@ -49,12 +49,12 @@ class TrialRun {
   /// \return whether the participant is to answer
   [[nodiscard]] bool explore(bool again);
   [[nodiscard]] PlanesEnd run_planes(bool again);
-  [[nodiscard]] bool came_late();
+  [[nodiscard]] bool interrupt_if_late();
   void answer();
   [[nodiscard]] AnswerStep question() const;
   void confirm(const StepReply& reply);
   void keep_evidence();
-  [[nodiscard]] bool takes_no_late_answer() const {
+  [[nodiscard]] bool rejects_late_answers() const {
     return parts_.key.study.trials.on_timeout == study::OnTimeout::no_response;
   }
 
@@ -69,8 +69,8 @@ class TrialRun {
   Time presented_at_{};
   Exploration last_{};         ///< of the trial
   Time ended_{};               ///< that exploration
-  int of_ = 0;                 ///< trials in all, as far as is known
-  int repeated_ = 0;           ///< trials that were not explored as asked for
+  int of_ = 0;                 ///< trials in all, as far as known
+  int repeated_ = 0;           ///< trials that were not explored as instructed
   bool hand_was_off_ = false;  ///< in the trial before
   bool time_is_up_ = false;
 };
@@ -90,14 +90,15 @@ void TrialRun::run() {
   if (!desk_.attend(ReadyStep{session_.presentations_begun() + 1, of_, false, hand_off})) return;
   trace_.begin();
   if (explore(false)) answer();
-  if (!time_is_up_ || !takes_no_late_answer() || !desk_.goes_on()) return;
+  if (!time_is_up_ || !rejects_late_answers() || !desk_.is_running()) return;
   desk_.enter("time is up");
   static_cast<void>(
       desk_.attend(NoticeStep{NoticeStep::What::time_is_up, session_.presentations_begun()}));
 }
 
-/// Where a plane waited for a locked database, its trial has no beginning: it is presented anew.
-bool TrialRun::came_late() {
+/// Interrupts a trial whose plane was delayed, for example by a locked database; it is presented
+/// again.
+bool TrialRun::interrupt_if_late() {
   constexpr std::chrono::seconds kLate{1};
   const Time now = desk_.now();
   if (now - presented_at_ < kLate) return false;
@@ -132,7 +133,7 @@ PlanesEnd TrialRun::run_planes(bool again) {
       session_.present(plane_on);
       ++tally_.presentations;
       is_presented = true;
-      if (came_late()) return nullptr;
+      if (interrupt_if_late()) return nullptr;
     }
     desk_.enter("exploring");
     return &trace_.next_part();
@@ -173,7 +174,7 @@ bool TrialRun::explore(bool again) {
   if (!time_is_up_) {
     session_.end_exploring(ended_);
   } else {
-    if (takes_no_late_answer()) keep_evidence();
+    if (rejects_late_answers()) keep_evidence();
     session_.time_out(ended_);
   }
   return session_.phase() == SessionPhase::answering;
@@ -245,11 +246,11 @@ void run_trials(SessionDesk& desk, SessionTally& tally) {
   Session& session = desk.session();
   TrialRun trials(desk, tally);
   const int most_interruptions = session.presentations_left();
-  while (desk.goes_on() && session.phase() == SessionPhase::ready) {
+  while (desk.is_running() && session.phase() == SessionPhase::ready) {
     if (!desk.await_device()) continue;
     desk.parts().clock.pass(kBetweenTrials);
     if (session.break_due()) take_break(desk);
-    if (!desk.goes_on() || session.phase() != SessionPhase::ready) continue;
+    if (!desk.is_running() || session.phase() != SessionPhase::ready) continue;
     trials.run();
     desk.record_marks();
     static_cast<void>(desk.handle());
@@ -262,7 +263,7 @@ void run_trials(SessionDesk& desk, SessionTally& tally) {
   }
 }
 
-/// Nothing that could be lost is asked any more, so that the experimenter may leave.
+/// Everything is stored by now, so the experimenter may leave.
 void show_end(SessionDesk& desk) {
   desk.enter("end");
   const auto asked_to_end = [&] {

@@ -23,13 +23,13 @@
 
 namespace touchtrial::session {
 
-/// What a session came to, without outcomes.
+/// Counts of a session, without outcomes.
 struct SessionTally {
   int presentations = 0;  ///< with interrupted ones
   int invalid_trials = 0;
   std::int64_t ticks = 0;
   std::chrono::nanoseconds duration{};
-  /// Why the session was left open, to be taken up again; empty: it is closed.
+  /// Why the session was left open, to be resumed; empty: it is closed.
   std::optional<std::string> left{};
 };
 
@@ -51,27 +51,26 @@ struct SessionParts {
   double rate_hz = device::kServoRateHz;  ///< of the servo
   Experimenter& experimenter = no_experimenter();
   const SessionTexts& texts = no_texts();
-  /// Rounds of practice, numbered from 1; the same number always gives the same. Empty: none is
-  /// held.
+  /// Practice rounds by number, from 1; the same number always gives the same round. Empty: no
+  /// practice.
   std::function<study::Practice(int round)> practice{};
   std::string participant_name{};      ///< for the experimenter
   std::string device_name{};           ///< for the experimenter
   device::LabLimits limits{};          ///< the lab's, beside those of the study
-  Instruments* instruments = nullptr;  ///< told of the session's events in real time
+  Instruments* instruments = nullptr;  ///< receives marks of the session's events in real time
 };
 
-/// Runs a session that was opened or taken up again until it is closed or left: the opening stages
-/// that are not done yet, the trials, and the closing questions.
+/// Runs an opened or resumed session until it is closed or left: the opening stages that are not
+/// done yet, the trials, and the closing questions.
 ///
 /// Nothing stored in clear depends on what is presented, except whether the exploration was long
-/// enough and the hand within its windows (record::HandWindows), and what a session's end sums up
-/// (record::ClosedBody). An answer is acknowledged
-/// once it is durable. A presentation that ends in a fault or a comfort stop is recorded as
-/// interrupted, and the study decides whether it is repeated; the session is then paused until the
-/// device supply is ready again. The session is stopped when the supply gives
-/// up, the experimenter aborts it, or interruptions outnumber its trials. It is left open when the
-/// experimenter leaves it, or a signal asked the program to end (StopOnSignals::asked). No force is
-/// on when this returns or throws.
+/// enough and the hand within its windows (record::HandWindows), and the summary at a session's end
+/// (record::ClosedBody). An answer is acknowledged once it is durable. A presentation that ends in
+/// a fault or a comfort stop is recorded as interrupted, and the study decides whether it is
+/// repeated; the session is then paused until the device supply is ready again. The session is
+/// stopped when the supply gives up, the experimenter aborts it, or interruptions outnumber its
+/// trials. It is left open when the experimenter leaves it, or a signal asked the program to end
+/// (StopOnSignals::asked). No force is on when this returns or throws.
 /// \throws StoreError if an event could not be stored
 /// \throws whatever participant, experimenter and supply throw
 SessionTally run_session(Session& session, const SessionParts& parts);

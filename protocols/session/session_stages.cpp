@@ -16,10 +16,10 @@ namespace {
 constexpr std::chrono::seconds kCalibration{30};
 constexpr std::chrono::seconds kInstruction{120};
 
-/// Shows a step again for as long as it is broken off.
+/// Shows a step again whenever it is aborted.
 /// \return empty if the session ended
-std::optional<StepReply> insist(SessionDesk& desk, const Step& step) {
-  while (desk.goes_on()) {
+std::optional<StepReply> attend_until_reply(SessionDesk& desk, const Step& step) {
+  while (desk.is_running()) {
     if (std::optional<StepReply> reply = desk.attend(step)) return reply;
   }
   return std::nullopt;
@@ -64,7 +64,7 @@ bool go_through_day_sheet(SessionDesk& desk) {
 bool calibrate(SessionDesk& desk) {
   if (!go_through_day_sheet(desk)) return false;
   while (!desk.await_device()) {
-    if (!desk.goes_on()) return false;
+    if (!desk.is_running()) return false;
   }
   desk.parts().clock.pass(kCalibration);
   desk.session().calibrate(desk.now());
@@ -76,7 +76,7 @@ bool calibrate(SessionDesk& desk) {
 bool instruct(SessionDesk& desk) {
   desk.enter("instructions");
   const std::vector<std::string>& pages = desk.parts().texts.instructions;
-  if (!pages.empty() && !insist(desk, InstructionStep{pages})) return false;
+  if (!pages.empty() && !attend_until_reply(desk, InstructionStep{pages})) return false;
   desk.parts().clock.pass(kInstruction);
   desk.session().instruct(desk.now());
   return true;
@@ -102,16 +102,16 @@ std::string answers_to_json(const study::Questionnaire& questionnaire,
     const study::Question& question = questionnaire.questions[i];
     object[question.id] = answer_to_json(question.kind, answers[i]);
   }
-  // Whatever people type is kept; bytes that are not UTF-8 are replaced.
+  // Typed text is stored as it is, but bytes that are not UTF-8 are replaced.
   return object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// \return whether the session goes on
+/// \return whether the session continues
 bool ask(SessionDesk& desk, const std::optional<study::Questionnaire>& questionnaire) {
   if (!questionnaire) return true;
   if (desk.session().remarks().questionnaires.contains(questionnaire->name)) return true;
   desk.enter("questions");
-  const std::optional<StepReply> reply = insist(desk, QuestionStep{&*questionnaire});
+  const std::optional<StepReply> reply = attend_until_reply(desk, QuestionStep{&*questionnaire});
   if (!reply) return false;
   desk.session().question(desk.when(*reply), questionnaire->name,
                           answers_to_json(*questionnaire, reply->answers));
@@ -120,7 +120,7 @@ bool ask(SessionDesk& desk, const std::optional<study::Questionnaire>& questionn
 
 // ---- Practice
 
-/// How far practice has come.
+/// The progress of practice.
 struct PracticeProgress {
   int round = 1;    ///< the current or the next one
   int done = 0;     ///< presentations of that round
@@ -144,8 +144,8 @@ PracticeProgress progress_of(const std::vector<record::PracticeBody>& practised,
   return progress;
 }
 
-/// Practice with feedback, until enough answers of a round are correct. Continues from what is
-/// recorded, which may be from an earlier run of the program.
+/// Practice with feedback, until enough answers of a round are correct. Continues after recorded
+/// practice, which may be from an earlier run of the program.
 class PracticeRun {
  public:
   explicit PracticeRun(SessionDesk& desk)
@@ -153,7 +153,7 @@ class PracticeRun {
         plan_(desk.parts().practice(1)),
         a_round_(static_cast<int>(plan_.trials.size())) {}
 
-  /// \return whether the session goes on
+  /// \return whether the session continues
   [[nodiscard]] bool run();
 
  private:
@@ -161,7 +161,7 @@ class PracticeRun {
     return progress_of(desk_.session().remarks().practice, plan_);
   }
   [[nodiscard]] bool run_round(int round);
-  /// \return empty if it was interrupted; to be repeated if the session goes on
+  /// \return empty if it was interrupted; to be repeated if the session continues
   [[nodiscard]] std::optional<record::PracticeBody> present(const PracticeProgress& at,
                                                             const study::Trial& trial);
   /// \return how it ended; empty if it was interrupted
@@ -171,7 +171,7 @@ class PracticeRun {
   study::Practice plan_;
   record::Trace trace_;
   int a_round_;
-  int not_explored_ = 0;  ///< trials with a plane that was not explored as asked for
+  int not_explored_ = 0;  ///< trials with a plane that was not explored as instructed
 };
 
 bool PracticeRun::run() {
@@ -191,23 +191,23 @@ bool PracticeRun::run_round(int round) {
   const study::Practice shown = desk_.parts().practice(round);
   desk_.parts().participant.see_pictures(shown.labels);
   desk_.enter_practice("practice", 0, a_round_);
-  if (!desk_.attend(PracticeStep{round})) return desk_.goes_on();
+  if (!desk_.attend(PracticeStep{round})) return desk_.is_running();
   for (PracticeProgress at = progress(); at.round == round && !at.passed; at = progress()) {
     if (not_explored_ > a_round_) return true;
     if (!desk_.await_device()) {
-      if (!desk_.goes_on()) return false;
+      if (!desk_.is_running()) return false;
       continue;
     }
     const study::Trial& trial =
         shown.trials[static_cast<std::size_t>(at.done) % shown.trials.size()];
     const std::optional<record::PracticeBody> done = present(at, trial);
-    if (!desk_.goes_on()) return false;
+    if (!desk_.is_running()) return false;
     if (!done) continue;
     desk_.session().practise(desk_.now(), *done);
     if (!trial.right) continue;
     desk_.enter_practice("feedback", done->presentation, a_round_);
     const int answered = position_of(done->answer).value_or(0);
-    if (!desk_.attend(FeedbackStep{answered, *trial.right}) && !desk_.goes_on()) return false;
+    if (!desk_.attend(FeedbackStep{answered, *trial.right}) && !desk_.is_running()) return false;
   }
   return true;
 }
@@ -260,7 +260,7 @@ std::optional<device::ServoEnd> PracticeRun::explore(const study::Trial& trial) 
   return std::nullopt;
 }
 
-/// \return whether the session goes on
+/// \return whether the session continues
 bool practise(SessionDesk& desk) {
   const auto& practice = desk.parts().practice;
   const bool wanted = practice && !practice(1).trials.empty();
@@ -269,7 +269,7 @@ bool practise(SessionDesk& desk) {
   if (!PracticeRun(desk).run()) return false;
   if (desk.session().remarks().practice.size() == before) return true;  // it was over already
   desk.enter("practice is over");
-  return insist(desk, NoticeStep{NoticeStep::What::practice_over}).has_value();
+  return attend_until_reply(desk, NoticeStep{NoticeStep::What::practice_over}).has_value();
 }
 
 void show_pictures(SessionDesk& desk) {
@@ -292,11 +292,11 @@ bool run_opening_stages(SessionDesk& desk) {
     if (!ask(desk, desk.parts().texts.handedness) || !practise(desk)) return false;
     show_pictures(desk);
   }
-  return desk.goes_on();
+  return desk.is_running();
 }
 
 void ask_closing_questions(SessionDesk& desk) {
-  // If they are broken off, they are left out: all that counts is stored.
+  // If interrupted, the questions are skipped: the trials are stored.
   static_cast<void>(ask(desk, desk.parts().texts.closing));
 }
 

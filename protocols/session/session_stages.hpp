@@ -1,5 +1,5 @@
-/// \file What comes before the first trial and after the last one: day sheet, instructions,
-/// questions and practice.
+/// \file The stages before the first trial and after the last one: day sheet, instructions,
+///   questions and practice.
 #pragma once
 
 #include "protocols/session/experimenter.hpp"

@@ -37,7 +37,7 @@ StimulusSource::StimulusSource(const engine::Pack& pack, const engine::Rendering
     }
     stimuli_.emplace(entry.code, Stimulus{view, entry.gains,
                                           engine::RenderingModel(view, rendering, entry.gains)});
-    // Made of a field, which is read like any other, so that the servo takes as long.
+    // The blank plane is made from a field, so that the servo takes as long as for others.
     if (!flat_) flat_.emplace(view, rendering, engine::Gains{});
     if (stimuli_.size() == 1) plane_ = view.geometry;
     plane_.height_px = std::min(plane_.height_px, view.geometry.height_px);
@@ -76,7 +76,7 @@ StimulusSource::Mix StimulusSource::mix_of(const study::Plane& plane) noexcept {
 StimulusSource::StimulusSource(const engine::Pack& pack, const study::StudyCodes& codes)
     : StimulusSource(pack, codes.study.rendering) {
   for (const study::KeyedStimulus& keyed : codes.fields()) static_cast<void>(stimulus(keyed.code));
-  // Of the same field whatever is practised.
+  // From the same field in all practice.
   const auto first = std::ranges::min_element(codes.stimuli, {}, &study::KeyedStimulus::code);
   flat_.emplace(stimulus(first->code).field, rendering_, engine::Gains{});
   const study::Fields fields = codes.study.task->fields(codes.study);
@@ -102,7 +102,7 @@ StimulusSource::Applied StimulusSource::applied(const Mix& mix,
       engine::FieldWithGains{other.field, engine::scaled(other.gains, mix.share)}};
   Applied sum{engine::applied_sum(parts), 1.0};
   if (rendering_.equalise != engine::Equalise::rms) return sum;
-  // As strong as the first alone, like every stimulus of the study.
+  // As strong as the first field alone, like every stimulus of the study.
   const double wanted = engine::lateral_rms(engine::applied_sum(alone).view());
   const double mixed = engine::lateral_rms(sum.field.view());
   sum.factor = mixed > 0.0 ? wanted / mixed : 1.0;

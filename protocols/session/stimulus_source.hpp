@@ -1,4 +1,4 @@
-/// \file The force models of a pack, by opaque code: all that the code of trials knows of stimuli.
+/// \file The force models of a pack, by opaque code, which is all that trials know about stimuli.
 #pragma once
 
 #include "engine/pack/pack.hpp"
@@ -39,9 +39,9 @@ class StimulusSource {
   /// \throws FileError if the pack has no such code
   [[nodiscard]] engine::FieldWithGains field(const std::string& code) const;
 
-  /// What a trial presents. Of a study that levels its fields (study::Fields::levelled), a
-  /// texture's wall lies where that of the blank one does: its mean height is taken out; gains are
-  /// applied to forces, which are linear in them up to limits and as long as contact lasts.
+  /// What a trial presents. In a study that levels its fields (study::Fields::levelled), mean
+  /// heights are removed, so that a texture's wall lies where that of the blank plane does. Gains
+  /// scale forces, which are linear in them below the limits during contact.
   /// \throws std::logic_error if the study's task did not name the mix
   /// \throws FileError if the pack has no such field
   [[nodiscard]] engine::RenderingModel plane_of(const study::Plane& plane,
@@ -50,9 +50,9 @@ class StimulusSource {
   /// A plane without texture, for catch trials.
   [[nodiscard]] const engine::RenderingModel& flat() const noexcept { return *flat_; }
 
-  /// Reads a byte of every page of every field, so that the servo finds them in memory. All fields
-  /// and not the next one alone: which pages had to be fetched, and how long that took, would tell
-  /// a stimulus that was presented before from a new one.
+  /// Reads a byte of every page of every field, so that the servo finds them in memory. All fields,
+  /// not only the next one: otherwise the time to fetch pages would distinguish a stimulus that was
+  /// presented before from a new one.
   void fetch() const noexcept;
 
   /// The part of the plane that all stimuli have in common. Participants explore this part, so that
@@ -76,7 +76,7 @@ class StimulusSource {
     double share = 0.0;
     friend auto operator<=>(const Mix&, const Mix&) = default;
   };
-  /// A field in memory, and the factor that all gains are 1 with.
+  /// A field in memory, and the factor at which all gains are 1.
   struct Applied {
     engine::TextureField field;
     double factor = 1.0;

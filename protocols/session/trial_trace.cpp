@@ -41,8 +41,8 @@ ContactSums sums_of(const record::Trace& trace, double max_force_n,
   return sums;
 }
 
-/// What the hand did at the plane. No texture's force is used but the one across the plane, which
-/// on average is the hand's own push.
+/// What the hand did at the plane. The only force used is that across the plane, which on average
+/// is the hand's own push.
 record::HandWindows hand_windows(const record::Trace& trace, const study::ValidityRule& rule) {
   double samples = 0.0;
   double path_mm = 0.0;
@@ -79,7 +79,7 @@ double exploring_s(const record::Trace& trace) {
   return static_cast<double>(trace.samples.end() - landing) / trace.rate_hz;
 }
 
-/// All but the verdict.
+/// All measures except the verdict.
 record::TrialMeasures measures_of(const ContactSums& sums, double rate_hz) {
   if (sums.samples == 0) return {};
   const auto samples = static_cast<double>(sums.samples);

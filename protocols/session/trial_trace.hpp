@@ -1,5 +1,5 @@
-/// \file The trace of one trial: what its samples amount to, the rule for a valid trial, and the
-/// evidence that is stored with the answer.
+/// \file The trace of one trial: measures of its samples, the rule for a valid trial, and the
+///   evidence that is stored with the answer.
 #pragma once
 
 #include "protocols/session/exploration.hpp"
@@ -17,15 +17,14 @@ namespace touchtrial::session {
 
 struct TrialFindings {
   record::TrialMeasures measures;
-  /// Follows from the number of samples and the time of landing, which forces do not bend. In
+  /// Derived from the number of samples and the time of landing, which do not depend on forces. In
   /// clear.
   bool long_enough = false;
-  /// By the rule's windows and the speeds of the instructions, but of what the hand did while it
-  /// was at the plane, at most kLandingHeightMm above it: for how long, how far along the plane,
-  /// the mean force across it, and the mean speed. None depends on the texture as long as this does
-  /// not hold the hand back: over a second the hand meets the force with which it pushes, whatever
-  /// the relief, the lateral force or the force limit. In clear. Source:
-  /// docs/decisions/0054-what-a-trial-shows.md.
+  /// By the rule's windows and the speeds of the instructions, while the hand was at the plane, at
+  /// most kLandingHeightMm above it: duration, path along the plane, mean force across it, and mean
+  /// speed. None depends on the texture unless it holds the hand back: over a second the mean force
+  /// equals the hand's push, whatever the relief, the lateral force or the force limit. In clear.
+  /// Source: docs/decisions/0054-what-a-trial-shows.md.
   record::HandWindows hand{};
   bool saturated = false;  ///< by the rule's share; sealed
 
@@ -62,8 +61,8 @@ class TrialTrace {
 
   /// Begins to judge and pack all samples, while the participant answers.
   /// \param session  must outlive this
-  /// \param beside  on another thread. The duration differs between textures, and nobody should
-  ///   have to wait for it.
+  /// \param beside  on another thread. The duration differs between textures, so nothing may wait
+  ///   for it.
   void pack(const Session& session, bool beside);
   /// The result of `pack`, once.
   /// \throws whatever packing threw

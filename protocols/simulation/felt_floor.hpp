@@ -1,5 +1,5 @@
 /// \file A person's threshold and noise in the logarithms of felt intensities.
-/// Source: docs/method.md, "Thresholds".
+/// Source: docs/perception.md, "What is felt".
 #pragma once
 
 #include "engine/perception/felt_classifier.hpp"

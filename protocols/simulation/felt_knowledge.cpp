@@ -49,7 +49,7 @@ FeltKnowledge learn_by_feeling(const LabelledFields& fields, const SubjectModel&
   const auto feel_pass = [&](std::size_t pass) {
     RandomStream random(seed, "subject: training pass", pass);
     device::SimulatedHand hand = make_exploring_hand(subject, fields.plane(), random);
-    hand.foresee();
+    hand.precompute();
     const double gain_db = fields.draw_gain_db({seed, "subject: training gain", pass});
     for (std::size_t prototype = 0; prototype < fields.all().size(); ++prototype) {
       const engine::FeltFeatures felt = feel_exploration(fields.all()[prototype].model(gain_db),

@@ -265,7 +265,7 @@ FieldLevels levels_of_fields(std::span<const engine::FieldWithGains> fields,
     for (std::size_t path = 0; path < kBlankExplorations; ++path) {
       RandomStream random(seed, "levels: path", path);
       hands[i - kCurves].push_back(make_exploring_hand(holder, plane, random));
-      hands[i - kCurves].back().foresee();
+      hands[i - kCurves].back().precompute();
     }
   });
   const auto felt_on = [&](std::size_t device, std::size_t field, double factor,

@@ -1,4 +1,4 @@
-/// \file How long a decision takes. Source: docs/planning.md, "Time to think".
+/// \file How long a decision takes. Source: docs/planning.md, "Response times".
 #pragma once
 
 #include "core/random.hpp"

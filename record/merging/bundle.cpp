@@ -16,7 +16,7 @@ namespace {
 constexpr std::string_view kMagic = "touchtrial bundle 1";
 static_assert(std::endian::native == std::endian::little);
 
-/// Numbers of eight bytes, the lowest first, and byte strings after their length.
+/// Little-endian numbers of eight bytes, and byte strings after their length.
 class Packing {
  public:
   Packing() { part(bytes_of(kMagic)); }
@@ -48,12 +48,12 @@ class Packing {
 };
 
 [[noreturn]] void refuse_bytes() {
-  throw StoreError("is no bundle of this version of Touchtrial");
+  throw StoreError("is not a bundle of this version of Touchtrial");
 }
 
 class Unpacking {
  public:
-  /// What a frame says of its size is checked before memory is taken for it.
+  /// The size in a frame is checked before memory is allocated for it.
   explicit Unpacking(ByteView frame) {
     const unsigned long long size = ZSTD_getFrameContentSize(frame.data(), frame.size());
     if (size > kMaxBundleBytes) refuse_bytes();  // so are the codes of errors

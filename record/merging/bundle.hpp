@@ -1,7 +1,7 @@
-/// \file What a server holds of a station in one row, in two halves: a part of the station's file
-/// chain, and the session that this part closes, as the station wrote them, compressed with zstd.
-/// Nothing in it is trusted: whoever merges checks it as it checks a file. Format:
-/// docs/data-dictionary.md, "Bundles". Private to record/merging.
+/// \file One row of a station on a server, in two halves: a part of the station's file chain, and
+/// the session that this part closes, as the station wrote them, compressed with zstd. The content
+/// is not trusted: merging checks it like a file. Format: docs/data-dictionary.md, "Bundles".
+/// Private to record/merging.
 #pragma once
 
 #include "core/bytes.hpp"
@@ -27,7 +27,7 @@ struct BundleHalf {
 
 /// Takes time and memory in proportion to kMaxBundleBytes, whatever the bytes are.
 /// \param session  the events'; 0: the file's chain
-/// \throws StoreError if the bytes are nothing that was packed
+/// \throws StoreError if the bytes were not packed by this program
 [[nodiscard]] BundleHalf unpacked(ByteView bytes, int session);
 
 }  // namespace touchtrial::merging

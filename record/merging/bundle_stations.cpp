@@ -14,10 +14,10 @@
 namespace touchtrial::merging {
 namespace {
 
-/// Of all chains of a table, which are in memory at once. A participant's part is some 2 KiB.
+/// For all chains of a table, which are in memory at once. A participant's part takes some 2 KiB.
 constexpr std::size_t kMaxChainBytes = std::size_t{256} << 20U;
 
-/// A table, and what all its stations together have in memory.
+/// A table, and the memory used by all its stations.
 struct Source {
   std::shared_ptr<BundleTable> table;
   std::size_t chain_bytes = 0;
@@ -41,10 +41,10 @@ class BundleStation final : public StationFile {
     std::vector<record::Event> chain;
     for (const BundleRow& row : rows_) extend(chain, row);
     if (record::station_identity(chain) != rows_.front().station) {
-      refuse(rows_.front(), "is of another station than its row says");
+      refuse(rows_.front(), "is of another station than its row states");
     }
-    says_ = record::FileChain();
-    for (const record::Event& event : chain) says_.add(event);
+    chain_state_ = record::FileChain();
+    for (const record::Event& event : chain) chain_state_.add(event);
     return chain;
   }
 
@@ -55,7 +55,7 @@ class BundleStation final : public StationFile {
   /// A bundle may have been sent before the participant withdrew.
   [[nodiscard]] record::WrappedKeys wrapped_keys(int own_session) override {
     record::WrappedKeys keys = session(own_session).keys;
-    const record::SessionOnFile& course = says_.sessions().at(own_session);
+    const record::SessionOnFile& course = chain_state_.sessions().at(own_session);
     if (course.erased_at) keys.participant.reset();
     if (course.safety_erased_at) keys.safety.reset();
     return keys;
@@ -69,7 +69,7 @@ class BundleStation final : public StationFile {
  private:
   [[noreturn]] void refuse(const BundleRow& row, const std::string& what) const {
     throw record::DamagedStore(
-        fmt::format("{}: {} {}; have whoever owns the table delete that row, and sync its station "
+        fmt::format("{}: {} {}; ask the table's owner to delete that row, and sync its station "
                     "again",
                     source_->table->shown(), row.name(), what));
   }
@@ -84,12 +84,12 @@ class BundleStation final : public StationFile {
     }
   }
 
-  /// Adds what the row's part goes beyond the chain so far. Parts overlap where the end of a chain
-  /// was sent before a session ended.
+  /// Appends the events of the row's part that follow the chain so far. Parts overlap where the end
+  /// of a chain was sent before a session ended.
   void extend(std::vector<record::Event>& chain, const BundleRow& row) const {
     std::vector<record::Event> part = fetched(row, BundleTable::Half::chain, 0).events;
     if (part.empty() || row.end - row.first != std::ssize(part) || part.back().hash != row.head) {
-      refuse(row, "holds something else than its row says");
+      refuse(row, "does not match its row");
     }
     if (row.first < 0 || row.first > std::ssize(chain)) {
       refuse(row, fmt::format("begins at event {} of its station's chain, whose events from {} on "
@@ -110,10 +110,10 @@ class BundleStation final : public StationFile {
     }
   }
 
-  /// The session, from the row whose part of the chain closes it. A row with more keys comes first:
-  /// which of them count is what the chain says.
+  /// The session, from the row whose part of the chain closes it. A row with more keys comes first;
+  /// the chain decides which of them are valid.
   const BundleHalf& session(int own_session) {
-    const auto closed_at = says_.sessions().at(own_session).closed_at;
+    const auto closed_at = chain_state_.sessions().at(own_session).closed_at;
     const BundleRow* found = nullptr;
     for (const BundleRow& row : rows_) {
       if (!closed_at || row.end != *closed_at + 1) continue;
@@ -130,7 +130,7 @@ class BundleStation final : public StationFile {
   std::shared_ptr<Source> source_;
   std::vector<BundleRow> rows_;
   std::string name_;
-  record::FileChain says_;
+  record::FileChain chain_state_;
 };
 
 }  // namespace

@@ -20,7 +20,7 @@ struct Part {
   std::optional<int> session;
 };
 
-/// They follow from the chain alone, so that every call sends the same ones.
+/// They depend only on the chain, so that every call sends the same ones.
 std::vector<Part> parts_of(StationFile& station, const Chain& chain,
                            const record::FileChain& says) {
   std::map<std::size_t, std::optional<int>> ends;  // sessions, by the place after their ends
@@ -46,11 +46,11 @@ std::vector<Part> parts_of(StationFile& station, const Chain& chain,
 }
 
 /// \param last  the station's last part
-/// \return what is wrong with a row; empty if nothing is
-std::string strangeness(const BundleRow& row, const Chain& chain, const BundleRow& last) {
+/// \return the fault of a row; empty if it has none
+std::string fault_of_row(const BundleRow& row, const Chain& chain, const BundleRow& last) {
   if (row.seal != last.seal) {
     return "is of another study, or of this one under another key; make a database for each study, "
-           "or have whoever owns the table delete that row";
+           "or ask the table's owner to delete that row";
   }
   const bool is_known = row.end > 0 && row.end <= last.end &&
                         chain[static_cast<std::size_t>(row.end) - 1].hash == row.head;
@@ -60,10 +60,10 @@ std::string strangeness(const BundleRow& row, const Chain& chain, const BundleRo
          "went on with, to a new database if both were sent from";
 }
 
-/// The parts that the table lacks. Where a part is there with keys that were destroyed since, it is
-/// lacking without them.
-std::vector<Part> lacking(std::vector<Part> parts, const std::vector<BundleRow>& rows,
-                          SendReport& report) {
+/// The parts that the table lacks. A part whose keys were destroyed since is sent again without
+/// them.
+std::vector<Part> missing_parts(std::vector<Part> parts, const std::vector<BundleRow>& rows,
+                                SendReport& report) {
   std::erase_if(parts, [&](const Part& part) {
     bool is_there = false;
     for (const BundleRow& row : rows) {
@@ -108,12 +108,12 @@ SendReport send_station(StationFile& station, BundleTable& table, bool dry_run,
   std::vector<Part> parts = parts_of(station, chain, says);
   const std::vector<BundleRow> rows = table.rows();
   for (const BundleRow& row : rows) {
-    const std::string what = strangeness(row, chain, parts.back().row);
+    const std::string what = fault_of_row(row, chain, parts.back().row);
     if (what.empty()) continue;
     throw StoreError(
         fmt::format("{}: {}: {} {}", one_line(station.name()), table.shown(), row.name(), what));
   }
-  parts = lacking(std::move(parts), rows, report);
+  parts = missing_parts(std::move(parts), rows, report);
   int sent = 0;
   for (const Part& part : parts) {
     if (!dry_run) send(station, chain, part, table);

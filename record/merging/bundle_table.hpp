@@ -14,10 +14,10 @@
 
 namespace touchtrial::merging {
 
-/// What a row says of its bundle in clear, for finding it. Merging believes none of it.
+/// The index of a row in clear. Merging does not trust it.
 struct BundleRow {
   std::int64_t number = 0;  ///< given by the server
-  std::string sent_by{};    ///< the role that added it, says the server
+  std::string sent_by{};    ///< the role that added it, according to the server
   Digest station{};         ///< record::station_identity of its chain
   Digest seal{};            ///< of the study
   std::int64_t first = 0;   ///< sequence of the first event of its part of the chain
@@ -37,19 +37,19 @@ struct BundleRow {
 };
 
 /// Not to be shared between threads. Every function throws StoreError, naming the server, if the
-/// connection is lost, the role has no right to do it, or the answer passes the limits of time and
+/// connection is lost, the role has no right to do it, or the answer exceeds the limits of time and
 /// size.
 class BundleTable {
  public:
   enum class Half { chain, session };
 
   virtual ~BundleTable() = default;
-  /// For messages: where the server is.
+  /// The server's address, for messages.
   [[nodiscard]] virtual const std::string& shown() const = 0;
-  /// All rows; none if there is no table.
+  /// All rows; empty if there is no table.
   [[nodiscard]] virtual std::vector<BundleRow> rows() = 0;
-  /// Adds a row unless it is there, and makes the table before if there is none. When it returns,
-  /// the server has the row on its disk.
+  /// Adds a row unless it exists, and creates the table if necessary. When it returns, the row is
+  /// durable on the server.
   /// \param row  number and sent_by are not read
   /// \param session  empty: the part closes no session
   virtual void add(const BundleRow& row, ByteView chain, ByteView session) = 0;
@@ -59,28 +59,28 @@ class BundleTable {
 
 /// Connects to the table of a postgresql:// address, through the module beside the program that
 /// alone needs PostgreSQL's client library.
-/// \throws UsageError, not repeating the address, if it is none, holds a password, or asks for less
-///   than TLS with a proof of name to another machine
+/// \throws UsageError, not repeating the address, if it is malformed, holds a password, or allows
+///   less than TLS with a verified host name to another machine
 /// \throws StoreError if module, library or server cannot be used
 [[nodiscard]] std::unique_ptr<BundleTable> open_bundle_table(const std::string& address);
 
-/// Every station whose bundles are in the table. Bundles are fetched as they are asked for: one
-/// session is in memory at a time.
+/// Every station whose bundles are in the table. Bundles are fetched on demand: one session is in
+/// memory at a time.
 /// \throws StoreError if the server cannot be read, or holds nothing
 [[nodiscard]] Stations stations_of_table(std::shared_ptr<BundleTable> table);
 
 struct SendReport {
   std::vector<std::string> sent;  ///< participants of the sessions, in the order of their ends
-  std::vector<SessionLeftOut> left_out;  ///< they have not ended, and stay at the station
-  int already_there = 0;                 ///< finished sessions that the server had before
-  /// Rows that hold keys of participants who withdrew: whoever owns the table should delete them.
+  std::vector<SessionLeftOut> left_out;  ///< not ended, so they stay at the station
+  int already_there = 0;                 ///< finished sessions that were on the server before
+  /// Rows that hold keys of participants who withdrew: the table's owner should delete them.
   std::vector<std::int64_t> rows_with_erased_keys;
 };
 
-/// Sends the bundles that the table lacks, each in a transaction of its own. It can be broken off
+/// Sends the bundles that the table lacks, each in a transaction of its own. It can be interrupted
 /// anywhere and run again; any number of stations may send at once.
 /// \param station  its evidence has been checked
-/// \param dry_run  finds out what would be sent and whether anything prevents it, and sends nothing
+/// \param dry_run  only determines what would be sent and whether anything prevents it
 /// \param progress  called with the number of bundles sent so far and the number to send
 /// \throws StoreError, naming the server and the row, if the table holds another study, or more of
 ///   the station's chain than the file or another end of it (an older or a forked copy)

@@ -13,10 +13,10 @@
 namespace touchtrial::merging {
 namespace {
 
-/// A station and the chain that was read from it, in order.
+/// A station and its chain, in order.
 struct Station {
   record::StationChain chain;
-  record::FileChain says;  ///< what the chain says
+  record::FileChain chain_state;  ///< the state by the chain
   std::unique_ptr<StationFile> file;
 };
 
@@ -24,7 +24,7 @@ struct Station {
   throw StoreError(one_line(text));
 }
 
-/// Calls `work`; faults of the station come out as DamagedStore with its name.
+/// Calls `work`; faults of the station are rethrown as DamagedStore with its name.
 template <typename Work>
 void named(const std::string& station, Work&& work) {
   try {
@@ -40,13 +40,13 @@ Station read_station(std::unique_ptr<StationFile> file) {
   station.chain.name = file->name();
   named(station.chain.name, [&] {
     station.chain.events = file->file_chain();
-    station.says = record::checked_file_chain(station.chain.events);
+    station.chain_state = record::checked_file_chain(station.chain.events);
   });
   station.file = std::move(file);
   return station;
 }
 
-/// The session that an event of a file chain opens, or its kind, in words.
+/// The session that an event of a file chain opens, or the event's kind, as text.
 std::string about(const record::Event& event) {
   if (event.kind == record::EventKind::session_opened) {
     const record::SessionOpenedBody body = record::session_opened_from_json(event.body);
@@ -55,21 +55,21 @@ std::string about(const record::Event& event) {
   return fmt::format(" ({})", record::name_of(event.kind));
 }
 
-/// Keeps the copy of a station's file that went further.
-/// \throws StoreError if each went on by itself
-void keep_further(Station& kept, Station& other, CollectReport& report) {
+/// The longer of two copies of a station's file.
+/// \throws StoreError if they diverged
+void further_copy(Station& kept, Station& other, CollectReport& report) {
   const std::vector<record::Event>& a = kept.chain.events;
   const std::vector<record::Event>& b = other.chain.events;
   const auto same = [](const record::Event& x, const record::Event& y) { return x.hash == y.hash; };
   const auto [in_a, in_b] = std::mismatch(a.begin(), a.end(), b.begin(), b.end(), same);
   if (in_a != a.end() && in_b != b.end()) {
     refuse(fmt::format(
-        "{} and {} are copies of one station's file, and each went on by itself: they part at "
-        "event {} of the file's chain{}{}; leave out the one that the station did not go on with",
+        "{} and {} are copies of one station's file, and have diverged: they differ from event {} "
+        "of the file's chain{}{}; omit the one that the station no longer uses",
         kept.chain.name, other.chain.name, in_a->sequence, about(*in_a), about(*in_b)));
   }
   if (in_a == a.end() && in_b != b.end()) std::swap(kept, other);
-  report.superfluous.push_back(other.chain.name);
+  report.redundant.push_back(other.chain.name);
 }
 
 /// Each station once, in their order.
@@ -79,14 +79,14 @@ std::vector<Station> distinct(Stations files, CollectReport& report) {
     Station station = read_station(std::move(file));
     const auto identity = record::station_identity(station.chain.events);
     if (!identity) {
-      report.superfluous.push_back(station.chain.name);
+      report.redundant.push_back(station.chain.name);
       continue;
     }
     const auto [place, is_new] = by_identity.try_emplace(*identity);
     if (is_new) {
       place->second = std::move(station);
     } else {
-      keep_further(place->second, station, report);
+      further_copy(place->second, station, report);
     }
   }
   if (by_identity.empty()) refuse("none of the databases holds a session; nothing is collected");
@@ -96,7 +96,7 @@ std::vector<Station> distinct(Stations files, CollectReport& report) {
   return stations;
 }
 
-/// The collected study while its sessions come in.
+/// The collected study under construction.
 class Collecting {
  public:
   Collecting(Stations files, record::CollectedDraft draft, CollectReport& report)
@@ -110,7 +110,7 @@ class Collecting {
     for (const record::SessionPlace& place : chain.left_out) {
       const Station& station = stations_[static_cast<std::size_t>(place.station) - 1];
       report.left_out.push_back(left_out_of(*station.file, place.own_session,
-                                            station.says.sessions().at(place.own_session)));
+                                            station.chain_state.sessions().at(place.own_session)));
     }
   }
 

@@ -1,4 +1,4 @@
-/// \file Whether a study fills evenly over its stations and enrolment numbers.
+/// \file Whether enrolment is balanced over a study's stations and enrolment numbers.
 #pragma once
 
 #include "record/study_store.hpp"
@@ -10,7 +10,7 @@
 
 namespace touchtrial::merging {
 
-/// One session, as far as it matters for balance.
+/// The parts of a session that matter for balance.
 struct EnrolledSession {
   int station = 0;  ///< from 1
   int enrolment = 0;

@@ -60,7 +60,7 @@ class SqliteStation final : public StationFile {
   std::map<int, int> sessions_;  ///< number in the file, by own number
 };
 
-/// Refuses a collected file in which something was decided since: collecting again would lose it.
+/// Refuses a collected file with later decisions: collecting again would lose them.
 void refuse_own_decisions(const record::StudyStore& store, const std::filesystem::path& database) {
   std::vector<record::StationChain> chains;
   for (int station = 1; station <= store.stations(); ++station) {

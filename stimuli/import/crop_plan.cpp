@@ -83,8 +83,8 @@ std::vector<CropPlace> even_places(PhotoSize photo, int side_px, int count) {
   return places;
 }
 
-/// Deals crops one by one, in turn, to the photographs that still have room.
-void deal(std::vector<int>& shares, std::span<const int> room, int& left) {
+/// Assigns crops in turn to the photographs that still have room.
+void assign_crops(std::vector<int>& shares, std::span<const int> room, int& left) {
   for (bool dealt = true; dealt && left > 0;) {
     dealt = false;
     for (std::size_t i = 0; i < shares.size() && left > 0; ++i) {
@@ -101,10 +101,10 @@ void deal(std::vector<int>& shares, std::span<const int> room, int& left) {
 PhotoPart opaque_part(const GreyImage& opacity, int least_px) {
   PhotoPart best;
   std::pair<int, std::int64_t> most{0, 0};
-  // How many opaque pixels end in this row, column by column; behind the last there are none.
+  // The height of the opaque run that ends in this row, by column; 0 after the last.
   std::vector<int> heights(static_cast<std::size_t>(opacity.width()) + 1);
   for (int y = 0; y < opacity.height(); ++y) {
-    std::vector<std::pair<int, int>> rising;  // where a part may begin, and its height
+    std::vector<std::pair<int, int>> rising;  // possible starts of a part, with heights
     for (int x = 0; x <= opacity.width(); ++x) {
       int& height = heights[static_cast<std::size_t>(x)];
       height = x < opacity.width() && opacity.at(y, x) != 0 ? height + 1 : 0;
@@ -152,7 +152,7 @@ std::vector<CropPlace> crop_places(PhotoSize photo, int side_px, int count, Rand
   return places;
 }
 
-std::vector<int> shared_out(std::span<const PhotoSize> photos, int side_px, int count) {
+std::vector<int> crop_shares(std::span<const PhotoSize> photos, int side_px, int count) {
   std::vector<int> separate;
   std::vector<int> overlapping;
   for (const PhotoSize& photo : photos) {
@@ -161,8 +161,8 @@ std::vector<int> shared_out(std::span<const PhotoSize> photos, int side_px, int 
   }
   std::vector<int> shares(photos.size(), 0);
   int left = count;
-  deal(shares, separate, left);
-  deal(shares, overlapping, left);
+  assign_crops(shares, separate, left);
+  assign_crops(shares, overlapping, left);
   return left == 0 ? shares : std::vector<int>{};
 }
 

@@ -1,4 +1,4 @@
-/// \file The places at which crops are cut. Private to stimuli/import.
+/// \file The positions of crops. Private to stimuli/import.
 #pragma once
 
 #include "core/plane.hpp"
@@ -52,7 +52,7 @@ struct CropPlace {
 
 /// The number of crops of each photograph of a class: as even as possible, first without overlap.
 /// \return empty if even overlapping crops are too few
-[[nodiscard]] std::vector<int> shared_out(std::span<const PhotoSize> photos, int side_px,
-                                          int count);
+[[nodiscard]] std::vector<int> crop_shares(std::span<const PhotoSize> photos, int side_px,
+                                           int count);
 
 }  // namespace touchtrial::stimuli

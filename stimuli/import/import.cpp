@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 ImportOptions completed(ImportOptions options) {
   if (options.pictures.empty()) options.pictures = default_pictures_folder(options.study);
-  // "pictures/" ends in an empty file name, and its parent path is the folder.
+  // A trailing slash gives an empty file name, and the parent path is the folder itself.
   if (!options.pictures.has_filename()) options.pictures = options.pictures.parent_path();
   return options;
 }
@@ -43,7 +43,7 @@ std::string study_name(const fs::path& study) {
 /// Finds photographs whose bytes or pixels equal those of an earlier one.
 class Duplicates {
  public:
-  /// \return what is wrong; empty if nothing is
+  /// \return the fault; empty if none
   std::string fault_of(const Photograph& photo) {
     std::string same = fault_of(photo.sha256, photo.path, "is the same file as ");
     return same.empty() ? fault_of(photo.pixels_sha256, photo.path, "has the same pixels as ")
@@ -59,22 +59,22 @@ class Duplicates {
   std::map<Digest, fs::path> seen_;
 };
 
-/// Whether all of a folder's files are outputs of this program that nobody changed since.
-bool are_ours(const fs::path& folder) {
+/// Whether all of a folder's files are unchanged outputs of this program.
+bool are_unchanged_outputs(const fs::path& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     if (entry.is_symlink() || origin_of(entry.path()) != Origin::ours) return false;
   }
   return true;
 }
 
-/// Puts a folder of new pictures in the place of earlier ones, which return unless `keep` is
-/// called. Those that somebody added to or changed are kept under another name.
+/// Replaces a folder of earlier pictures by new ones, and restores them unless `keep` is called. A
+/// folder with foreign or changed files is renamed.
 class NewPictures {
  public:
   NewPictures(Draft& draft, const fs::path& place) : place_(place) {
-    if (is_there(place_) && !are_ours(place_)) make_way(place_);
-    if (is_there(place_)) earlier_ = keep_aside(place_);
-    if (draft.take_free_place()) return;
+    if (is_there(place_) && !are_unchanged_outputs(place_)) clear_output_place(place_);
+    if (is_there(place_)) earlier_ = move_aside(place_);
+    if (draft.rename_if_free()) return;
     throw FileError(one_line(place_.string()) + ": another program makes it; try again");
   }
   ~NewPictures() {
@@ -86,7 +86,7 @@ class NewPictures {
   NewPictures(const NewPictures&) = delete;
   NewPictures& operator=(const NewPictures&) = delete;
 
-  /// Nothing can fail any more: removes the earlier ones.
+  /// Called when nothing can fail any more; removes the earlier pictures.
   void keep() noexcept {
     is_kept_ = true;
     std::error_code ignored;
@@ -105,8 +105,8 @@ class Import {
   Import(const ImportOptions& options, const ImportProgress& progress)
       : options_(completed(options)), progress_(progress) {}
 
-  /// Does all that reads.
-  void try_out() {
+  /// Runs all steps that only read.
+  void check_inputs() {
     const PhotoFolder folder = surveyed();
     const auto shares = plan_shares(classes_, small_, options_);
     cut_all({}, shares);
@@ -130,12 +130,12 @@ class Import {
     if (folder.faults.empty()) check_classes(folder, options_);
     total_ = 0;
     for (const PhotoClass& one : folder.classes) total_ += 2 * static_cast<int>(one.files.size());
-    survey(folder);
+    check_photographs(folder);
     return folder;
   }
 
-  /// Photographs are read on all cores, and judged in their order.
-  void survey(const PhotoFolder& folder) {
+  /// Photographs are read on all cores, and checked in order.
+  void check_photographs(const PhotoFolder& folder) {
     std::vector<fs::path> files;
     for (const PhotoClass& one : folder.classes) {
       files.insert(files.end(), one.files.begin(), one.files.end());
@@ -195,8 +195,8 @@ class Import {
     int count;
   };
 
-  /// Cuts all photographs on all cores. What a crop is called does not depend on when it is cut.
-  /// \param draft  empty: the crops are only looked at
+  /// Cuts all photographs on all cores. A crop's name does not depend on the order of cutting.
+  /// \param draft  empty: the crops are only checked
   void cut_all(const fs::path& draft, const std::vector<std::vector<int>>& shares) {
     std::vector<Cut> cuts;
     std::size_t photograph = 0;
@@ -227,7 +227,7 @@ class Import {
       throw FileError(one_line(wanted.file.string()) +
                       ": changed while it was imported; try again");
     }
-    // The stream depends on the photograph's name only, so that other photographs may come and go.
+    // The stream depends on the photograph's name only, independent of other photographs.
     const Digest name = sha256(bytes_of(record_.photographs[wanted.photograph].file));
     RandomStream random(options_.seed, "import crops of " + to_hex(name));
     const PhotoSize size{photo.image.height(), photo.image.width()};
@@ -274,7 +274,7 @@ class Import {
     });
   }
 
-  /// Writes the study last; if that fails, the earlier pictures return.
+  /// Writes the study last; if that fails, the earlier pictures are restored.
   void finish(Draft& draft, const std::vector<std::string>& remarks) {
     write_output(draft.path() / kStimulusManifestFile, import_manifest(record_, options_, remarks));
     const fs::path from = fs::absolute(options_.study).lexically_normal().parent_path();
@@ -309,7 +309,7 @@ class Import {
   ImportOptions options_;
   const ImportProgress& progress_;
   std::vector<SizedClass> classes_;
-  std::vector<std::string> small_;  ///< what is wrong with photographs smaller than a crop
+  std::vector<std::string> small_;  ///< faults of photographs smaller than a crop
   ImportRecord record_;
   std::mutex mutex_;  ///< guards done_, and the progress
   int done_ = 0;
@@ -330,7 +330,7 @@ fs::path default_pictures_folder(const fs::path& study) {
 }
 
 void try_photographs(const ImportOptions& options, const ImportProgress& progress) {
-  Import(options, progress).try_out();
+  Import(options, progress).check_inputs();
 }
 
 ImportReport import_photographs(const ImportOptions& options, const ImportProgress& progress) {

@@ -1,4 +1,4 @@
-/// \file A folder of photographs made into the exemplars of a study. Manual: docs/own-images.md.
+/// \file Turns a folder of photographs into the exemplars of a study. Manual: docs/own-images.md.
 #pragma once
 
 #include "core/errors.hpp"
@@ -29,8 +29,8 @@ struct ImportOptions {
   int size_px = 500;                  ///< side of a crop, kMinCropSizePx .. kMaxCropSizePx
   int crops = 5;                      ///< number for each class, 1 .. kMaxCropsOfClass
   double pitch_mm = 0.2;              ///< size of a crop's pixel on the plane, 0.001 .. 10
-  /// Pixels per millimetre of the photographed object. If it is given here or taken from the files,
-  /// photographs are resampled to feel life-size. Otherwise each pixel stays a pixel.
+  /// Pixels per millimetre of the photographed object. If given here or read from the files,
+  /// photographs are resampled to feel life-size. Otherwise they are not resampled.
   std::optional<double> pixels_per_mm;
   bool pixels_per_mm_of_files = false;
   engine::SampleScale scale;  ///< of photographs of more than 8 bits
@@ -82,16 +82,16 @@ class UnusablePhotographs : public FileError {
   std::vector<std::string> faults_;
 };
 
-/// The photographs are too small or too few for the crops. The faults name numbers that would do.
+/// The photographs are too small or too few for the crops. The faults name numbers that would fit.
 class CropsDoNotFit : public UnusablePhotographs {
  public:
   CropsDoNotFit(const std::filesystem::path& folder, std::vector<std::string> faults,
                 const std::string& remedy, int crops, int size_px)
       : UnusablePhotographs(folder, std::move(faults), remedy), crops_(crops), size_px_(size_px) {}
 
-  /// How many crops of the wanted size there are of each class; 0: none.
+  /// The number of possible crops of the wanted size for each class; 0: none.
   [[nodiscard]] int crops() const noexcept { return crops_; }
-  /// The largest side of as many crops as were wanted; 0: not even the smallest.
+  /// The largest side for the wanted number of crops; 0: not even the smallest.
   [[nodiscard]] int size_px() const noexcept { return size_px_; }
 
  private:
@@ -112,7 +112,7 @@ void try_photographs(const ImportOptions& options, const ImportProgress& progres
 ///   already
 /// \throws CropsDoNotFit if photographs are too small or too few
 /// \throws UnusablePhotographs with all photographs that cannot be read, equal another, are too
-///   small or have an impossible name; or else with all of which a crop has one grey level
+///   small or have an impossible name; or else with all that have a crop of a single grey level
 /// \throws FileError if the folder cannot be used, or an output cannot be written
 ImportReport import_photographs(const ImportOptions& options, const ImportProgress& progress = {});
 

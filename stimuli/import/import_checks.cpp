@@ -103,7 +103,7 @@ std::string times(int side_px) {
 
 bool all_fit(const std::vector<SizedClass>& classes, int side_px, int crops) {
   return std::ranges::all_of(classes, [&](const SizedClass& one) {
-    return !shared_out(one.sizes, side_px, crops).empty();
+    return !crop_shares(one.sizes, side_px, crops).empty();
   });
 }
 
@@ -194,11 +194,10 @@ void add_resolution_warnings(const ImportRecord& record, const ImportOptions& op
                        "pixels, or a larger --pitch-mm");
   }
   if (!of_camera.empty()) {
-    warnings.push_back(
-        first_of(of_camera) +
-        ": the resolution in the file is what cameras write, and says nothing of "
-        "the object; for life-size, photograph a ruler, and give `touchtrial stimuli "
-        "import` --pixels-per-mm");
+    warnings.push_back(first_of(of_camera) +
+                       ": the resolution in the file is a camera's default, unrelated to the "
+                       "object; for life-size, photograph a ruler, and give `touchtrial stimuli "
+                       "import` --pixels-per-mm");
   }
   if (!unused.empty()) {
     warnings.push_back(
@@ -269,7 +268,7 @@ std::vector<std::vector<int>> plan_shares(const std::vector<SizedClass>& classes
   std::vector<std::vector<int>> shares;
   std::vector<std::string> faults;
   for (const SizedClass& one : classes) {
-    shares.push_back(shared_out(one.sizes, options.size_px, options.crops));
+    shares.push_back(crop_shares(one.sizes, options.size_px, options.crops));
     if (!shares.back().empty()) continue;
     const int room = std::accumulate(
         one.sizes.begin(), one.sizes.end(), 0,

@@ -29,13 +29,13 @@ struct SizedClass {
   std::vector<PhotoSize> sizes;
 };
 
-/// What is wrong with a photograph that is smaller than a crop, without a remedy; else empty.
+/// The fault of a photograph that is smaller than a crop, without a remedy; else empty.
 [[nodiscard]] std::string fault_of_size(const Photograph& photo, PhotoSize size,
                                         const ImportOptions& options);
 
 /// The number of crops of each photograph of each class.
 /// \param small  the faults of photographs that are smaller than a crop
-/// \throws CropsDoNotFit if there are such, or classes give too few crops
+/// \throws CropsDoNotFit if there are any, or classes give too few crops
 [[nodiscard]] std::vector<std::vector<int>> plan_shares(const std::vector<SizedClass>& classes,
                                                         std::vector<std::string> small,
                                                         const ImportOptions& options);

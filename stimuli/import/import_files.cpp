@@ -85,7 +85,7 @@ std::uint64_t study_seed(const ImportRecord& record, std::uint64_t seed) {
   std::uint64_t number = 0;
   const Digest digest = hasher.finish();
   for (std::size_t i = 0; i < 6; ++i) number = number << 8U | digest[i];
-  return number + 1;  // 0 would count as not set
+  return number + 1;  // 0 means not set
 }
 
 Json methods_of(const ImportOptions& options) {
@@ -101,7 +101,7 @@ Json rendering_of(const ImportOptions& options) {
   return {{"model", "paper"},
           {"pitch_mm", options.pitch_mm},
           {"gains", "budget"},
-          // Otherwise methods of different strength would be told apart by strength.
+          // Otherwise methods could be distinguished by strength.
           {"equalise", comparing ? "rms" : "none"}};
 }
 

@@ -43,7 +43,7 @@ struct ImportRecord {
 };
 
 /// The text of manifest.json.
-/// \param remarks  on the photographs and what became of them, as they were printed
+/// \param remarks  on the photographs and crops, as printed
 [[nodiscard]] std::string import_manifest(const ImportRecord& record, const ImportOptions& options,
                                           const std::vector<std::string>& remarks);
 

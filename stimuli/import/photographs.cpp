@@ -89,7 +89,7 @@ struct NaturalOrder {
   }
 };
 
-/// Collects classes, and what is wrong with names.
+/// Collects classes, and faults of names.
 class Classes {
  public:
   explicit Classes(PhotoFolder& folder) : folder_(folder) {}
@@ -214,8 +214,8 @@ double scale_for(const Photograph& photo, const ImportOptions& options) {
     throw FileError(name + ": does not say how many pixels a millimetre has" +
                     (photo.notes.camera_dpi
                          ? " (" + number_text(std::round(*photo.notes.camera_dpi)) +
-                               " dpi are what cameras write, which do not know)"
-                         : " (programs that do not know write 72 or 96 dpi)") +
+                               " dpi is a default of cameras)"
+                         : " (72 and 96 dpi are defaults for an unknown resolution)") +
                     "; give --pixels-per-mm a number");
   }
   const double scale = 1.0 / (*pixels_per_mm * options.pitch_mm);

@@ -1,5 +1,5 @@
 /// \file The photographs of a folder: their classes, and each one upright, grey, and resampled to
-/// the size in which it is felt. Private to stimuli/import.
+///   its felt size. Private to stimuli/import.
 #pragma once
 
 #include "core/hash.hpp"
@@ -24,7 +24,7 @@ struct PhotoClass {
 struct PhotoFolder {
   std::vector<PhotoClass> classes;   ///< in natural order of their labels
   std::vector<std::string> ignored;  ///< names of other files
-  std::vector<std::string> faults;   ///< of names, one line each; nothing can be made of them
+  std::vector<std::string> faults;   ///< of names, one line each; such files are unusable
 };
 
 /// In a folder of folders, each folder is a class of its name. In a folder of files, each file is a
@@ -50,7 +50,7 @@ struct Photograph {
   engine::ImageNotes notes;  ///< the image is turned upright by its orientation
   int height_px = 0;         ///< upright, before resampling
   int width_px = 0;
-  std::optional<PhotoPart> opaque;  ///< of a transparent one, that part alone is used
+  std::optional<PhotoPart> opaque;  ///< of a transparent photograph, the only part used
   double scale = 1.0;               ///< of the resampling, new pixels per old pixel
   GreyImage image;                  ///< upright and resampled; its opaque part
 };

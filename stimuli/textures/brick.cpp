@@ -51,7 +51,7 @@ class BrickWall {
   }
 
   [[nodiscard]] BrickPlace locate(double x, double y) const {
-    // A mason's line is never straight, and a camera never level.
+    // Courses are slightly wavy and tilted.
     const double wy = y + 0.018 * x + 20.0 + 2.0 * edges_.fractal(x / 90, y / 90, 2);
     const double wx = x - 0.012 * y + 1.8 * edges_.fractal(x / 70 + 40, y / 70, 2);
     auto row_number = static_cast<std::int64_t>(std::floor(wy / kCourse));

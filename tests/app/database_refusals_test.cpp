@@ -78,14 +78,14 @@ TEST_CASE("a file that is not a study's database is refused, and is not changed"
         .exec("CREATE TABLE birds(name)");
   }
   fs::create_directory(study.path() / "folder.db");
-  check_refused(note(study, "letter.db"), 1, {"letter.db", "is no Touchtrial database"});
+  check_refused(note(study, "letter.db"), 1, {"letter.db", "is not a Touchtrial database"});
   check_refused(note(study, "others.db"), 1, {"others.db", "none of Touchtrial"});
   check_refused(note(study, "folder.db"), 1, {"folder.db", "is a folder"});
   check_refused(study.session("P009", {}, "letter.db"), 1, {"letter.db"});
   CHECK(content(study.path() / "letter.db") == std::string(300, 'x'));
 }
 
-TEST_CASE("in a read-only folder, reading works and writing says what is wrong") {
+TEST_CASE("in a read-only folder, reading works and writing fails with a clear error") {
   const StudyFolder study;
   REQUIRE(::chmod(study.path().c_str(), 0755) == 0);
   if (run_as_ordinary_user(study, {"--version"}).exit_code != 0) {

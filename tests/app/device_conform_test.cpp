@@ -47,7 +47,7 @@ TEST_CASE("device conform checks a plug-in's file, with force if that is permitt
   CHECK(result.exit_code == (all_pass ? 0 : 1));
 }
 
-TEST_CASE("device conform sends no force unless it is told to, and asks before it does") {
+TEST_CASE("device conform sends force only on request, and asks for confirmation first") {
   const DeviceFolder folder;
   const json plain = json::parse(conform(folder, TOUCHTRIAL_EXAMPLE_PLUGIN " --json").output);
   CHECK(outcome(plain, "sends what it is told") == "not_observed");

@@ -64,7 +64,7 @@ TEST_CASE(
              holds_text("has no workspace") && !holds_text("fits"));
 }
 
-TEST_CASE("device fit compares a study's stiffness with what the device says that it renders") {
+TEST_CASE("device fit compares a study's stiffness with the device's reported limit") {
   const auto with_wall = [](double wall_n_per_mm) {
     return FitFolder(200, 200,
                      {{"texture_stiffness_n_per_mm", 0.3}, {"stiffness_n_per_mm", wall_n_per_mm}});
@@ -120,7 +120,7 @@ TEST_CASE("device fit refuses a certificate that no session takes") {
     return result.errors;
   };
   CHECK_THAT(refusal("driver", "falcon"), holds_text("proves no device"));
-  CHECK_THAT(refusal("emulated", ""), holds_text("says that it failed"));
+  CHECK_THAT(refusal("emulated", ""), holds_text("states that it failed"));
   CHECK_THAT(refusal("driver", "dhd"), holds_text("is for") && holds_text("dhd"));
 }
 

@@ -31,7 +31,7 @@ TEST_CASE("device list names every driver and which devices are ready, as text a
   CHECK(row_with(devices, "driver", "dhd").at("products").at(0).at("name") == "omega");
 }
 
-TEST_CASE("device list says what a device renders, for studies") {
+TEST_CASE("device list shows a device's rendering limits") {
   const DeviceFolder folder(json{{"openhaptics", {{"library", TOUCHTRIAL_FAKE_HD}}}});
   CHECK_THAT(succeeded(folder.device("list")).output, holds_text("at most 0.4 N/mm"));
 }

@@ -144,7 +144,8 @@ TEST_CASE("device list and test use the library that the settings name") {
   CHECK((code == 0 || stood_still));
 }
 
-TEST_CASE("device initialise asks before it moves anything, and says who must do it instead") {
+TEST_CASE(
+    "device initialise asks before it moves anything, and names manual homing as the alternative") {
   const DeviceFolder folder(dhd_settings());
   check_refused(folder.device("initialise simulated"), 2, {"touchtrial device test simulated"});
   check_refused(folder.device("initialise dhd"), 2, {"the arm will move", "--yes"});
@@ -188,7 +189,7 @@ TEST_CASE("device accept that leaves out every step writes a certificate that fa
   const int code = skipping.finish();
   INFO(skipping.output());
   CHECK(code == 1);
-  CHECK_THAT(skipping.output(), holds_text("press Enter to go on") && holds_text("Failed."));
+  CHECK_THAT(skipping.output(), holds_text("press Enter to continue") && holds_text("Failed."));
   const json certificate = folder.object_in("dhd-certificate.json");
   CHECK(certificate.at("passed") == false);
   CHECK(certificate.at("driver") == "dhd");
@@ -196,7 +197,7 @@ TEST_CASE("device accept that leaves out every step writes a certificate that fa
   CHECK(certificate.at("not_measured").size() >= 3);
 }
 
-TEST_CASE("device accept takes what was typed before a prompt for no answer to it") {
+TEST_CASE("device accept ignores input typed before a prompt") {
   const DeviceFolder folder(dhd_settings());
   TerminalRun run(folder.words("accept dhd --certificate @c.json"));
   run.answer("[Enter, s, q] ", "s\r\r\r\r\r\r\r");
@@ -215,7 +216,7 @@ bool only_a_fresh_enter_begins_the_run() {
   run.hold_enter("[Enter, s, q] ", std::chrono::seconds(2));
   std::chrono::milliseconds pause{1500};
   if (run.shows(kLiveLine, pause)) return false;
-  if (run.shown().find("let go of Enter") == std::string::npos) return false;
+  if (run.shown().find("release Enter") == std::string::npos) return false;
   // Where the program takes the held ones late, the first fresh one comes too soon after them.
   do {
     if (run.ended()) return false;
@@ -229,7 +230,7 @@ bool only_a_fresh_enter_begins_the_run() {
   return true;
 }
 
-TEST_CASE("device accept takes a held Enter for one answer, and goes on at a fresh one") {
+TEST_CASE("device accept counts a held Enter once, and continues at a new press") {
   int attempts = 1;
   while (!only_a_fresh_enter_begins_the_run()) REQUIRE(++attempts <= 10);
 }
@@ -317,7 +318,7 @@ TEST_CASE("device accept refuses a broken emulated device") {
   CHECK_THAT(certificate.at("failures").dump(), holds_text("axis z") && holds_text("sign"));
 }
 
-TEST_CASE("device bring-up keeps what it has at q and at a signal, and says what was not done") {
+TEST_CASE("device bring-up saves its results at q and at a signal, and lists what was not done") {
   const bool by_signal = GENERATE(false, true);
   const DeviceFolder folder(dhd_settings());
   ChildProcess program = folder.start("bring-up omega");
@@ -342,7 +343,7 @@ TEST_CASE("device bring-up keeps what it has at q and at a signal, and says what
   CHECK(file.dump().find("4242") == std::string::npos);
 }
 
-TEST_CASE("device bring-up keeps what it has at the end of the input") {
+TEST_CASE("device bring-up saves its results at the end of the input") {
   const DeviceFolder folder(dhd_settings());
   CHECK(folder.device("bring-up dhd --out @dhd-bring-up.json").exit_code == 2);
   CHECK(folder.object_in("dhd-bring-up.json").at("steps").at("rest") == "interrupted");
@@ -363,7 +364,7 @@ TEST_CASE("device bring-up that leaves out every step asks its questions, and re
   check_refused(folder.device("bring-up dhd --out @dhd-bring-up.json"), 1, {"--out"});
 }
 
-TEST_CASE("device bring-up lists the facts that nobody has verified") {
+TEST_CASE("device bring-up lists the unverified facts") {
   const DeviceFolder folder;
   CHECK(folder.printed("device bring-up --facts --json").size() == 4);
   CHECK(folder.printed("device bring-up omega --facts --json").size() == 1);

@@ -99,7 +99,8 @@ struct ErasedFolder : StudyFolder {
 
 }  // namespace
 
-TEST_CASE("erasing participants leaves a true database true, whatever befell their sessions") {
+TEST_CASE(
+    "erasing participants leaves a valid database valid, whatever happened in their sessions") {
   for (const auto& of : kStudies) {
     INFO(of.first << " " << of.second);
     const ErasedFolder study(of);

@@ -81,7 +81,7 @@ TEST_CASE("extract extracts the texture by every method and option") {
   }
 }
 
-TEST_CASE("extract says which component auto chose, or why there is none") {
+TEST_CASE("extract prints the component that auto chose, or why there is none") {
   const NoiseFolder folder(12, 17);
   const std::string automatic = "--method tv-gabor --components auto";
   CHECK_THAT(folder.extract(automatic).output, holds_text("component: 0."));

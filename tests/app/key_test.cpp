@@ -88,7 +88,7 @@ TEST_CASE("a protected key opens with its passphrase alone, and stays protected"
   replace_file(unprepared.path() / "open.txt", kSecret + "\n");
   check_refused(unprepared.type("prepare @cloths.json --passphrase --passphrase-file @open.txt"), 1,
                 {"open.txt", "others may read"});
-  check_refused(unprepared.type("prepare @cloths.json --passphrase"), 2, {"at a terminal"});
+  check_refused(unprepared.type("prepare @cloths.json --passphrase"), 2, {"terminal"});
   CHECK_FALSE(fs::exists(unprepared.path() / "cloths.key"));
 
   TempFolder secrets;
@@ -186,7 +186,7 @@ TEST_CASE("a terminal asks for passphrases and shows nothing of them") {
   {
     TerminalRun run({"key", "check", study.in("cloths.json")});
     run.answer("passphrase of ", "not this one");
-    run.answer("that is not it; passphrase of ", kSecret);
+    run.answer("wrong passphrase; passphrase of ", kSecret);
     CHECK(run.finish() == 0);
     CHECK_THAT(run.shown(), holds_text("a test record opens with the key"));
   }

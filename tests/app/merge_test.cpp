@@ -80,7 +80,7 @@ std::map<std::string, std::string> files_of(const fs::path& folder) {
 
 }  // namespace
 
-TEST_CASE("merged stations report and export what one station with all participants does") {
+TEST_CASE("merged stations give the same report and export as one station with all participants") {
   const SimulatedStations study;
   succeeded(study.merge({"s3.db", "s1.db"}, {"-o", study.in("C.db")}));
   const ProgramResult one = study.type("report @one.db --json");
@@ -120,7 +120,7 @@ TEST_CASE("a merged study verifies with its key, its pack and its traces, and ex
   CHECK(recordings == 4 * 6);
 }
 
-TEST_CASE("the summary of a merge says what was collected, and where the key is") {
+TEST_CASE("the summary of a merge lists the collected sessions and the key") {
   const SimulatedStations study;
   const ProgramResult ran =
       succeeded(study.merge({"s1.db", "s3.db", "s1.db"}, {"-o", study.in("C.db"), "--json"}));
@@ -155,7 +155,7 @@ TEST_CASE("a merged study has the consents beside its stations, and nothing else
   CHECK(content(study.in("one/P003_personal.csv")).ends_with(",,,\n"));
 }
 
-TEST_CASE("a database that lacks what the head file beside it knows is not merged") {
+TEST_CASE("a database that lacks records of its head file is not merged") {
   const StudyFolder study;
   const std::string two = "simulate @cloths.json --participants 2 --seed 3 --subject @quick.json ";
   study.done(two + "--db @s1.db");
@@ -164,7 +164,7 @@ TEST_CASE("a database that lacks what the head file beside it knows is not merge
   study.done("note @s1.db --participant P001 late");
   fs::copy_file(study.in("older.db"), study.in("s1.db"), fs::copy_options::overwrite_existing);
   const auto merge = [&] { return study.type("merge @s1.db @s3.db -o @C.db"); };
-  check_refused(merge(), 3, {"s1.db: is not as it was left: ", "the head file knows"});
+  check_refused(merge(), 3, {"s1.db: is not as it was left: ", "the head file records"});
   CHECK_FALSE(fs::exists(study.in("C.db")));
   study.done("note @s1.db --participant P001 late --accept-loss 'an older copy'");
   succeeded(merge());
@@ -187,7 +187,7 @@ TEST_CASE("the key of a study with people is not copied") {
   CHECK(ran.output.find("name it with --key") != std::string::npos);
   CHECK_FALSE(fs::exists(study.in("C.db.key")));
   study.done("verify @C.db --key @cloths.key");
-  check_refused(study.session("P03", {}, "C.db"), 1, {"takes no sessions of its own"});
+  check_refused(study.session("P03", {}, "C.db"), 1, {"accepts no sessions of its own"});
 }
 
 TEST_CASE("a merge of an altered station file ends like its verification") {

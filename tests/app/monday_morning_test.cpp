@@ -20,7 +20,7 @@ namespace {
 
 const std::string kDead = "The machine has died";
 const std::string kOlder = "The backup is older, or there is none";
-const std::string kNoKey = "The investigator's key is lost";
+const std::string kNoKey = "Lost key";
 const std::string kNoStation = "The station's file is lost";
 const std::string kWrong = "The wrong person sat down, or the wrong id was typed";
 const std::string kWithdrawn = "Somebody withdraws at trial 12";
@@ -275,8 +275,7 @@ bool has_bytes(const fs::path& folder, ByteView bytes) {
 
 }  // namespace
 
-TEST_CASE(
-    "the page on what goes wrong has a rehearsal of each case, which takes ten lines at most") {
+TEST_CASE("the page on problems has a rehearsal of each case, of ten lines at most") {
   const std::set<std::string> rehearsed = {"",     kDead,      kOlder, kNoKey, kNoStation,
                                            kWrong, kWithdrawn, kFull,  kClock, kLog};
   std::set<std::string> headings;
@@ -289,7 +288,7 @@ TEST_CASE(
   CHECK(headings == rehearsed);
 }
 
-TEST_CASE("when the machine has died, another one goes on from the backup") {
+TEST_CASE("after a machine failure, another one continues from the backup") {
   MondayStation desk;
   desk.break_off("P07", 2, SIGKILL);
   desk.follow("");
@@ -300,32 +299,33 @@ TEST_CASE("when the machine has died, another one goes on from the backup") {
   CHECK(desk.check_holds().output.find("a loss was accepted") == std::string::npos);
 }
 
-TEST_CASE("what an older backup lacks is named, and accepted where somebody waits") {
+TEST_CASE("losses of an older backup are named, and can be accepted") {
   MondayStation desk;
   desk.follow("");
   desk.complete("P02");
   desk.lose_machine();
   const std::vector<std::string> restored = monday_block(kDead, 0);
   desk.type_all({restored.at(0)});
-  desk.check_refusal(restored.at(1), {"18 acknowledged answers are missing: the database has 18, "
-                                      "the head file knows 36",
-                                      "--accept-loss"});
+  desk.check_refusal(
+      restored.at(1),
+      {"18 acknowledged answers are missing: the database has 18, the head file records 36",
+       "--accept-loss"});
   check_went_on(desk.follow(kOlder), "P07");
   CHECK_THAT(desk.check_holds().output, holds_text("a loss was accepted (the disk died)"));
 }
 
-TEST_CASE("a database that is gone is begun anew only if that is wanted") {
+TEST_CASE("a missing database is recreated only on request") {
   MondayStation desk;
   for (const char* const name : {"study.db", "study.db.head"}) fs::remove(desk.study() / name);
   const std::string waiting = monday_block(kDead, 0).at(1);
-  desk.check_refusal(waiting, {"study.db: is not there", "media/stick/study.db.head",
+  desk.check_refusal(waiting, {"study.db: ", "media/stick/study.db.head",
                                "18 answers acknowledged", "--accept-loss"});
   CHECK_FALSE(fs::exists(desk.study() / "study.db"));
   check_went_on(desk.follow(kOlder), "P07");
   CHECK_THAT(desk.check_holds().output, holds_text("18 acknowledged answers are missing"));
 }
 
-TEST_CASE("a head file that is gone is made anew from the other one, which knows the same") {
+TEST_CASE("a missing head file is recreated from the other one") {
   MondayStation desk;
   fs::remove(desk.study() / "study.db.head");
   desk.check_refusal("touchtrial run study.json --participant P02 --db study.db",
@@ -335,7 +335,7 @@ TEST_CASE("a head file that is gone is made anew from the other one, which knows
   CHECK(desk.check_holds().output.find("a loss was accepted") == std::string::npos);
 }
 
-TEST_CASE("a loss that two head files know is named once") {
+TEST_CASE("a loss recorded in two head files is reported once") {
   MondayStation desk;
   desk.type_all({"cp study.db older.db"});
   desk.complete("P02");
@@ -365,7 +365,7 @@ TEST_CASE("the investigator's key comes back from its copy, and sessions need no
   CHECK_THAT(verified.output, holds_text("responses"));
 }
 
-TEST_CASE("a station's file that is lost is written again, and the open session goes on") {
+TEST_CASE("a lost station's file is rewritten, and the open session continues") {
   MondayStation desk;
   desk.break_off("P07", 2, SIGKILL);
   const std::string station = content(desk.study() / "study.station");
@@ -382,11 +382,11 @@ TEST_CASE("a station's file that is lost is written again, and the open session 
   desk.check_holds();
 }
 
-TEST_CASE("prepare without the key leaves the station's file and the pack as they are") {
+TEST_CASE("prepare without the key does not change the station's file and the pack") {
   MondayStation desk;
   const std::string station = content(desk.study() / "study.station");
   const std::vector<std::string> words = {"study.key: is not here", "was made with it",
-                                          "lay the key here"};
+                                          "put the key here"};
   desk.check_refusal("touchtrial prepare study.json", words);
   CHECK(content(desk.study() / "study.station") == station);
   CHECK_FALSE(fs::exists(desk.study() / "study.key"));
@@ -410,7 +410,7 @@ TEST_CASE("a wrong person is stopped and replaced, a wrong id is noted and begin
 }
 
 TEST_CASE(
-    "who withdraws at trial 12 has the data erased, or lets them be used, and is not resumed") {
+    "a participant who withdraws at trial 12 has the data erased or kept, and is not resumed") {
   MondayStation desk;
   const std::string resume =
       "touchtrial run study.json --db study.db --on-existing resume --participant ";
@@ -438,7 +438,7 @@ TEST_CASE(
   desk.check_holds();
 }
 
-TEST_CASE("a disk that gets full ends a session in one line, and it goes on when there is room") {
+TEST_CASE("a full disk ends a session with one line, and it can be resumed when there is space") {
   MondayStation desk;
   const std::vector<std::string> commands = monday_block(kFull, 0);
   desk.fill_disk_after(600'000);
@@ -455,7 +455,7 @@ TEST_CASE("a disk that gets full ends a session in one line, and it goes on when
   desk.check_holds();
 }
 
-TEST_CASE("a clock that is years ahead or a day behind is named, and the session goes on") {
+TEST_CASE("a clock years ahead or a day behind is reported, and the session continues") {
   MondayStation desk;
   desk.break_off("P07", 1, SIGINT);
   const std::vector<std::string> commands = monday_block(kClock, 0);
@@ -470,7 +470,7 @@ TEST_CASE("a clock that is years ahead or a day behind is named, and the session
   desk.check_holds();
 }
 
-TEST_CASE("what a damaged log lost is named, and presented again where it is accepted") {
+TEST_CASE("trials lost in a damaged log are named, and presented again once the loss is accepted") {
   MondayStation desk;
   desk.break_off("P07", 4, SIGKILL);
   flip_one_bit(desk.study() / "study.db-wal", 0.5);

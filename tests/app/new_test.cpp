@@ -65,18 +65,18 @@ TEST_CASE("every line of a new study has its comment, and its answers stand in i
   }
 }
 
-TEST_CASE("what no option answers is asked, and a wrong answer is asked for again") {
+TEST_CASE("questions without an option are asked, and asked again after an invalid answer") {
   const Desk desk;
-  // Name, protocol, pictures, device twice, people twice, worth, language, consent, visits, groups
+  // Name, protocol, device twice, pictures, people twice, worth, language, consent, visits, groups
   // twice.
   const ProgramResult made = succeeded(
-      desk.make("linen", {}, "linen\n\n\ntuch\nomega\nmany\n12\n\nfr-klingon\nen\n\n\none\n\n"));
+      desk.make("linen", {}, "linen\n\ntuch\nomega\n\nmany\n12\n\nfr-klingon\nen\n\n\none\n\n"));
   CHECK_THAT(made.errors, holds_text("Number of participants [20]: "));
   CHECK_THAT(made.errors, holds_text("many: must be a number from 2 to 100000"));
   CHECK_THAT(made.errors, holds_text("fr-klingon: "));
   CHECK_THAT(made.errors, holds_text("tuch: ") && holds_text("touch_x"));
   CHECK_THAT(made.errors, holds_text("one: must be 2 to 16 names"));
-  CHECK_THAT(made.errors, !holds_text("Least days between"));
+  CHECK_THAT(made.errors, !holds_text("Minimum days between"));
   const json study = desk.study("linen/linen.json");
   CHECK(study.at("registration").at("participants") == 12);
   CHECK(study.at("registration").at("smallest_effect") == 0.4);
@@ -114,6 +114,14 @@ TEST_CASE("without answers, or in a folder with something in it, nothing is writ
   check_refused(desk.make("felt", {"--yes", "--device", "tuch"}), 2, {"--device"});
   check_refused(desk.make("felt", {"--yes", "--device", "my/own.json"}), 2, {"--device"});
   CHECK_FALSE(is_there(desk.in("felt")));
+}
+
+TEST_CASE("pictures of a study for a device are as large as the device's room for them") {
+  const Desk desk;
+  succeeded(desk.run({"new", desk.in("felt"), "--yes", "--device", "touch"}));
+  succeeded(desk.type("device fit @felt/felt.json"));
+  const json fit = json::parse(succeeded(desk.type("device fit @felt/felt.json --json")).output);
+  CHECK(fit.at("plane").at("width_px") > 200);
 }
 
 TEST_CASE("photographs become the classes, and practice has none of their labels") {
@@ -155,7 +163,7 @@ TEST_CASE("photographs of more than 8 bits are taken by the options of an import
   CHECK_THAT(desk.done("prepare @mine/mine.json").errors, holds_text("labels have Latin letters"));
 }
 
-TEST_CASE("photographs are tried when they are named, and what they lack is asked for") {
+TEST_CASE("photographs are checked at once, and new sizes are asked for if they do not fit") {
   const Desk desk;
   for (const std::string folder : {"album", "empty"}) fs::create_directory(desk.in(folder));
   for (int i = 0; i < 3; ++i) {
@@ -172,13 +180,13 @@ TEST_CASE("photographs are tried when they are named, and what they lack is aske
   }
   CHECK_FALSE(is_there(desk.in("deep")));
 
-  // Name, protocol, pictures twice, size and crops, device, people, worth, language, consent,
+  // Name, protocol, device, pictures twice, size and crops, people, worth, language, consent,
   // visits, groups.
   std::vector<std::string> asked = {"new", desk.in("mine")};
   asked.insert(asked.end(), size.begin(), size.end());
   const ProgramResult made =
-      succeeded(desk.run(asked, "mine\n\n" + desk.in("empty") + "\n" + desk.in("album") +
-                                    "\n48\n1\n\n12\n\n\n\n\n\n"));
+      succeeded(desk.run(asked, "mine\n\n\n" + desk.in("empty") + "\n" + desk.in("album") +
+                                    "\n48\n1\n12\n\n\n\n\n\n"));
   CHECK_THAT(made.errors, holds_text("Side of a picture, pixels [120]: "));
   const json study = desk.study("mine/mine.json");
   CHECK(study.at("classes").size() == 3);

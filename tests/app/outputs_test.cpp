@@ -148,7 +148,7 @@ void check_link(const Workshop& workshop, const Output& output) {
 
 }  // namespace
 
-TEST_CASE("every option that takes text is known as an output, or as none") {
+TEST_CASE("every option with text is classified as an output or not") {
   const TempFolder folder;
   const std::string table =
       succeeded(run_touchtrial(folder.path(), {"reference", "--table"})).output;
@@ -195,7 +195,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("databases, keys and what may be deposited are never replaced") {
+TEST_CASE("databases, keys and deposited pages are never replaced") {
   const Workshop workshop;
   for (const Output& output : kNeverReplaced) {
     INFO(output.command << " " << output.line);

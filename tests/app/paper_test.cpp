@@ -85,7 +85,7 @@ std::string words_in_svg(const fs::path& path) {
 
 }  // namespace
 
-TEST_CASE("docs/paper.md is what paper prints for the program's own pictures") {
+TEST_CASE("docs/paper.md equals the output of paper for the built-in pictures") {
   const ProgramFolder folder;
   folder.done("paper --out @paper");
   const fs::path docs = fs::path(TOUCHTRIAL_SOURCE_DIR) / "docs";
@@ -141,5 +141,5 @@ TEST_CASE("paper refuses bad pictures and folders in one line, and writes nothin
   check_refused(folder.type("paper @pixel.png --out @out"), 1, {"pixel.png: has 1 x 1 px"});
   check_refused(folder.type("paper @good.png"), 2, {"--out"});
   CHECK_FALSE(fs::exists(folder.in("out")));
-  check_refused(folder.type("paper @good.png --out @text.png"), 1, {"is no folder"});
+  check_refused(folder.type("paper @good.png --out @text.png"), 1, {"not a folder"});
 }

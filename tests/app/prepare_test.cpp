@@ -110,7 +110,7 @@ TEST_CASE("a prepare that fails leaves the study as it was, and no key of a new 
   CHECK(contents(study.path()) == prepared);
 }
 
-TEST_CASE("what a killed prepare left is used or removed by the next one") {
+TEST_CASE("the next prepare uses or removes the files of a killed one") {
   const StudyFolder study;
   write_quick_study(study);
   study.done("prepare @cloths.json");
@@ -283,7 +283,7 @@ TEST_CASE("gains follow from the level that a study states, and say where it is 
   CHECK(prepared(falcon)["warnings"] == out_of_reach["warnings"]);
 }
 
-TEST_CASE("thresholds of pilots take the curve's place, and a file that is none is refused") {
+TEST_CASE("thresholds of pilots replace the curve, and an invalid file is refused") {
   const StudyFolder study;
   json pilots = study_of("classification");
   pilots["classes"] = {pilots["classes"][0]};

@@ -27,17 +27,30 @@ TEST_CASE("prereg writes the registration, the design and the hashes, and no sec
   const ProgramResult result = study.done("prereg @cloths.json");
   CHECK(result.errors.empty());
   for (const char* part :
-       {"# Preregistration of the study cloths", "Hands tell cloths apart.", "12 participants.",
-        "At twelve.", "Withdrawals.", "A t test.",
+       {"# Preregistration of the study cloths",
+        "Hands tell cloths apart.",
+        "12 participants.",
+        "At twelve.",
+        "Withdrawals.",
+        "A t test.",
         "- estimand: mean over participants of the share of right answers, against chance",
-        "- test: Student's t test over participants, one-sided", "- alpha: 0.05",
-        "- smallest worth having: 50 % right", "- interim looks: at 6 participants",
+        "- test: Student's t test over participants, one-sided",
+        "- alpha: 0.05",
+        "- smallest worth having: 50 % right",
+        "- interim looks: at 6 participants",
         "- exclusion rules: a session with a deviation \"asleep\" or more than 20 % of trials not "
         "valid",
-        "3 (corduroy, granite, linen)", "scored trials a participant: 6", "at least 300 mm",
+        "3 (corduroy, granite, linen)",
+        "scored trials a participant: 6",
+        "at least 300 mm",
         "exploration from landing: at least 2 s",
         "before an answer: at least 0.5 s at the plane and 25 mm along it, unless time is up",
-        "- seal: `", "- pack: `"}) {
+        "(K = 2, additive mask",
+        "- wall: 0.4 N/mm, without damping",
+        "- pitch: 0.2 mm per pixel",
+        "- masking noise: pink noise at -30 dB",
+        "- seal: `",
+        "- pack: `"}) {
     CHECK_THAT(result.output, holds_text(part));
   }
   const json key = json::parse(content(study.path() / "cloths.key"));
@@ -65,7 +78,7 @@ TEST_CASE("prereg refuses a study that is not prepared, or has changed since") {
   CHECK_THAT(page().errors, holds_text("has changed since it was prepared: registration differ"));
 }
 
-TEST_CASE("a key of another study is named as such, and nobody is told to prepare") {
+TEST_CASE("a key of another study is reported as such, without advice to prepare") {
   const StudyFolder study;
   study.done("prepare @cloths.json");
   study.write_study({{"study", "carpets"}}, "carpets.json");
@@ -85,7 +98,7 @@ TEST_CASE("a key of another study is named as such, and nobody is told to prepar
   }
 }
 
-TEST_CASE("a draft of the program's texts is said to be one wherever results can be read") {
+TEST_CASE("draft translations are marked wherever results are shown") {
   const StudyFolder study;
   json french = kRegistered;
   french["session"]["language"] = "fr";

@@ -46,7 +46,7 @@ TEST_CASE("procedure shows the levels for a list of answers") {
   CHECK(walk.at("levels").at(0) == json::parse(first.output).at("levels").at(0));
 }
 
-TEST_CASE("procedure refuses what is no answer, too many of them, and other studies") {
+TEST_CASE("procedure refuses invalid answers, too many answers, and other studies") {
   const ThresholdFolder study;
   check_refused(study.procedure_of("1,2"), 2, {"--answers", "\"2\"", "1 for right"});
   check_refused(study.procedure_of("1,"), 2, {"--answers", "is not an answer"});

@@ -178,7 +178,7 @@ TEST_CASE("a limit on the size of files ends a command in one line, and the data
   succeeded(run_touchtrial(study.path(), note));
 }
 
-TEST_CASE("an output that nobody reads ends a command without a word, as the shell expects") {
+TEST_CASE("a closed output pipe ends a command silently, as shells expect") {
   const PeopleStudy study;
   const ProgramResult closed = run_program(
       "/bin/sh", study.path(),
@@ -239,7 +239,7 @@ TEST_CASE("a replacement inherits the participant's enrolment number and its sch
   check_refused(study.people("replace P002 --with P003 --reason ill"), 1,
                 {"P003", "already has session"});
   check_refused(study.people("replace P002 --with 'no id' --reason ill"), 1,
-                {"'no id'", "no participant id"});
+                {"'no id'", "not a participant id"});
   check_refused(study.people("replace P9 --with P021 --reason ill"), 1, {"P9", "no session"});
   check_refused(study.people("replace P002 --reason ill"), 2, {"--with"});
   const ProgramResult replaced = succeeded(study.people("replace P002 --with P021 --reason ill"));
@@ -262,7 +262,8 @@ TEST_CASE("a replacement inherits the participant's enrolment number and its sch
 }
 
 TEST_CASE(
-    "a withdrawal while others read goes as far as it can, says what is left, and is finished") {
+    "a withdrawal with concurrent readers does what is possible, reports the rest, and can be "
+    "completed") {
   const PeopleStudy study;
   const fs::path personal = personal_data_path(study.database());
   study.put_person("P001", "somebody@example.org");
@@ -320,13 +321,13 @@ TEST_CASE("a session that ends while others read says and records that its key i
   CHECK(study.store().events(0).back().kind == EventKind::session_closed);
 }
 
-TEST_CASE("a withdrawal says and records what it could not erase") {
+TEST_CASE("a withdrawal prints and records what it could not erase") {
   const PeopleStudy study;
   const ProgramResult withdrawn = study.people("withdraw P001 --erase --reason 'asked to'");
   CHECK_THAT(withdrawn.output, holds_text("destroy every other copy of the database"));
   CHECK(withdrawn.output.find("run `touchtrial sync` now") != std::string::npos);
   const WithdrawalBody body = withdrawal_from_json(study.store().events(0).back().body);
-  CHECK(body.kept == Kept::safety_record);
+  CHECK(body.kept == Retention::safety_record);
   CHECK(body.not_erased.find("other copies and backups") != std::string::npos);
   CHECK(body.reason.empty());  // sealed
   check_refused(study.people("withdraw P002 --erase --reason ''"), 1, {"reason"});
@@ -350,7 +351,7 @@ TEST_CASE("after a withdrawal, nobody can open the person's sealed data again") 
 
   const ProgramResult withdrawn =
       succeeded(study.people("withdraw P005 --erase --reason 'asked to'"));
-  CHECK(withdrawn.output.find("cannot be read again") != std::string::npos);
+  CHECK(withdrawn.output.find("no longer be read") != std::string::npos);
   CHECK(withdrawn.output.find("personal data are removed") != std::string::npos);
 
   // No part of the key is left, wrapped or not, in any file: database, log, index, backup, or pack.
@@ -407,7 +408,8 @@ TEST_CASE("a participant who withdrew can be replaced") {
   CHECK(sessions.at("replaced") == 0);
 }
 
-TEST_CASE("who lets the data be used stays in the report, and may have them erased later") {
+TEST_CASE(
+    "a withdrawn participant whose data are kept stays in the report, and can be erased later") {
   const PeopleStudy study;
   const Bytes key = study.store().wrapped_key(session_of(study.store(), "P001").session).value();
   succeeded(study.people("withdraw P001 --keep-data --reason 'moves away'"));
@@ -473,7 +475,7 @@ TEST_CASE("notes and deviations are on the file's chain, before and after closin
   check_refused(study.people("note P003 ''"), 1, {"study.db"});
   check_refused(study.people("note P003 --deviation no-curtian torn"), 2,
                 {"did you mean no-curtain?", "no-placement", "no-day-sheet-NUMBER", "--own-code"});
-  check_refused(study.people("note P003 --deviation sneezed twice"), 2, {"sneezed is none of"});
+  check_refused(study.people("note P003 --deviation sneezed twice"), 2, {"sneezed is not"});
   CHECK_THAT(study.type("note --help").output, holds_text("practice-not-passed"));
   check_refused(study.people("note P9 who"), 1, {"P9", "no session"});
   check_refused(study.people("note P003"), 2, {"TEXT"});
@@ -526,7 +528,7 @@ TEST_CASE("every command that records prints the head for the day sheet") {
   check_head(study.type("unblind @study.db --reason 'the planned test' --yes"));
 }
 
-TEST_CASE("what cannot be undone says whom it concerns and what is lost, and is not done unasked") {
+TEST_CASE("irreversible commands name the participant and the loss, and ask for confirmation") {
   const PeopleStudy study;
   study.put_person("P001", "");
   const std::vector<Event> before = study.store().events(0);
@@ -534,7 +536,7 @@ TEST_CASE("what cannot be undone says whom it concerns and what is lost, and is 
     check_refused(study.type(line), 2, words);
     CHECK(study.store().events(0).size() == before.size());
     TerminalRun asked(typed_words(line, study.path()));
-    asked.answer("type yes to go on: ", "y");
+    asked.answer("type yes to continue: ", "y");
     CHECK(asked.finish() == 2);
     for (const std::string& word : words) {
       if (word != "--yes") CHECK_THAT(asked.shown(), holds_text(word));
@@ -545,14 +547,14 @@ TEST_CASE("what cannot be undone says whom it concerns and what is lost, and is 
   const std::string erasing = "withdraw @study.db --participant P001 --erase --reason 'asked to'";
   check_unasked(erasing, {"P001", "session 1 with 6 answers", "personal data", "--yes"});
   check_unasked("withdraw @study.db --participant P002 --keep-data --reason 'moves away'",
-                {"P002", "no further part", "data stay", "--yes"});
-  check_unasked("close @study.db", {"takes no session any more", "it has 4", "--yes"});
+                {"P002", "data are kept", "--yes"});
+  check_unasked("close @study.db", {"accepts no further session", "it has 4", "--yes"});
   check_unasked("unblind @study.db --interim --reason look", {"has ended", "--yes"});
   check_unasked("unblind @study.db --participant P003 --reason look",
                 {"participant P003", "--yes"});
   CHECK(PersonalData(personal_data_path(study.database())).find("P001"));
   TerminalRun agreed(typed_words(erasing, study.path()));
-  agreed.answer("type yes to go on: ", "yes");
+  agreed.answer("type yes to continue: ", "yes");
   CHECK(agreed.finish() == 0);
   CHECK(session_of(study.store(), "P001").erased);
   check_verified(study);
@@ -577,7 +579,7 @@ TEST_CASE("a second look at the same sessions is refused, and one at more is not
   check_verified(study);
 }
 
-TEST_CASE("a database of another version is refused in one line, and stays as it is") {
+TEST_CASE("a database of another version is refused with one line, and unchanged") {
   const PeopleStudy study;
   SQLite::Database(study.database().string(), SQLite::OPEN_READWRITE)
       .exec("PRAGMA user_version = 6");

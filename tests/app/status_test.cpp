@@ -152,8 +152,8 @@ TEST_CASE("status proposes the visit that is due, and names it in the line to co
   CHECK(early["visits"] == 2);
   CHECK(early["complete"] == 0);
   CHECK(early["people"][0]["visit"] == 1);
-  CHECK(early["visits_to_come"][0]["participant"] == "P01");
-  CHECK(early["visits_to_come"][0]["visit"] == 2);
+  CHECK(early["upcoming_visits"][0]["participant"] == "P01");
+  CHECK(early["upcoming_visits"][0]["visit"] == 2);
   CHECK(early["next"].back()["what"] == "session of P02");
   add_session(folder, "P02", 2, 1, std::chrono::hours(8 * 24));
   const json due = status_of(folder);

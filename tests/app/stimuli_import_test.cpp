@@ -57,7 +57,7 @@ TEST_CASE("imported photographs make a study that prepares, simulates and report
   }
 }
 
-TEST_CASE("import says what it made, and what is wrong with its arguments") {
+TEST_CASE("import prints a summary, and refuses invalid arguments") {
   const Album album;
   const ProgramResult made = succeeded(album.import_with({"--licence", "CC0-1.0"}));
   CHECK_THAT(made.output, holds_text("CC0-1.0"));
@@ -88,7 +88,7 @@ TEST_CASE("a contact sheet shows every code, and only its owner can read it") {
   CHECK_THAT(html, holds_text("D2, 2 of 2") && holds_text("data:image/png;base64,"));
 }
 
-TEST_CASE("what prepare says of a picture is printed again, and stands in the contact sheet") {
+TEST_CASE("remarks of prepare on a picture are repeated, and shown in the contact sheet") {
   const Album album;
   succeeded(album.import_with({}));
   Bytes pixels;
@@ -97,11 +97,11 @@ TEST_CASE("what prepare says of a picture is printed again, and stands in the co
                samples::Tiff(60, 60, pixels).with(274, {6}).bytes());
   for (int time = 0; time < 2; ++time) {
     CHECK_THAT(album.done("prepare @mine.json").errors,
-               holds_text("D2-1.png: is used as it is stored, turned or mirrored"));
+               holds_text("D2-1.png: is stored rotated or mirrored"));
   }
   succeeded(album.sheet("sheet.html"));
   CHECK_THAT(text_of(read_file(album.in("sheet.html"))),
-             holds_text("mine.pictures/D2-1.png: is used as it is stored"));
+             holds_text("mine.pictures/D2-1.png: is stored rotated"));
 }
 
 TEST_CASE("a contact sheet is drawn with a key that is kept elsewhere") {

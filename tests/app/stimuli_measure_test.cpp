@@ -42,7 +42,8 @@ TEST_CASE("measure takes a study, a picture and a folder of photographs, each a 
   CHECK_THAT(folder.done("stimuli measure @wide.png").output, holds_text("wide.png"));
 }
 
-TEST_CASE("measure refuses in one line what is not a picture, too small, missing or empty") {
+TEST_CASE(
+    "measure refuses with one line a file that is not a picture, too small, missing or empty") {
   const ProgramFolder folder;
   write_png(folder.path() / "tiny.png", GreyImage(20, 20, 7));
   replace_file(folder.path() / "text.png", "no picture");

@@ -176,8 +176,8 @@ TEST_CASE("a registered look shows the registered question alone") {
   CHECK_FALSE(fs::exists(study.path() / "csv" / "confusion_adaptive.csv"));
   CHECK_THAT(content(study.path() / "csv" / "trials.csv"), !holds_text("granite"));
   CHECK_THAT(content(study.path() / "csv" / "participants.csv"), !holds_text("order_block"));
-  CHECK_THAT(study.type("export @a.db --format r --out @r").errors, holds_text("blind but for"));
-  CHECK_THAT(study.type("fit @a.db").errors, holds_text("blind but for"));
+  CHECK_THAT(study.type("export @a.db --format r --out @r").errors, holds_text("blind except for"));
+  CHECK_THAT(study.type("fit @a.db").errors, holds_text("blind except for"));
   CHECK_THAT(study.type("export @a.db --participant P001 --key @a.db.key --out @one").errors,
              holds_text("no look at the outcomes"));
 

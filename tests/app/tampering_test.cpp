@@ -178,7 +178,7 @@ TEST_CASE("verify names one altered byte anywhere, with exit 3") {
   succeeded(study.verify());
 }
 
-TEST_CASE("what was altered before the first session is refused, and built anew by prepare") {
+TEST_CASE("alterations before the first session are refused, and repaired by prepare") {
   const StudyFolder study;
   study.done("prepare @cloths.json");
   const fs::path list = study.path() / "cloths.pack/pack.json";

@@ -35,7 +35,7 @@ bool says(const ProgramResult& result, const std::string& words) {
 
 }  // namespace
 
-TEST_CASE("simulated participants come as often as the study says") {
+TEST_CASE("simulated participants have the planned number of visits") {
   const VisitFolder study;
   const ProgramResult simulated = succeeded(study.simulate("all.db", {"--json"}));
   CHECK(json::parse(simulated.output)["sessions"] == 8);
@@ -54,8 +54,7 @@ TEST_CASE("simulated participants come as often as the study says") {
   }
 }
 
-TEST_CASE(
-    "after a visit with a wrong clock the next one goes on with a reason, which is recorded") {
+TEST_CASE("after a visit with a wrong clock the next one requires a reason, which is recorded") {
   const VisitFolder study;
   ::setenv("FAKE_CLOCK_AHEAD_S", "100000000", 1);
   ::setenv("LD_PRELOAD", TOUCHTRIAL_FAKE_MACHINE, 1);
@@ -71,7 +70,7 @@ TEST_CASE(
   CHECK(content(study.path() / "out" / "incidents.csv").find("wrong-clock") != std::string::npos);
 }
 
-TEST_CASE("stations of a study with visits merge into what one simulation makes") {
+TEST_CASE("merged stations of a study with visits equal one simulation") {
   const VisitFolder study;
   succeeded(study.simulate("all.db"));
   study.simulate_two("a.db", "1");
@@ -90,7 +89,7 @@ TEST_CASE("stations of a study with visits merge into what one simulation makes"
   CHECK(sessions("merged.db") == sessions("all.db"));
 }
 
-TEST_CASE("a visit is asked for by its number, and comes after the one before it") {
+TEST_CASE("a visit is requested by its number, and must follow the previous one") {
   const VisitFolder study;
   CHECK(says(study.visit("P07", "2"), "there is no visit before; check the participant id"));
   fs::remove(study.path() / "study.db");
@@ -127,7 +126,7 @@ TEST_CASE("an exclusion is of the participant, with all visits, and ends them") 
   CHECK(says(study.visit("P08", "2"), "cannot follow session 3, whose participant was excluded"));
 }
 
-TEST_CASE("groups that are open are said when a session begins, and the key's holder sees all") {
+TEST_CASE("open groups are printed when a session begins, and the key's holder sees all groups") {
   const VisitFolder study(true);
   const ProgramResult first = study.visit("P01", "1");
   CHECK((says(first, "P01 is in group trained") || says(first, "P01 is in group control")));
@@ -138,7 +137,7 @@ TEST_CASE("groups that are open are said when a session begins, and the key's ho
   const json document = json::parse(dealt.output);
   for (const json& one : document["groups"]) ++sizes[one["group"]];
   CHECK(sizes == std::map<std::string, int>{{"control", 5}, {"trained", 5}});
-  CHECK(says(hidden.type("plan @cloths.json --groups --participants 3"), "Keep this from"));
+  CHECK(says(hidden.type("plan @cloths.json --groups --participants 3"), "Keep this secret"));
 }
 
 }  // namespace touchtrial

@@ -70,7 +70,7 @@ void AttackedStudy::open() {
   store().sign_with(signer);
   const record::HeadFiles heads(database(), {key().investigator_signature, signer.public_half()},
                                 folder() / "elsewhere");
-  store().keep_heads(
+  store().set_head_writer(
       [heads, signer](const record::HeadChange& change) { heads.update(signer, change); });
 }
 

@@ -253,8 +253,8 @@ TEST_CASE("swapped and replaced traces and keys are named where no chain was mad
        "k.session = 3) WHERE session = 2",
        kKeyAltered},
       {"DELETE FROM participant_keys WHERE session = 2", "missing without a withdrawal"},
-      {"UPDATE events SET own_session = session WHERE session = 2", "says its own number twice"},
-      {"UPDATE events SET own_session = session WHERE session = 0", "says its own number twice"},
+      {"UPDATE events SET own_session = session WHERE session = 2", "repeats its own number"},
+      {"UPDATE events SET own_session = session WHERE session = 0", "repeats its own number"},
       {"INSERT INTO station_keys SELECT session + 4294967296, kept FROM station_keys",
        "the station holds the key of a session that is not open"},
       {"UPDATE station_keys SET kept = zeroblob(length(kept))",
@@ -321,7 +321,7 @@ TEST_CASE("sessions dropped from the end are named by the head files, and by a h
   forged.drop(3);
   forged.write();
   CHECK(contains(study.found(), "heads: "));
-  CHECK(contains(study.found_without_key(), "the file's chain has 8 events; the head file knows"));
+  CHECK(contains(study.found_without_key(), "the file's chain has 8 events; the head file"));
   note("sessions dropped from the end", Outcome::named);
   for (const fs::path& file : {study.head(), study.second_head()}) {
     fs::remove(file);

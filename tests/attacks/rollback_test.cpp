@@ -88,7 +88,7 @@ TEST_CASE("an older database is named by its head files and refused, and verify 
   const ProgramResult verified = run_touchtrial(
       study.folder(), {"verify", study.database().string(), "--key", study.key_file().string()});
   CHECK(verified.exit_code == 3);
-  CHECK(contains(verified.output, "the head file knows"));
+  CHECK(contains(verified.output, "the head file records"));
   note("an older database", Outcome::named);
 }
 
@@ -129,8 +129,8 @@ TEST_CASE("another folder for the second head file hides nothing that the one on
     const Signer signer = study.station().signer();
     store.sign_with(signer);
     return complaint_of<StoreError>([&] {
-      app::keep_heads(store, study.database(), signer, {.folder = other, .accept_loss = reason},
-                      app::HeadUse::required);
+      app::set_head_writer(store, study.database(), signer,
+                           {.folder = other, .accept_loss = reason}, app::HeadUse::required);
     });
   };
   study.roll_back(study.database());
@@ -169,7 +169,8 @@ TEST_CASE("a head file that was left for another folder gives a rolled back move
         record::StudyStore::open(study.database(), record::StudyStore::Access::read_write);
     const Signer signer = study.station().signer();
     store.sign_with(signer);
-    app::keep_heads(store, study.database(), signer, {.folder = other}, app::HeadUse::required);
+    app::set_head_writer(store, study.database(), signer, {.folder = other},
+                         app::HeadUse::required);
     CHECK(store.heads_on_record() == other.string());
   }
   CHECK(study.found().empty());

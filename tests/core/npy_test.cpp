@@ -9,7 +9,7 @@
 
 using namespace touchtrial;
 
-TEST_CASE("an npy file is what NumPy's format defines, to the byte") {
+TEST_CASE("an npy file follows NumPy's format to the byte") {
   const TempFolder folder;
   const auto path = folder.path() / "a.npy";
   GreyImage image(1, 2);

@@ -33,11 +33,11 @@ int files_in(const fs::path& folder) {
 /// While it lives, files in the way are kept.
 struct Keeping {
   Keeping() {
-    keep_files_in_the_way([this](const fs::path& file, const fs::path& as) {
+    move_foreign_files_aside([this](const fs::path& file, const fs::path& as) {
       kept.emplace_back(file.filename().string(), as.filename().string());
     });
   }
-  ~Keeping() { keep_files_in_the_way({}); }
+  ~Keeping() { move_foreign_files_aside({}); }
   Keeping(const Keeping&) = delete;
   Keeping& operator=(const Keeping&) = delete;
 
@@ -60,7 +60,7 @@ void leave_draft(const fs::path& place, Draft::Kind kind) {
 
 }  // namespace
 
-TEST_CASE("an output replaces an output that nobody changed, and nothing else") {
+TEST_CASE("an output replaces only an unchanged output") {
   const TempFolder folder;
   const fs::path place = folder.path() / "a.txt";
   CHECK(origin_of(place) == Origin::nothing);
@@ -88,11 +88,11 @@ TEST_CASE("a pipe or a device is never moved away") {
   REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
   const Keeping keeping;
   CHECK_THROWS_AS(write_output(pipe, "text"), FileError);
-  CHECK_THROWS_AS(make_way(pipe), FileError);
+  CHECK_THROWS_AS(clear_output_place(pipe), FileError);
   CHECK(fs::is_fifo(pipe));
 }
 
-TEST_CASE("what is in the way is kept under the first free number, if that is asked for") {
+TEST_CASE("a file in the way is renamed to the first free number, on request") {
   const TempFolder folder;
   const fs::path place = folder.path() / "a.txt";
   Keeping keeping;
@@ -107,7 +107,7 @@ TEST_CASE("what is in the way is kept under the first free number, if that is as
   CHECK(keeping.kept == std::vector<std::pair<std::string, std::string>>{{"a.txt", "a.txt.1"},
                                                                          {"a.txt", "a.txt.2"}});
   fs::create_directory(folder.path() / "pictures");
-  make_way(folder.path() / "pictures/");
+  clear_output_place(folder.path() / "pictures/");
   CHECK(fs::is_directory(folder.path() / "pictures.1"));
 }
 
@@ -175,7 +175,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a draft takes a free place, or the one that it is told to, and is gone otherwise") {
+TEST_CASE("a draft is renamed to a free path or replaces a file, and is removed otherwise") {
   const TempFolder folder;
   const fs::path place = folder.path() / "a.txt";
   {
@@ -186,7 +186,7 @@ TEST_CASE("a draft takes a free place, or the one that it is told to, and is gon
   for (const std::string text : {"first", "second"}) {
     Draft draft(place, Draft::Kind::file);
     draft.write(bytes_of(text));
-    CHECK(draft.take_free_place() == (text == "first"));
+    CHECK(draft.rename_if_free() == (text == "first"));
   }
   CHECK(text_in(place) == "first");
   CHECK(files_in(folder.path()) == 1);

@@ -20,7 +20,7 @@ std::string refusal_of_text(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("what stands behind a zero byte is not ignored, and the message names the place") {
+TEST_CASE("text after a zero byte is not ignored, and the message names the place") {
   using namespace std::string_literals;
   CHECK(refusal_of_text("{\"a\": 1}\n\0 {\"b\": 2}"s)
             .starts_with("study.json: line 2, column 1: is a zero byte"));

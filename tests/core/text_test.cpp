@@ -8,8 +8,7 @@
 
 using namespace touchtrial;
 
-TEST_CASE(
-    "words for missing and truth values are known in any capitals, ids are not taken for them") {
+TEST_CASE("words for missing and truth values are recognised in any capitals, but ids are not") {
   for (const char* word :
        {"NA", "na", "N/A", "NaN", "nan", "NULL", "null", "None", "TRUE", "False"}) {
     CHECK(is_read_as_missing(word));
@@ -19,7 +18,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("what a spreadsheet takes for a formula is known by its first character") {
+TEST_CASE("formulas of spreadsheets are recognised by their first character") {
   for (const char* text : {"=1", "+1", "-a", "@a", "\ta", "\ra"}) CHECK(begins_like_formula(text));
   for (const char* text : {"", "a=1", "1-2", "_a", "'=1"}) CHECK_FALSE(begins_like_formula(text));
 }

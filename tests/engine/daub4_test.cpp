@@ -54,7 +54,7 @@ TEST_CASE("daub4 keeps the energy of an image in a black frame") {
   CHECK(energy(engine::daub4_sub_bands(image)) == Approx(expected).epsilon(1e-13));
 }
 
-TEST_CASE("daub4 tells vertical edges from horizontal ones") {
+TEST_CASE("daub4 distinguishes vertical and horizontal edges") {
   const engine::SubBands vertical = engine::daub4_sub_bands(step_image({16, 18}));
   CHECK(largest_magnitude(vertical.hl) > 10.0);
   CHECK(largest_magnitude(vertical.lh) < 1e-12);

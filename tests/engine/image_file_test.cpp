@@ -457,7 +457,7 @@ TEST_CASE("a JPEG without its end marker is read, unless a block may be missing"
   CHECK_THROWS_AS(decode_picture(file, "picture"), FileError);
 }
 
-TEST_CASE("the opaque pixels are known in every kind of picture that has others") {
+TEST_CASE("opacity is read from every kind of picture that has it") {
   const auto opaque = [](const Bytes& file) {
     const GreyImage image = opacity_of(file, "picture");
     return Row(image.samples().begin(), image.samples().end());

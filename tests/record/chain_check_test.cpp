@@ -114,16 +114,16 @@ TEST_CASE("deleted, swapped and moved events are named, and cut chains held agai
        "1/3 previous does not match the hash of the event before"},
       {"UPDATE events SET session = 9 WHERE session = 2", "0/3 session 2 has no events"},
       {"DELETE FROM events WHERE session = 1", "0/1 session 1 has no events"},
-      {"INSERT INTO events SELECT 9" + copy_as, "9/0 the file's chain knows no such session"},
+      {"INSERT INTO events SELECT 9" + copy_as, "9/0 the file's chain has no such session"},
       {"INSERT INTO events SELECT -1" + copy_as, "-1/0 the event belongs to another chain"},
       {"DELETE FROM events WHERE session = 2 AND kind = 'closed'",
-       "2/13 session 2 ends at event 13, the file's chain says 14"},
+       "2/13 session 2 ends at event 13, the file's chain states 14"},
       {"DELETE FROM events WHERE session = 2 AND sequence > 9",
-       "2/9 session 2 ends at event 9, the file's chain says 14"},
+       "2/9 session 2 ends at event 9, the file's chain states 14"},
       {"DELETE FROM events WHERE session = 0 AND sequence = 4",
        "2/14 the session is closed, but not on the file's chain"},
       {"DELETE FROM events WHERE session = 0 AND sequence >= 3",
-       "2/0 the file's chain knows no such session"},
+       "2/0 the file's chain has no such session"},
   });
 }
 
@@ -228,7 +228,7 @@ void obey(const std::string& line) {
   SQLite::Database(file.substr(0, end), SQLite::OPEN_READWRITE).exec(file.substr(end + 1));
 }
 
-TEST_CASE("what was added to the schema is named with the command that removes it, in one line") {
+TEST_CASE("additions to the schema are reported with the command that removes them, in one line") {
   const auto removed = [](const std::string& sql, const std::string& name) {
     INFO(sql);
     StoredFixture study(two_sessions());
@@ -262,7 +262,7 @@ TEST_CASE("what was added to the schema is named with the command that removes i
   removed("CREATE TABLE \"'; rm -rf \"\"$HOME\"\" `x` \\ \n\t\x1b[31m !! é\"(x)", "table");
 }
 
-TEST_CASE("what ANALYZE and AUTOINCREMENT leave of SQLite's own is no alien, but a fake of it is") {
+TEST_CASE("internal tables of ANALYZE and AUTOINCREMENT are allowed, but fakes of them are not") {
   StoredFixture study(two_sessions());
   study.store.reset();
   const auto opened_after = [&](const std::string& sql) {

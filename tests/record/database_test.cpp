@@ -57,7 +57,7 @@ TEST_CASE("a database that was closed is one file") {
   REQUIRE_FALSE(std::filesystem::exists(study.path.string() + "-shm"));
 }
 
-TEST_CASE("reading leaves the file as it is and nothing beside it") {
+TEST_CASE("reading changes nothing and leaves no file beside the database") {
   StoredFixture study(1);
   study.store.reset();
   const std::string before = text_of(read_file(study.path));
@@ -122,7 +122,7 @@ TEST_CASE("a database that cannot be made leaves nothing behind") {
   REQUIRE(std::filesystem::is_empty(folder.path()));
 }
 
-TEST_CASE("a file that is none of our databases is refused untouched") {
+TEST_CASE("a file that is not our database is refused untouched") {
   TempFolder folder;
   const auto path = folder.path() / "file.db";
   for (const Access access : {Access::read_only, Access::read_write}) {
@@ -131,7 +131,7 @@ TEST_CASE("a file that is none of our databases is refused untouched") {
     for (const std::string& content :
          {std::string(), std::string("SQLite format 3"), std::string(5000, 'x')}) {
       write(path, content);
-      REQUIRE(contains(refusal_untouched(path, access), "is no Touchtrial database"));
+      REQUIRE(contains(refusal_untouched(path, access), "is not a Touchtrial database"));
     }
     std::filesystem::remove(path);
     SQLite::Database(path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE)

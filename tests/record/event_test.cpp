@@ -72,7 +72,7 @@ TEST_CASE("the hash of an event changes with each of its members") {
   REQUIRE(event_hash(rehashed) == an_event().hash);
 }
 
-TEST_CASE("a chain takes what follows and says why it does not take the rest") {
+TEST_CASE("a chain accepts events that follow and gives the reason for refusing others") {
   ChainLink chain(2);
   Event first = an_event();
   REQUIRE(chain.broken_by(first).value() == "the time of the event is not sealed");

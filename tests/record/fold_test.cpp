@@ -86,7 +86,7 @@ TEST_CASE("a trial may be answered after its time is up") {
   REQUIRE(session.row(1).state == TrialState::answered);
 }
 
-TEST_CASE("an interrupted trial starts anew when it is presented again") {
+TEST_CASE("an interrupted trial restarts when it is presented again") {
   FoldedSession session;
   session.recorder.presented(seconds(1), 1, 0);
   session.recorder.first_contact(seconds(1), 1);

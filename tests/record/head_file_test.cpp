@@ -166,7 +166,7 @@ class FileSizeLimit {
 
 }  // namespace
 
-TEST_CASE("a head file gives back what was written last, and counts how often that was") {
+TEST_CASE("a head file returns the last record, and counts writes") {
   const TempFolder folder;
   const HeadFile file(folder.path() / "study.db.head");
   REQUIRE_FALSE(file.read(known_signers()));
@@ -294,7 +294,7 @@ TEST_CASE("a write that breaks off at any byte leaves the old record or the new 
   REQUIRE(first_new > 128);
 }
 
-TEST_CASE("after a torn write a head file goes on from its whole copy") {
+TEST_CASE("after a torn write a head file continues from its complete copy") {
   const WrittenHead head;
   std::string bytes = head.bytes();
   bytes.replace(kSlot, 100, 100, 'x');
@@ -326,7 +326,7 @@ TEST_CASE("a head file of another length is read if a copy is whole, and mended 
   REQUIRE(head.read() == after(3));
 }
 
-TEST_CASE("what is no head file is refused in one line") {
+TEST_CASE("an invalid head file is refused with one line") {
   const WrittenHead head;
   const std::filesystem::path& path = head.file.path();
   for (const std::string& content :
@@ -377,7 +377,7 @@ TEST_CASE("only the study's keys sign a head file, and only as a head file") {
   newer.replace(newer.find(R"("version":1)"), 11, R"("version":2)");
   REQUIRE(contains(forged("touchtrial head file 1\n", newer), "/version"));
   for (const std::string bad : {"", "[]", "{}", "null", "{\"count\":1e400}"}) {
-    REQUIRE(contains(forged("touchtrial head file 1\n", bad), "is no record of this version"));
+    REQUIRE(contains(forged("touchtrial head file 1\n", bad), "is not a record of this version"));
   }
 }
 
@@ -389,7 +389,7 @@ TEST_CASE("a head file that several threads at once update loses nothing") {
     for (int i = 1; i <= kUpdates; ++i) {
       file.update(station_signer(), [&](HeadRecord& record) {
         ++record.acknowledged;
-        record.know_session(session, {.length = i, .hash = digest_of(std::to_string(i))});
+        record.advance_session(session, {.length = i, .hash = digest_of(std::to_string(i))});
       });
     }
   };
@@ -450,13 +450,13 @@ TEST_CASE("a head file that cannot be written stops the acknowledgement, and kee
 
 TEST_CASE("a record notes longer chains and more answers, and forgets none") {
   HeadRecord record = some_record();
-  record.know_file({.length = 8, .hash = digest_of("older")});
-  record.know_session(3, {.length = 56, .hash = digest_of("older")});
-  record.know_answers(74);
+  record.advance_file({.length = 8, .hash = digest_of("older")});
+  record.advance_session(3, {.length = 56, .hash = digest_of("older")});
+  record.advance_answers(74);
   REQUIRE(record == some_record());
-  record.know_file({.length = 10, .hash = digest_of("newer")});
-  record.know_session(5, {.length = 1, .hash = digest_of("fifth")});
-  record.know_answers(76);
+  record.advance_file({.length = 10, .hash = digest_of("newer")});
+  record.advance_session(5, {.length = 1, .hash = digest_of("fifth")});
+  record.advance_answers(76);
   REQUIRE(record.file.hash == digest_of("newer"));
   REQUIRE(record.sessions.at(5).length == 1);
   REQUIRE(record.acknowledged == 76);
@@ -490,7 +490,7 @@ TEST_CASE("the second head file gives away that the first was rolled back") {
   const std::string old = text_of(read_file(files.paths()[0]));
   for (int i = 0; i < 6; ++i) files.update(station_signer(), count_one_more);
   std::ofstream(files.paths()[0], std::ios::binary | std::ios::trunc) << old;
-  files.update(station_signer(), [](HeadRecord& record) { record.know_answers(76); });
+  files.update(station_signer(), [](HeadRecord& record) { record.advance_answers(76); });
   const std::vector<HeadReading> readings = files.read();
   REQUIRE(readings.at(0).record.acknowledged == 76);
   REQUIRE(readings.at(1).record.acknowledged == 81);
@@ -618,7 +618,7 @@ TEST_CASE("a lost write-ahead log is named by its session, with the answers in i
   const std::vector<Loss> found = losses(record, copy);
   REQUIRE(found == std::vector<Loss>{{.session = 2,
                                       .what = "session 2 of participant P2 has 3 events; the head "
-                                              "file knows 15: 6 acknowledged answers are missing",
+                                              "file records 15: 6 acknowledged answers are missing",
                                       .answers = 6}});
 }
 
@@ -633,13 +633,14 @@ TEST_CASE("sessions dropped from the end of a database are named") {
   add(*study.store, 3);
   const HeadRecord record = record_of(*study.store);
   const StudyStore rolled_back = StudyStore::open(old, StudyStore::Access::read_only);
-  REQUIRE(sentences(losses(while_open, rolled_back)) ==
-          Sentences{"the file's chain has 3 events; the head file knows 4",
-                    "session 2 is gone; the head file knows 3 events of it: 1 acknowledged answer "
-                    "is missing"});
+  REQUIRE(
+      sentences(losses(while_open, rolled_back)) ==
+      Sentences{"the file's chain has 3 events; the head file records 4",
+                "session 2 is gone; the head file records 3 events of it: 1 acknowledged answer "
+                "is missing"});
   REQUIRE(sentences(losses(record, rolled_back)) ==
-          Sentences{"the file's chain has 3 events; the head file knows 7",
-                    "3 acknowledged answers are missing: the database has 2, the head file knows "
+          Sentences{"the file's chain has 3 events; the head file records 7",
+                    "3 acknowledged answers are missing: the database has 2, the head file records "
                     "5"});
 }
 
@@ -666,7 +667,7 @@ TEST_CASE("a database that was rolled back and written anew is named, though it 
   REQUIRE(contains(found[1].what, "event 2 of session 2 of participant P2 is not the one"));
 }
 
-TEST_CASE("the loss of two sessions' answers is told as a whole") {
+TEST_CASE("lost answers of two sessions are reported as one number") {
   StoredFixture study;
   OpenSession first(*study.store, 1);
   first.answer(1);
@@ -674,21 +675,20 @@ TEST_CASE("the loss of two sessions' answers is told as a whole") {
   second.answer(1);
   const HeadRecord record = record_of(*study.store);
   tamper(study, "DELETE FROM events WHERE session > 0 AND sequence > 0");
-  REQUIRE(losses(record, *study.store) ==
-          std::vector<Loss>{
-              {.session = 1,
-               .what = "session 1 of participant P1 has 1 event; the head file "
-                       "knows 3"},
-              {.session = 2,
-               .what = "session 2 of participant P2 has 1 event; the head file "
-                       "knows 3"},
-              {.session = 0,
-               .what = "2 acknowledged answers are missing: the database has 0, the head file "
-                       "knows 2",
-               .answers = 2}});
+  REQUIRE(
+      losses(record, *study.store) ==
+      std::vector<Loss>{
+          {.session = 1,
+           .what = "session 1 of participant P1 has 1 event; the head file records 3"},
+          {.session = 2,
+           .what = "session 2 of participant P2 has 1 event; the head file records 3"},
+          {.session = 0,
+           .what =
+               "2 acknowledged answers are missing: the database has 0, the head file records 2",
+           .answers = 2}});
 }
 
-TEST_CASE("another database under the same name is not taken for the one that is known") {
+TEST_CASE("another database under the same name is not accepted") {
   StoredFixture study(1);
   const HeadRecord record = record_of(*study.store);
   const TempFolder folder;
@@ -696,13 +696,13 @@ TEST_CASE("another database under the same name is not taken for the one that is
                                              kUtc + seconds(1), investigator());
   const std::vector<Loss> found = losses(record, anew);
   REQUIRE(found.size() == 1);
-  REQUIRE(contains(found[0].what, "the database is not the one that the head file knows"));
+  REQUIRE(contains(found[0].what, "the database is not the one in the head file"));
   REQUIRE(found[0].answers == 2);
 }
 
 TEST_CASE("a head that is read out is four groups of digits of the file chain's hash") {
   const HeadRecord record = some_record();
   const std::string digits = to_hex(record.file.hash);
-  REQUIRE(spoken_head(record) == digits.substr(0, 4) + " " + digits.substr(4, 4) + " " +
+  REQUIRE(head_digits(record) == digits.substr(0, 4) + " " + digits.substr(4, 4) + " " +
                                      digits.substr(8, 4) + " " + digits.substr(12, 4));
 }

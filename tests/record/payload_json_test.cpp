@@ -191,7 +191,7 @@ TEST_CASE("a refused body names the key") {
       "/head is not 64 hexadecimal digits");
 }
 
-TEST_CASE("what JSON cannot hold is refused before it is written") {
+TEST_CASE("values that JSON cannot represent are refused before writing") {
   const double infinite = std::numeric_limits<double>::infinity();
   REQUIRE_THROWS_AS(
       to_json(TrialMeasures{

@@ -58,8 +58,7 @@ std::vector<std::string> texts_of(const StudyStore& store, const PersonKeys& key
 
 }  // namespace
 
-TEST_CASE(
-    "the successor of a replaced participant inherits the enrolment number, and nobody else does") {
+TEST_CASE("only the successor of a replaced participant inherits the enrolment number") {
   StoredFixture study(1);
   StudyStore& store = *study.store;
   add_stopped(store, 2, "P2", 2);
@@ -71,7 +70,7 @@ TEST_CASE(
   REQUIRE_FALSE(store.session_of("P2"));
   REQUIRE(store.sessions_of("P2").size() == 1);
   REQUIRE(refuses([&] { add_complete(store, 3, "P3", 2); }, "is kept for participant P21"));
-  REQUIRE(refuses([&] { add_complete(store, 3, "P21", 3); }, "P21 replaces somebody"));
+  REQUIRE(refuses([&] { add_complete(store, 3, "P21", 3); }, "P21 replaces"));
   REQUIRE(refuses([&] { add_complete(store, 3, "P2", 3); }, "P2 was replaced by"));
   add_complete(store, 3, "P21", 2);
   REQUIRE(store.session_of("P21").value().session == 3);
@@ -94,7 +93,7 @@ TEST_CASE("a place can change hands again and again") {
   REQUIRE_FALSE(store.first_fault());
 }
 
-TEST_CASE("only a participant who cannot go on is replaced, once, and by somebody new") {
+TEST_CASE("only a participant who cannot continue is replaced, once, and by a new one") {
   StoredFixture study(2);
   StudyStore& store = *study.store;
   const auto refusal = [&](int session, const std::string& by, const std::string& reason = "left") {
@@ -103,19 +102,19 @@ TEST_CASE("only a participant who cannot go on is replaced, once, and by somebod
   REQUIRE(contains(refusal(1, "P9"), "session 1 (participant P1) is complete"));
   store.exclude(1, kUtc, "did not follow the instructions");
   REQUIRE(contains(refusal(1, "P9", ""), "a replacement needs a reason"));
-  REQUIRE(contains(refusal(1, "P 9"), "'P 9' is no participant id"));
+  REQUIRE(contains(refusal(1, "P 9"), "'P 9' is not a participant id"));
   REQUIRE(contains(refusal(1, "P2"), "participant P2 already has session 2"));
   REQUIRE(contains(refusal(7, "P9"), "there is no session 7"));
   REQUIRE(refusal(1, "P9").empty());
   REQUIRE(contains(refusal(1, "P8"), "session 1 (participant P1) was already replaced"));
   store.withdraw(2, kUtc, "asked to");
-  REQUIRE(contains(refusal(2, "P9"), "participant P9 already replaces somebody"));
+  REQUIRE(contains(refusal(2, "P9"), "P9 already replaces"));
   store.close_study(kUtc);
   REQUIRE(contains(refusal(2, "P8"), "the study is closed"));
   REQUIRE_FALSE(store.first_fault());
 }
 
-TEST_CASE("an open session is replaced only if it was excluded, and then cannot go on") {
+TEST_CASE("an open session is replaced only if it was excluded, and then cannot continue") {
   StoredFixture study;
   StudyStore& store = *study.store;
   const auto sink = store.begin_session(1, wrapped_key_of(1));
@@ -192,7 +191,7 @@ TEST_CASE("what is written about a person opens with that person's keys alone") 
   store.note(1, kUtc, "no-curtain", "in the wash");
   store.exclude(1, kUtc, "drunk");
   store.replace(1, "P9", kUtc, "sent home");
-  store.withdraw(1, kUtc, "moves away", Kept::data);
+  store.withdraw(1, kUtc, "moves away", Retention::data);
   const std::vector<std::string> expected = {
       R"({"code":"","session":1,"text":"tall, with a limp"})",
       R"({"code":"no-curtain","session":1,"text":"in the wash"})",
@@ -236,28 +235,29 @@ TEST_CASE("a sealed text is bound to its event and its session") {
   REQUIRE_FALSE(opened_person_text(moved, 1, all_keys(1)));
 }
 
-TEST_CASE("who withdraws may let the data be used, and have them erased later, but not back") {
+TEST_CASE("a withdrawn participant's data can be kept, then erased, but not restored") {
   StoredFixture study(2);
   StudyStore& store = *study.store;
-  store.withdraw(1, kUtc, "moves away", Kept::data);
+  store.withdraw(1, kUtc, "moves away", Retention::data);
   REQUIRE(store.sessions()[0].withdrawn);
   REQUIRE_FALSE(store.sessions()[0].erased);
   REQUIRE(store.wrapped_keys(1) ==
           WrappedKeys{wrapped_key_of(1).participant, wrapped_key_of(1).safety});
-  REQUIRE(refuses([&] { store.withdraw(1, kUtc, "again", Kept::data); }, "has already withdrawn"));
+  REQUIRE(
+      refuses([&] { store.withdraw(1, kUtc, "again", Retention::data); }, "has already withdrawn"));
   REQUIRE_FALSE(store.first_fault());
   store.withdraw(1, kUtc, "changed her mind");
   REQUIRE(store.sessions()[0].erased);
   REQUIRE_FALSE(store.wrapped_key(1));
   REQUIRE(store.wrapped_keys(1).safety == wrapped_key_of(1).safety);
-  for (const Kept kept : {Kept::data, Kept::safety_record}) {
+  for (const Retention kept : {Retention::data, Retention::safety_record}) {
     REQUIRE(refuses([&] { store.withdraw(1, kUtc, "again", kept); }, "and the data are erased"));
   }
   REQUIRE_FALSE(store.first_fault());
 }
 
 TEST_CASE("of an open session whose participant withdraws only the end is recorded") {
-  const Kept kept = GENERATE(Kept::data, Kept::safety_record);
+  const Retention kept = GENERATE(Retention::data, Retention::safety_record);
   StoredFixture study;
   StudyStore& store = *study.store;
   const auto sink = store.begin_session(1, wrapped_key_of(1), {}, Bytes{1, 2});
@@ -277,7 +277,7 @@ TEST_CASE("a safety record is kept for as many years as the study says, to the d
   StoredFixture study(1);  // on 14 November 2023, kept for ten years
   StudyStore& store = *study.store;
   const auto erase = [&](nanoseconds at) {
-    return refusal_of([&] { store.withdraw(1, at, "", Kept::nothing); });
+    return refusal_of([&] { store.withdraw(1, at, "", Retention::nothing); });
   };
   constexpr std::chrono::days kTenYears(10 * 365 + 3);  // 2024, 2028 and 2032 are leap years
   REQUIRE(contains(erase(kUtc + kTenYears), "erase those first"));
@@ -291,8 +291,7 @@ TEST_CASE("a safety record is kept for as many years as the study says, to the d
   REQUIRE_FALSE(store.first_fault());
 }
 
-TEST_CASE(
-    "of an erased person nobody can open more than the safety record, and that until it goes") {
+TEST_CASE("of an erased person only the safety record can be opened, until it is erased too") {
   StoredFixture study;
   StudyStore& store = *study.store;
   const SecretKey station = digest_of("station");
@@ -364,7 +363,7 @@ TEST_CASE("a look sees the session that begins while it waits for the database")
   SessionRecorder recorder(3, participant_key(3), *sink);
   recorder.opened(nanoseconds(0), opening(3), "{}");
   look.join();
-  REQUIRE(contains(said, "may still go on"));
+  REQUIRE(contains(said, "may still continue"));
 }
 
 TEST_CASE("a look at one participant shows the sessions of that participant so far") {
@@ -384,7 +383,7 @@ TEST_CASE("a look at one participant shows the sessions of that participant so f
   const auto sink = store.begin_session(3, wrapped_key_of(3));
   SessionRecorder recorder(3, participant_key(3), *sink);
   recorder.opened(nanoseconds(0), opening(3), "{}");
-  REQUIRE(contains(refusal("P3", "asked"), "may still go on"));
+  REQUIRE(contains(refusal("P3", "asked"), "may still continue"));
   store.withdraw(2, kUtc, "asked to");
   REQUIRE(contains(refusal("P2", "asked"), "the data are erased"));
   store.exclude(1, kUtc, "bad figures");
@@ -401,19 +400,19 @@ TEST_CASE("a file's chain that brings erased data back, or erases them twice, is
   StoredFixture study(1);
   FileChain chain;
   for (const Event& event : study.store->events(0)) chain.add(event);
-  const auto add = [&](Kept kept) {
+  const auto add = [&](Retention kept) {
     Event event;
     event.sequence = 3;
     event.kind = EventKind::participant_withdrawn;
     event.body = to_json(WithdrawalBody{.session = 1, .kept = kept, .reason = ""});
     return refusal_of([&] { chain.add(event); });
   };
-  REQUIRE(contains(add(Kept::nothing), "loses its safety record before its outcomes"));
-  REQUIRE(add(Kept::data).empty());
-  REQUIRE(add(Kept::safety_record).empty());
-  REQUIRE(contains(add(Kept::data), "keeps data that were erased"));
-  REQUIRE(contains(add(Kept::safety_record), "is erased twice"));
-  REQUIRE(add(Kept::nothing).empty());
+  REQUIRE(contains(add(Retention::nothing), "loses its safety record before its outcomes"));
+  REQUIRE(add(Retention::data).empty());
+  REQUIRE(add(Retention::safety_record).empty());
+  REQUIRE(contains(add(Retention::data), "keeps data that were erased"));
+  REQUIRE(contains(add(Retention::safety_record), "is erased twice"));
+  REQUIRE(add(Retention::nothing).empty());
 }
 
 TEST_CASE("a second visit follows a complete one of the same participant and number") {
@@ -448,7 +447,7 @@ TEST_CASE("a second visit follows a complete one of the same participant and num
   REQUIRE_FALSE(store.first_fault());
 }
 
-TEST_CASE("who replaces a participant takes the place at all visits") {
+TEST_CASE("a replacement applies to all visits") {
   StoredFixture study;
   StudyStore& store = *study.store;
   add_complete(store, 1, "P1", 1);

@@ -87,5 +87,5 @@ TEST_CASE("another file is not taken for personal data") {
   SQLite::Database(path.string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 1");
   REQUIRE(refuses([&] { const PersonalData data(path); }, "of version 1, not 2"));
   SQLite::Database(path.string(), SQLite::OPEN_READWRITE).exec("PRAGMA application_id = 5");
-  REQUIRE(refuses([&] { const PersonalData data(path); }, "is no personal-data file"));
+  REQUIRE(refuses([&] { const PersonalData data(path); }, "is not a personal-data file"));
 }

@@ -106,7 +106,7 @@ inline void finish_session(record::StudyStore& store) {
   if (!row || row->state != record::SessionState::open || store.state().closed) return;
   const auto sink = store.continue_session(2, [] { return kUtc; });
   record::SessionRecorder recorder(2, participant_key(2), *sink);
-  recorder.go_on_after(store.last_event(2).value());
+  recorder.continue_after(store.last_event(2).value());
   recorder.resumed(seconds(100), {.after = "program-ended", .away_s = 1.0, .program_version = ""});
   recorder.closed(seconds(101), false);
 }

@@ -117,7 +117,7 @@ TEST_CASE("a database that is being made is whole or not there after a kill or a
   }
 }
 
-TEST_CASE("a key that was destroyed does not come back after a power cut") {
+TEST_CASE("a destroyed key is not restored by a power cut") {
   FaultVfs vfs;
   const Bytes key = wrapped_key_of(1).participant;
   for (const Kind kind : kEnds) {

@@ -39,7 +39,7 @@ TEST_CASE("a recorder makes a chain that holds") {
   REQUIRE(session.traces.size() == 3);
 }
 
-TEST_CASE("a recorder knows its head and length") {
+TEST_CASE("a recorder reports its head and length") {
   BufferedEvents events;
   SessionRecorder recorder(1, participant_key(1), events);
   REQUIRE(recorder.head() == Digest{});
@@ -127,7 +127,7 @@ TEST_CASE("the size of a sealed part follows from the kind of its event") {
                   std::chrono::hours(9)) == least);
 }
 
-TEST_CASE("the size of an interruption tells no flight record of up to three seconds") {
+TEST_CASE("the size of an interruption does not depend on a flight record of up to three seconds") {
   const auto sealed_size = [](const std::string& row, std::int64_t ticks) {
     BufferedEvents events;
     SessionRecorder recorder(1, participant_key(1), events);
@@ -262,10 +262,10 @@ TEST_CASE("a wrapped participant key opens with its study and session alone") {
   REQUIRE_FALSE(unwrap_participant_key(box_keys(study_master()), 3, altered));
 }
 
-TEST_CASE("the safety key opens why a session stopped and what deviated, and nothing else") {
+TEST_CASE("the safety key opens only reasons of stops and deviations") {
   BufferedEvents session = session_of(3);
   SessionRecorder recorder(3, participant_key(3), session);
-  recorder.go_on_after(session.events.back());
+  recorder.continue_after(session.events.back());
   recorder.deviated(seconds(200), {.code = "no-curtain", .text = "in the wash"});
   recorder.stopped(seconds(201), {.code = "", .text = "a cramp"});
   recorder.remarked(seconds(202), EventKind::noted, "tall");

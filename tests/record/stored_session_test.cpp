@@ -30,7 +30,7 @@ void reopen(StoredFixture& study) {
 
 SessionRecorder recorder_after_last(const StudyStore& store, EventSink& sink) {
   SessionRecorder recorder(1, participant_key(1), sink);
-  recorder.go_on_after(opened(store.last_event(1).value()));
+  recorder.continue_after(opened(store.last_event(1).value()));
   return recorder;
 }
 
@@ -101,7 +101,7 @@ TEST_CASE("every accepted event is in the file at once, for other programs too")
   REQUIRE_FALSE(reader.first_fault());
 }
 
-TEST_CASE("a refused event leaves no mark, and the session goes on") {
+TEST_CASE("a refused event leaves no trace, and the session continues") {
   StoredFixture study;
   const auto sink = study.store->begin_session(1, wrapped_key_of(1));
   SessionRecorder recorder(1, participant_key(1), *sink);
@@ -156,7 +156,7 @@ TEST_CASE("a sink takes a trace with its event and with no other") {
   REQUIRE(study.store->sealed_trace(1, 1) == session.traces[0]);
 }
 
-TEST_CASE("a session that broke off goes on where it ended, and is one chain") {
+TEST_CASE("an interrupted session continues where it ended, in one chain") {
   StoredFixture study;
   break_off(*study.store);
   reopen(study);
@@ -191,7 +191,7 @@ TEST_CASE("a continued session refuses events that were recorded before") {
                   "the sequence number repeats"));
 }
 
-TEST_CASE("only a stored, open session of an open study can go on") {
+TEST_CASE("only a stored, open session of an open study can be continued") {
   StoredFixture study(1);
   REQUIRE(refuses([&] { (void)study.store->continue_session(1); }, "(participant P1) has ended"));
   REQUIRE(refuses([&] { (void)study.store->continue_session(2); }, "there is no session 2"));
@@ -202,8 +202,7 @@ TEST_CASE("only a stored, open session of an open study can go on") {
   REQUIRE(refuses([&] { (void)closed.store->continue_session(1); }, "the study is closed"));
 }
 
-TEST_CASE(
-    "of two programs that go on with one session the slower is refused, and nothing is lost") {
+TEST_CASE("of two programs that continue one session the slower is refused, and nothing is lost") {
   StoredFixture study;
   break_off(*study.store);
   StudyStore other = writable(study.path);

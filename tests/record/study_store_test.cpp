@@ -173,7 +173,7 @@ TEST_CASE("a session of another study, out of turn or without its opening is ref
   for (const std::string name : {"", "P 1", "../x", "P\n", "012345678901234567890123456789012"}) {
     SessionOpening odd = opening(1);
     odd.participant = name;
-    require_refused(study, session_of(1, 1, {}, odd), "is no participant id");
+    require_refused(study, session_of(1, 1, {}, odd), "is not a participant id");
   }
   require_refused(study, BufferedEvents{}, "has no end");
 }
@@ -182,7 +182,7 @@ TEST_CASE("pilots and other sessions never share a database") {
   StoredFixture study;
   SessionOpening how = opening(1);
   how.pilot = true;
-  require_refused(study, session_of(1, 3, {}, how), "is no pilot's database");
+  require_refused(study, session_of(1, 3, {}, how), "is not a pilot's database");
 
   StudyCommitment pilot = commitment();
   pilot.pilot = true;
@@ -268,7 +268,7 @@ TEST_CASE("unblinding is recorded with its reason, and an open study needs an in
   REQUIRE(study.store->state().unblinded);
   REQUIRE(study.store->state().unblinding_reason == "safety board");
   study.store->close_study(kUtc);
-  REQUIRE(refuses([&] { study.store->unblind(kUtc, "again", true); }, "no interim look"));
+  REQUIRE(refuses([&] { study.store->unblind(kUtc, "again", true); }, "not an interim look"));
   study.store->unblind(kUtc, "collection is over", false);
   const auto chain = study.store->events(0);
   REQUIRE(chain[3].body == R"({"interim":true,"reason":"safety board"})");

@@ -91,7 +91,7 @@ TEST_CASE("ten seconds at 1 kHz are sealed in less than 100,000 bytes") {
   REQUIRE(encode_trace(fixture::stroking(10'000, 0.05)).size() <= 60'000);
 }
 
-TEST_CASE("the size of a sealed trace does not tell textures apart") {
+TEST_CASE("the size of a sealed trace does not depend on the texture") {
   for (const std::size_t count : {1, 10, 50, 100, 500, 3000, 10'000}) {
     const std::size_t smooth = sealed_size(fixture::stroking(count, 0.0));
     for (const double rms_n : {0.01, 0.05, 0.2, 0.5}) {
@@ -109,7 +109,7 @@ TEST_CASE("traces of up to ten seconds have one size, however long they are") {
   REQUIRE(sizes.size() == 1);
 }
 
-TEST_CASE("the padding of traces tells steps of ten seconds alone") {
+TEST_CASE("the padding of traces reveals only steps of ten seconds") {
   REQUIRE(trace_padding(0) == trace_padding(10'000));
   REQUIRE(trace_padding(10'001) == 2 * trace_padding(10'000));
   REQUIRE(trace_padding(10'001) == trace_padding(20'000));

@@ -63,7 +63,7 @@ PagesOfCheck pages_of_check(const std::filesystem::path& path) {
 
 }  // namespace
 
-TEST_CASE("what a session costs does not depend on how many there are") {
+TEST_CASE("the cost of a session does not depend on the number of sessions") {
   StoredFixture few(kFew);
   few.store.reset();
   StoredFixture many(few.path);

@@ -85,6 +85,14 @@ run <- function(number, population) {
        lapse = as.numeric(sub(".*: ([0-9.]+)\\.$", "\\1", model$said[1])), refused = length(model$said) - 2)
 }
 
+# A study whose model has no result is told of and counted; it must not take those of its process with it.
+run_or_nothing <- function(number, population) {
+  tryCatch(run(number, population), error = function(e) {
+    message("study ", number, ": ", conditionMessage(e))
+    NULL
+  })
+}
+
 line <- function(what, who, runs, remark) {
   runs <- runs[, !is.na(runs[1, ]), drop = FALSE]
   share <- c(mean(runs[1:3, ]), mean(runs[4:6, ]))
@@ -105,11 +113,13 @@ cat("\n## Coverage of the exported R script\n\n", studies,
 for (population in populations) {
   who <- with(population, sprintf("%d participants, SD between them %g dB, between their standards %g dB, lapse %g",
                                   people, person_sd, standard_sd, lapse))
-  runs <- parallel::mclapply(seq_len(studies), run, population, mc.cores = parallel::detectCores())
+  all_runs <- parallel::mclapply(seq_len(studies), run_or_nothing, population, mc.cores = parallel::detectCores())
+  runs <- Filter(Negate(is.null), all_runs)
   of <- function(name) sapply(runs, function(one) one[[name]])
   line("exported script", who, of("ours"),
-       sprintf("lapse rate found: %.3f (SD %.3f); of the models more is fitted than intercepts in %.0f %%",
-               mean(of("lapse")), sd(of("lapse")), 100 * mean(of("refused") < 3)))
+       sprintf(paste("lapse rate found: %.3f (SD %.3f); of the models more is fitted than intercepts in %.0f %%;",
+                     "without a result: %d"),
+               mean(of("lapse")), sd(of("lapse")), 100 * mean(of("refused") < 3), studies - length(runs)))
   if (population$standard_sd > 0) {
     line("participants alone (not printed)", who, of("replaced"), "the model that the script replaced")
   }

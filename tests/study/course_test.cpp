@@ -105,7 +105,7 @@ TEST_CASE("an interrupted block is restarted under new numbers before all else")
     course.finish({});
     course.spoil();
     REQUIRE(course.block_to_restart() == 0);
-    const study::BlockRestart again = course.drawn_again(0);
+    const study::BlockRestart again = course.redrawn_block(0);
     CHECK(again.first_trial() == 5);
     course.restart(again);
     CHECK_FALSE(course.block_to_restart());
@@ -120,7 +120,7 @@ TEST_CASE("an interrupted block is restarted under new numbers before all else")
   CHECK(course.has(6));
   CHECK_FALSE(course.has(7));
   course.spoil();
-  course.restart(course.drawn_again(0));
+  course.restart(course.redrawn_block(0));
   CHECK(rest_of(course) == std::vector<int>{7, 8, 9, 3, 4});
   CHECK(course.is_void(6));
   CHECK(course.schedule().trials.size() == 9);

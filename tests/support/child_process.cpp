@@ -14,7 +14,7 @@ namespace {
 
 /// Long enough that only a program that hangs is given up.
 constexpr std::chrono::seconds kPatience{300};
-constexpr std::chrono::seconds kBetweenLooks{1};
+constexpr std::chrono::seconds kPollInterval{1};
 
 /// In the child. Never returns.
 [[noreturn]] void become(std::vector<char*>& arguments, const std::vector<std::string>& environment,
@@ -84,14 +84,14 @@ bool ChildProcess::listen(std::chrono::milliseconds longest) {
 bool ChildProcess::says(const std::string& text) {
   const auto until = std::chrono::steady_clock::now() + kPatience;
   while (output_.find(text) == std::string::npos) {
-    if (!listen(kBetweenLooks) || std::chrono::steady_clock::now() > until) return false;
+    if (!listen(kPollInterval) || std::chrono::steady_clock::now() > until) return false;
   }
   return true;
 }
 
 int ChildProcess::finish() {
   const auto until = std::chrono::steady_clock::now() + kPatience;
-  while (listen(kBetweenLooks)) {
+  while (listen(kPollInterval)) {
     if (std::chrono::steady_clock::now() > until) return -1;
   }
   int status = 0;

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 /// A loaded machine may take long; a broken server ends and is noticed at once.
 constexpr std::chrono::minutes kPatience{2};
-constexpr std::chrono::milliseconds kBetweenLooks{10};
+constexpr std::chrono::milliseconds kPollInterval{10};
 
 /// The folder with initdb and postgres of the newest version that is installed.
 fs::path find_programs() {
@@ -148,7 +148,7 @@ void PostgresServer::start() {
       if (ended) process_ = -1;
       throw std::runtime_error("PostgreSQL does not start: " + text_of(folder_.path() / "log"));
     }
-    std::this_thread::sleep_for(kBetweenLooks);
+    std::this_thread::sleep_for(kPollInterval);
   }
 }
 
@@ -167,7 +167,7 @@ void PostgresServer::kill() {
            text_of("/proc/" + std::to_string(child) + "/stat").find(") Z") == std::string::npos;
   };
   while (std::any_of(children.begin(), children.end(), is_there)) {
-    std::this_thread::sleep_for(kBetweenLooks);
+    std::this_thread::sleep_for(kPollInterval);
   }
 }
 

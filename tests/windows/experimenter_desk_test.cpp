@@ -101,7 +101,7 @@ TEST_CASE("the day sheet is ticked item by item, and one can go back") {
         std::vector<session::Tick>{session::Tick::done, session::Tick::skipped});
 }
 
-TEST_CASE("without a keyboard nobody is asked, and only progress is printed") {
+TEST_CASE("without a keyboard no question is asked, and only progress is printed") {
   Terminal terminal(false, false);
   CHECK(terminal.desk.day_sheet({{"no-a", "A"}}).value().empty());
   session::SessionStatus status = exploring();
@@ -126,7 +126,7 @@ TEST_CASE("the status line is overwritten and never wraps") {
   CHECK(app::last_of("\xc3\xa4\xc3\xb6\xc3\xbc", 2) == "\xc3\xb6\xc3\xbc");
 }
 
-TEST_CASE("the participant's stop is told once and audibly, with what to do") {
+TEST_CASE("the participant's stop is announced once with a sound, and advice") {
   Terminal terminal;
   session::SessionStatus stopped = exploring();
   stopped.stage = "stopped";
@@ -164,40 +164,40 @@ TEST_CASE("lines of standard output do not run into the line that is overwritten
   CHECK(terminal.written == "\n");
 }
 
-TEST_CASE("force comes on only by a key that is pressed when nothing is missing") {
-  using Says = session::Attendant::Says;
+TEST_CASE("force requires a key press while nothing is missing") {
+  using Reply = session::Attendant::Reply;
   Terminal terminal;
   app::ExperimenterDesk& desk = terminal.desk;
   terminal.keys = "g";
-  CHECK(desk.attend("move the handle") == Says::wait);
-  CHECK(desk.attend("") == Says::wait);
+  CHECK(desk.attend("move the handle") == Reply::wait);
+  CHECK(desk.attend("") == Reply::wait);
   // Meanwhile, the session takes requests and shows its status.
   CHECK(terminal.typed("g").empty());
   desk.show(exploring());
-  CHECK(desk.attend("") == Says::arm);
-  CHECK(desk.attend("") == Says::wait);
+  CHECK(desk.attend("") == Reply::arm);
+  CHECK(desk.attend("") == Reply::wait);
   CHECK(terminal.typed("g").empty());
-  CHECK(desk.attend("put it into the inkwell") == Says::wait);
-  CHECK(desk.attend("") == Says::wait);
+  CHECK(desk.attend("put it into the inkwell") == Reply::wait);
+  CHECK(desk.attend("") == Reply::wait);
   // A note in between: the line that announces the force has to be shown again.
   CHECK(terminal.typed("gnlate\n").size() == 1);
-  CHECK(desk.attend("") == Says::wait);
+  CHECK(desk.attend("") == Reply::wait);
   terminal.keys = "ayes\nfire alarm\n";
-  CHECK(desk.attend("") == Says::stop);
+  CHECK(desk.attend("") == Reply::stop);
   CHECK(terminal.typed("").at(0).text == "fire alarm");
 }
 
 TEST_CASE("the arm is at its reset position by a key that is pressed when the line asks for it") {
-  using Says = session::Attendant::Says;
+  using Reply = session::Attendant::Reply;
   Terminal terminal;
   app::ExperimenterDesk& desk = terminal.desk;
   CHECK(terminal.typed("h").empty());
-  CHECK(desk.attend("put the arm at its place") == Says::wait);
+  CHECK(desk.attend("put the arm at its place") == Reply::wait);
   terminal.keys = "h";
-  CHECK(desk.attend("put the arm at its place") == Says::at_reset);
-  CHECK(desk.attend("put the arm at its place") == Says::wait);
+  CHECK(desk.attend("put the arm at its place") == Reply::at_reset);
+  CHECK(desk.attend("put the arm at its place") == Reply::wait);
   terminal.keys = "h";
-  CHECK(desk.attend("") == Says::wait);
+  CHECK(desk.attend("") == Reply::wait);
 }
 
 TEST_CASE("the line says how the hand presses and strokes while it is at the plane") {

@@ -46,7 +46,7 @@ app::ParticipantAnswers answers_to(Replies replies, const std::string& version,
   questions.session.consent_version = version;
   questions.proposed = "P07";
   questions.note = "P07 is due for visit 2 of 2.";
-  questions.why_not = [](const std::string& id) {
+  questions.refusal = [](const std::string& id) {
     return id == "P06" ? std::string("P06 has a session already.") : std::string();
   };
   const app::ParticipantAnswers answers = app::ask_participant(
@@ -66,7 +66,7 @@ app::ParticipantAnswers answers_to(Replies replies, const std::string& version,
   return answers;
 }
 
-TEST_CASE("whoever has consented is asked for age and hand, nobody else") {
+TEST_CASE("only people with consent are asked for age and hand") {
   const app::ParticipantAnswers yes = answers_to({{"P07", "0"}, {"2", "1"}}, "2026-03");
   CHECK(yes.id == "P07");
   CHECK(yes.has_consented);
@@ -78,7 +78,7 @@ TEST_CASE("whoever has consented is asked for age and hand, nobody else") {
   CHECK_FALSE(answers_to({{"P07", "1"}}, "2026-03").has_consented);
 }
 
-TEST_CASE("a participant who cannot come is asked for again, with the reason") {
+TEST_CASE("a refused participant id is asked for again, with the reason") {
   std::vector<std::string> seen;
   CHECK(answers_to({{"P06", "0"}, {"P08", "0"}, {"", ""}}, "", &seen).id == "P08");
   REQUIRE(seen.size() == 3);
@@ -134,7 +134,7 @@ TEST_CASE("the experimenter answers in a window, where the proposed id stands al
             if (const auto reply = window.attend(asked)) return reply->answers;
           }
         },
-        {.proposed = "P0", .why_not = [](const std::string&) { return std::string(); }});
+        {.proposed = "P0", .refusal = [](const std::string&) { return std::string(); }});
   });
   CHECK(answers.id == "P08");
   CHECK(answers.has_consented);

@@ -220,7 +220,7 @@ TEST_CASE("while a plane is on the space bar stops the force and Enter ends the 
   });
 }
 
-TEST_CASE("the second press of a space bar that is pressed twice to go on stops nothing") {
+TEST_CASE("a double press of the space bar to continue does not stop the force") {
   Sitting sitting;
   sitting.run([&] {
     sitting.show(session::ReadyStep{1, 25, false});
@@ -321,14 +321,14 @@ TEST_CASE("Enter does not answer before the surface was felt, and the screen say
     sitting.show(answer_step(1));
     sitting.window.show_exploring(kPlane);
     std::this_thread::sleep_for(milliseconds(600));
-    servo.forget_wishes();
+    servo.clear_requests();
     press_enter();
     CHECK(servo.finish_asked());
     sitting.show(answer_step(1));
     sitting.show(session::ReadyStep{2, 25, false});
     sitting.window.show_exploring(kPlane);
     std::this_thread::sleep_for(milliseconds(600));
-    servo.forget_wishes();
+    servo.clear_requests();
     press_enter();
     CHECK_FALSE(servo.finish_asked());
   });
@@ -370,7 +370,7 @@ session::IntervalStep interval_step(int interval) {
   return {.trial = 1, .interval = interval, .of = 2};
 }
 
-TEST_CASE("what is said before a plane can be read for a moment, and goes on by itself") {
+TEST_CASE("the announcement of a plane is shown for a moment, and ends by itself") {
   CountedCues cues;
   app::ParticipantWindowOptions wanted = with_intervals();
   wanted.cues = &cues;
@@ -389,7 +389,7 @@ TEST_CASE("what is said before a plane can be read for a moment, and goes on by 
   });
 }
 
-TEST_CASE("Enter ends none of a trial's planes, whatever was felt, and the space bar stops") {
+TEST_CASE("Enter does not end a plane of several, and the space bar stops") {
   Sitting sitting(with_intervals());
   sitting.run([&] {
     CHECK(sitting.reply_to(interval_step(1)));
@@ -412,7 +412,7 @@ TEST_CASE("Enter ends none of a trial's planes, whatever was felt, and the space
     sitting.window.show_exploring(kPlane);
     feel_texture(sitting.window, 0.9);
     std::this_thread::sleep_for(milliseconds(600));
-    servo.forget_wishes();
+    servo.clear_requests();
     sitting.screen->type("Return");
     sitting.settle();
     sitting.window.exploring(servo);
@@ -554,11 +554,11 @@ TEST_CASE("a monitor's stated size is used only if it can be true") {
   }
 }
 
-TEST_CASE("a size that the system made up for a monitor that states none is known as such") {
-  CHECK(app::is_made_up(508, 1920));
-  CHECK(app::is_made_up(339, 1280));
-  CHECK_FALSE(app::is_made_up(509, 1920));  // 23 inches
-  CHECK_FALSE(app::is_made_up(598, 3840));  // 27 inches
+TEST_CASE("the system's default size of a monitor is recognised") {
+  CHECK(app::is_default_size(508, 1920));
+  CHECK(app::is_default_size(339, 1280));
+  CHECK_FALSE(app::is_default_size(509, 1920));  // 23 inches
+  CHECK_FALSE(app::is_default_size(598, 3840));  // 27 inches
 }
 
 TEST_CASE("an error names a missing monitor, and how many there are") {

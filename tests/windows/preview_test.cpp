@@ -80,7 +80,7 @@ TEST_CASE("a preview of trials with several planes has every kind of screen") {
   }
 }
 
-TEST_CASE("a preview of ratings shows a picture with the scales, and tells no answer") {
+TEST_CASE("a preview of ratings shows a picture with the scales, and no answer") {
   const study::Study study =
       study::load_study(fs::path(TOUCHTRIAL_SOURCE_DIR) / "config/realism.json");
   const session::SessionTexts texts = app::session_texts(study);
@@ -155,7 +155,7 @@ TEST_CASE("screens are drawn into files, one or all, each of them another pictur
   CHECK_THAT(unknown.errors, holds_text("did you mean answer?"));
 }
 
-TEST_CASE("whoever designs leafs through the screens with keys") {
+TEST_CASE("keys page through the screens of a preview") {
   const auto screen = VirtualScreen::open("1280x720");
   const Drawer drawer;
   const study::Study study = study::load_study(drawer.study());

@@ -321,7 +321,7 @@ TEST_CASE("instructions and notices of ratings can be read, in all languages") {
       shows(paper.draw(*app::screen_for(steps[2], context, {})), words.practice_over_text_rating));
 }
 
-TEST_CASE("participants who rate read of pictures and scales, and of no right answer") {
+TEST_CASE("instructions for ratings mention pictures and scales, but no right answer") {
   const study::Study study = study_of_ratings("en");
   std::string text;
   for (const std::string& page : app::session_texts(study).instructions) text += page + "\n";

@@ -289,7 +289,7 @@ TEST_CASE("pictures claim a scale only on a screen whose size is known") {
     CHECK(shows(canvas, "10 mm of the surface"));
     CHECK(shows(canvas, "in true size") == (is_known && side_mm < 50.0));
     CHECK(shows(canvas, "% of true size") == (is_known && side_mm > 50.0));
-    CHECK(shows(canvas, "size on this screen is not known") == !is_known);
+    CHECK(shows(canvas, "size on this screen is unknown") == !is_known);
   }
 }
 
@@ -373,7 +373,7 @@ TEST_CASE("while one of several planes is on, the screen says which and how far 
   CHECK(full == Approx(2.0F * half).epsilon(0.02));
 }
 
-TEST_CASE("after a comfort stop the space bar does nothing, and Enter goes on where it may") {
+TEST_CASE("after a comfort stop the space bar has no effect, and Enter continues if allowed") {
   const bool may_go_on = GENERATE(true, false);
   Drawn stopped(session::NoticeStep{session::NoticeStep::What::stopped, 3, may_go_on});
   static_cast<void>(stopped.draw());
@@ -437,7 +437,7 @@ TEST_CASE("an answer needs a choice that is there and Next, and can be changed o
 
 TEST_CASE("choices that are words are shown under their own question, without a scale") {
   Asked asked(kWords, kThree);
-  CHECK(shows(asked.draw(), "Which surface was unlike the others?"));
+  CHECK(shows(asked.draw(), "Which surface was different from the others?"));
   for (const char* word : {"First", "Second", "Third"}) CHECK(shows(asked.draw(), word));
   CHECK_FALSE(shows(asked.draw(), "10 mm"));
 }
@@ -455,7 +455,7 @@ TEST_CASE("arrows go from choice to choice, and to Next") {
   CHECK(position_of(reply->answer) == 1);
 }
 
-TEST_CASE("what is said before a plane goes away by itself and not by a key") {
+TEST_CASE("the announcement of a plane ends by itself, not by a key") {
   Drawn said(session::IntervalStep{.trial = 1});
   CHECK(shows(said.draw(), "Surface 1 of 2"));
   for (const app::Key which : {app::Key::enter, app::Key::space, app::Key::tab, app::Key::right}) {
@@ -539,7 +539,7 @@ TEST_CASE("a questionnaire can be answered with keys, and optional questions can
   CHECK(reply->answers == std::vector<std::string>{"4", "0", "23.5", "Rü"});
 }
 
-TEST_CASE("a number that the question does not accept does not go on, and its bounds are shown") {
+TEST_CASE("an unacceptable number does not continue, and its bounds are shown") {
   study::Question age{"age", study::QuestionKind::number, {{"de", "Alter?"}}, {}};
   age.min = 18.0;
   age.max = 99.5;
@@ -564,7 +564,7 @@ TEST_CASE("a number that the question does not accept does not go on, and its bo
   CHECK(reply->answers == std::vector<std::string>{"99.5"});
 }
 
-TEST_CASE("Next stays where it was when other buttons come and go") {
+TEST_CASE("Next keeps its position when other buttons appear and disappear") {
   const auto next_of = [](const app::Canvas& canvas) {
     const auto found = std::ranges::find(canvas.targets(), app::kNextTarget, &app::Target::id);
     REQUIRE(found != canvas.targets().end());

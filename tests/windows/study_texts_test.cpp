@@ -141,7 +141,7 @@ std::string read_in(const std::string& language, const std::vector<study::Questi
   return text;
 }
 
-TEST_CASE("who wears a blindfold reads of no picture and nothing else to look at") {
+TEST_CASE("texts for blindfolded participants mention nothing to look at") {
   const std::map<std::string, std::vector<std::string>> to_see = {
       {"en", {"picture", "bars", "curtain"}}, {"de", {"Bild", "Balken", "Vorhang"}},
       {"fr", {"image", "barres", "rideau"}},  {"es", {"imagen", "imágenes", "barras", "cortina"}},

@@ -1,34 +1,17 @@
 #include "analysis/report/figures/figure.hpp"
 
 #include "analysis/report/figures/gnuplot.hpp"
+#include "analysis/report/figures/gnuplot_script.hpp"
 #include "analysis/report/figures/svg.hpp"
 #include "core/errors.hpp"
 
 #include <algorithm>
 
-#include <fmt/format.h>
-
 namespace touchtrial::analysis {
 namespace {
 
-constexpr double kPixelsOfCm = 96.0 / 2.54;  ///< as in style sheets
-constexpr double kText_pt = 8.0;
-constexpr double kText_px = kText_pt * 96.0 / 72.0;
 /// Processes at the same time; more would only take memory.
 constexpr std::size_t kAtOnce = 8;
-
-/// Sets sizes, fonts and pens so that both formats look alike; pdfcairo's scales are measured.
-std::string terminal(const Figure& figure, FigureFormat format) {
-  if (format == FigureFormat::pdf) {
-    return fmt::format(
-        "set terminal pdfcairo size {}cm, {}cm font 'Arial,{}' fontscale 0.75 linewidth 1.5\n",
-        figure.width_cm, figure.height_cm, kText_pt);
-  }
-  return fmt::format(
-      "set terminal svg standalone size {:.0f}, {:.0f} font 'Arial,Helvetica,sans-serif,{:.2f}' "
-      "background '#ffffff'\n",
-      figure.width_cm * kPixelsOfCm, figure.height_cm * kPixelsOfCm, kText_px);
-}
 
 /// Replaces the time that cairo writes, so that the same figure is the same file. From 1.18 on
 /// cairo compresses it together with what else it writes there: such a file keeps its time
@@ -44,7 +27,8 @@ std::string without_time(std::string pdf) {
 }
 
 GnuplotProcess started(const Figure& figure, FigureFormat format) {
-  return {"", terminal(figure, format) + figure.script};
+  const Layout layout = layout_of(figure);
+  return {"", gnuplot_terminal(figure, layout, format) + gnuplot_script(figure, layout)};
 }
 
 std::string finished(GnuplotProcess& process, const Figure& figure, FigureFormat format) {

@@ -5,7 +5,6 @@
 #include "analysis/statistics/descriptive.hpp"
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <utility>
 
@@ -16,11 +15,10 @@ namespace touchtrial::analysis {
 namespace {
 
 constexpr double kLine_cm = 0.42;
-constexpr double kBoxLeft_cm = 0.5;
-constexpr double kBoxWidth_cm = 5.0;
-constexpr double kSideLeft_cm = 7.0;
-constexpr double kSideWidth_cm = 8.5;
-constexpr double kWidth_cm = 16.0;
+constexpr double kBoxWidth_cm = 3.6;
+constexpr double kBoxHeight_cm = 1.2;
+constexpr double kSideLeft_cm = 5.2;
+constexpr double kSideWidth_cm = 8.0;
 constexpr std::size_t kSideColumns = 46;
 constexpr std::size_t kMaxReasons = 8;
 
@@ -57,64 +55,55 @@ std::vector<std::string> left_out(const ParticipantFlow& flow) {
   return lines;
 }
 
-struct Box {
-  double left_cm;
-  double top_cm;
-  double width_cm;
-  double height_cm;
-};
+/// The texts of boxes, their outlines and the ways between them, in centimetres.
+struct FlowParts {
+  Layer outlines{.kind = LayerKind::line, .name = "boxes"};
+  Layer arrows{.kind = LayerKind::arrow, .name = "ways"};
+  Layer middles{.kind = LayerKind::label, .name = "counts"};
+  Layer lines{.kind = LayerKind::label, .name = "losses", .anchor = Anchor::start};
 
-std::string box_of(const Sheet& sheet, const Box& box) {
-  return fmt::format(
-      "set object rectangle from screen {:.4f}, screen {:.4f} to screen {:.4f}, screen {:.4f} fs "
-      "empty border lc rgb '{}' lw 1.2\n",
-      box.left_cm / sheet.width_cm, 1.0 - (box.top_cm + box.height_cm) / sheet.height_cm,
-      (box.left_cm + box.width_cm) / sheet.width_cm, 1.0 - box.top_cm / sheet.height_cm, kInk);
-}
-
-std::string arrow_of(const Sheet& sheet, double x_cm, double y_cm, double to_x_cm, double to_y_cm) {
-  return fmt::format(
-      "set arrow from screen {:.4f}, screen {:.4f} to screen {:.4f}, screen {:.4f} head filled "
-      "size screen 0.012, 20 lw 1.2 lc rgb '{}'\n",
-      x_cm / sheet.width_cm, 1.0 - y_cm / sheet.height_cm, to_x_cm / sheet.width_cm,
-      1.0 - to_y_cm / sheet.height_cm, kInk);
-}
-
-std::string main_box(const Sheet& sheet, double top_cm, const std::string& first,
-                     const std::string& second) {
-  const double middle_cm = kBoxLeft_cm + 0.5 * kBoxWidth_cm;
-  return box_of(sheet, {kBoxLeft_cm, top_cm, kBoxWidth_cm, 1.2}) +
-         text_on_sheet(sheet, first, middle_cm, top_cm + (second.empty() ? 0.6 : 0.4), "center") +
-         (second.empty() ? "" : text_on_sheet(sheet, second, middle_cm, top_cm + 0.82, "center"));
-}
-
-std::string side_box(const Sheet& sheet, double top_cm, const std::vector<std::string>& lines) {
-  std::string script = box_of(sheet, {kSideLeft_cm, top_cm, kSideWidth_cm,
-                                      0.3 + kLine_cm * static_cast<double>(lines.size())});
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    // SVG drops a space at a line's beginning, so the text's place gives the indentation.
-    const std::size_t text = lines[i].find_first_not_of(' ');
-    script += text_on_sheet(sheet, lines[i].substr(text),
-                            kSideLeft_cm + 0.25 + 0.1 * static_cast<double>(text),
-                            top_cm + 0.37 + kLine_cm * static_cast<double>(i));
+  void add_outline(double left, double top, double width, double height) {
+    const std::string id = std::to_string(outlines.rows.size());
+    for (const auto& [x, y] : {std::pair(0, 0), {1, 0}, {1, 1}, {0, 1}, {0, 0}}) {
+      outlines.rows.push_back({.x = left + x * width, .y = top + y * height, .text = id});
+    }
   }
-  return script;
-}
+  void add_main(double top, const std::vector<std::string>& texts) {
+    add_outline(0.0, top, kBoxWidth_cm, kBoxHeight_cm);
+    double y = top + 0.5 * kBoxHeight_cm - 0.5 * kLine_cm * static_cast<double>(texts.size() - 1);
+    for (const std::string& text : texts) {
+      middles.rows.push_back({.x = 0.5 * kBoxWidth_cm, .y = y, .text = text});
+      y += kLine_cm;
+    }
+  }
+  void add_side(double middle, const std::vector<std::string>& texts) {
+    const double height = 0.3 + kLine_cm * static_cast<double>(texts.size());
+    double y = middle - 0.5 * height;
+    add_outline(kSideLeft_cm, y, kSideWidth_cm, height);
+    y += 0.37;
+    for (const std::string& text : texts) {
+      // SVG drops a space at a line's beginning, so the text's place gives the indentation.
+      const std::size_t begin = text.find_first_not_of(' ');
+      lines.rows.push_back({.x = kSideLeft_cm + 0.1 * static_cast<double>(begin),
+                            .y = y,
+                            .text = text.substr(begin)});
+      y += kLine_cm;
+    }
+    arrows.rows.push_back(
+        {.x = 0.5 * kBoxWidth_cm, .y = middle, .low = kSideLeft_cm, .high = middle});
+  }
+};
 
 constexpr std::size_t kMaxPoints = 300;
 /// A logarithmic axis has no zero.
 constexpr double kLeast_us = 0.1;
 
-/// One column of the data.
-struct LatenessSeries {
-  const char* name;
-  int mark;
-  const char* look;
-  std::size_t colour;
+/// The percentiles of a trial's lateness.
+struct LatenessRow {
+  double median = 0.0;
+  double late = 0.0;
+  double worst = 0.0;
 };
-constexpr std::array<LatenessSeries, 3> kSeries{{{"median", 7, "ps 0.35", 0},
-                                                 {"99th percentile", 9, "ps 0.45", 2},
-                                                 {"worst", 2, "ps 0.45 lw 1.2", 1}}};
 
 double median_of(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -122,119 +111,101 @@ double median_of(std::vector<double> values) {
 }
 
 /// One point from several trials: the medians of their percentiles, and the worst of all.
-std::vector<double> row_of(std::span<const ServoTrial> trials, double middle) {
+LatenessRow row_of(std::span<const ServoTrial> trials) {
   std::vector<double> p50;
   std::vector<double> p99;
-  double worst = kLeast_us;
+  LatenessRow row{0.0, 0.0, kLeast_us};
   for (const ServoTrial& trial : trials) {
     p50.push_back(std::max(trial.health.lateness_p50_us, kLeast_us));
     p99.push_back(std::max(trial.health.lateness_p99_us, kLeast_us));
-    worst = std::max(worst, trial.health.lateness_worst_us);
+    row.worst = std::max(row.worst, trial.health.lateness_worst_us);
   }
-  return {middle, median_of(std::move(p50)), median_of(std::move(p99)), worst};
+  row.median = median_of(std::move(p50));
+  row.late = median_of(std::move(p99));
+  return row;
 }
 
 std::size_t trials_together(std::size_t trials) {
   return (trials + kMaxPoints - 1) / kMaxPoints;
 }
 
-std::vector<std::vector<double>> rows_of(std::span<const ServoTrial> trials) {
-  const std::size_t together = trials_together(trials.size());
-  std::vector<std::vector<double>> rows;
-  for (std::size_t first = 0; first < trials.size(); first += together) {
-    const std::size_t count = std::min(together, trials.size() - first);
-    rows.push_back(row_of(trials.subspan(first, count),
-                          static_cast<double>(first) + 0.5 * static_cast<double>(count + 1)));
-  }
-  return rows;
-}
-
-/// Lines where a session begins, except the first.
-std::string session_lines(std::span<const ServoTrial> trials) {
-  std::vector<std::size_t> starts;
+/// Where a session begins, except the first; nothing if there are too many to tell apart.
+Layer session_lines(std::span<const ServoTrial> trials) {
+  Layer lines{.kind = LayerKind::rule, .name = "a new session", .colour = "#e0e0e0", .size = 0.6};
   for (std::size_t i = 1; i < trials.size(); ++i) {
-    if (trials[i].session != trials[i - 1].session) starts.push_back(i);
+    if (trials[i].session != trials[i - 1].session) {
+      lines.rows.push_back({.x = static_cast<double>(i) + 0.5});
+    }
   }
-  if (starts.size() > 60) return {};
-  std::string script;
-  for (const std::size_t start : starts) {
-    const double x = static_cast<double>(start) + 0.5;
-    script += fmt::format(
-        "set arrow from first {0}, graph 0 to first {0}, graph 1 nohead lw 0.7 lc rgb '#e0e0e0' "
-        "back\n",
-        x);
-  }
-  return script;
+  if (lines.rows.size() > 60) lines.rows.clear();
+  return lines;
 }
 
-std::string period_line(std::span<const ServoTrial> trials) {
+Layer period_line(std::span<const ServoTrial> trials) {
   double rate_hz = 0.0;
   for (const ServoTrial& trial : trials) rate_hz = std::max(rate_hz, trial.health.rate_hz);
-  if (rate_hz <= 0.0) return {};
-  const double period_us = 1e6 / rate_hz;
-  return dashed_line(period_us) +
-         text_at("one tick",
-                 fmt::format("graph 0.99, first {:.6g} right offset 0, 0.5", period_us));
+  return rate_hz > 0.0 ? dashed_rule(1e6 / rate_hz, "one tick") : Layer{};
 }
 
 }  // namespace
 
 std::optional<Figure> flow_figure(const StudyHead& report) {
   const ParticipantFlow& flow = report.collection.flow;
-  if (flow.enrolled == 0) return {};
   std::vector<std::string> lines = left_out(flow);
-  const int missing = flow.enrolled - flow.analysed;
-  if (!lines.empty()) lines.insert(lines.begin(), fmt::format("not analysed (n = {})", missing));
-  const double side_cm = lines.empty() ? 0.0 : 0.3 + kLine_cm * static_cast<double>(lines.size());
-  const double between_cm = std::max(1.0, side_cm + 0.5);
-  const double top_cm = 0.6;
-  const Sheet sheet{kWidth_cm, top_cm + 1.2 + between_cm + 1.2 + 0.3, report.simulated};
-  const double middle_cm = kBoxLeft_cm + 0.5 * kBoxWidth_cm;
-  const double turn_cm = top_cm + 1.2 + 0.5 * between_cm;
+  if (lines.empty()) return {};
+  lines.insert(lines.begin(), fmt::format("not analysed (n = {})", flow.enrolled - flow.analysed));
+  const double between_cm = std::max(1.0, 0.8 + kLine_cm * static_cast<double>(lines.size()));
+  FlowParts parts;
+  parts.add_main(0.0, {fmt::format("enrolled (n = {})", flow.enrolled)});
+  parts.add_side(kBoxHeight_cm + 0.5 * between_cm, lines);
+  parts.arrows.rows.push_back({.x = 0.5 * kBoxWidth_cm,
+                               .y = kBoxHeight_cm,
+                               .low = 0.5 * kBoxWidth_cm,
+                               .high = kBoxHeight_cm + between_cm});
+  parts.add_main(kBoxHeight_cm + between_cm, {fmt::format("analysed (n = {})", flow.analysed),
+                                              fmt::format("{} trials", report.trials)});
 
-  Figure figure = figure_on(sheet, "participant-flow");
+  const double height_cm = 2 * kBoxHeight_cm + between_cm;
+  const double width_cm = kSideLeft_cm + kSideWidth_cm;
+  Figure figure = figure_named("participant-flow", "", report.simulated, width_cm + 0.6);
   figure.caption = stamped(report.simulated, "participants from enrolment to analysis.");
   figure.alt = fmt::format("{} participants enrolled, {} analysed with {} trials.", flow.enrolled,
                            flow.analysed, report.trials);
   for (const std::string& line : lines)
     figure.alt += " " + line.substr(line.find_first_not_of(' ')) + ";";
-  figure.script =
-      sheet_head(sheet) + panel_at(sheet, {0.0, 0.0, 0.0, 0.0}) +
-      "unset border\nunset tics\nunset grid\nset xrange [0:1]\nset yrange [0:1]\n" +
-      main_box(sheet, top_cm, fmt::format("enrolled (n = {})", flow.enrolled), "") +
-      arrow_of(sheet, middle_cm, top_cm + 1.2, middle_cm, top_cm + 1.2 + between_cm) +
-      main_box(sheet, top_cm + 1.2 + between_cm, fmt::format("analysed (n = {})", flow.analysed),
-               fmt::format("{} trials", report.trials));
-  if (!lines.empty()) {
-    figure.script += arrow_of(sheet, middle_cm, turn_cm, kSideLeft_cm, turn_cm) +
-                     side_box(sheet, turn_cm - 0.5 * side_cm, lines);
-  }
-  figure.script += "plot NaN notitle\n";
+  figure.panels = {{.x = {.low = 0.0, .high = width_cm, .hidden = true},
+                    .y = {.low = -0.05, .high = height_cm + 0.05, .reversed = true, .hidden = true},
+                    .layers = {parts.outlines, parts.arrows, parts.middles, parts.lines},
+                    .height_cm = height_cm + 0.1}};
   return figure;
 }
 
 std::optional<Figure> servo_figure(const StudyHead& report, const std::string& section) {
-  const std::vector<ServoTrial>& trials = report.collection.servo_trials;
+  const std::span<const ServoTrial> trials = report.collection.servo_trials;
   if (trials.empty()) return {};
-  const std::vector<std::vector<double>> rows = rows_of(trials);
-  double worst = 1.0;
-  for (const std::vector<double>& row : rows) worst = std::max(worst, row[3]);
-  const Sheet sheet{16.0, 7.0, report.simulated};
-  Margins margins;
-  margins.left_cm = 1.7;
-  margins.top_cm = 1.1;
-  margins.bottom_cm = 1.25;
-  std::string plot;
-  std::vector<LegendEntry> entries;
-  for (std::size_t i = 0; i < kSeries.size(); ++i) {
-    const auto& [name, mark, look, colour] = kSeries[i];
-    plot += fmt::format("{}$servo using 1:{} with points pt {} {} lc rgb '{}' notitle",
-                        i == 0 ? "plot " : ", ", i + 2, mark, look, series_colour(colour));
-    entries.push_back(mark_entry(mark, series_colour(colour), name));
-  }
-  const Legend legend(sheet, margins.left_cm, entries);
-  Figure figure = figure_on(sheet, "servo-lateness", {}, section);
   const std::size_t together = trials_together(trials.size());
+  Layer median{.name = "median", .colour = series_colour(0), .size = 0.7, .in_key = true};
+  Layer late{.name = "99th percentile",
+             .colour = series_colour(2),
+             .size = 0.9,
+             .glyph = Glyph::triangle,
+             .in_key = true};
+  Layer worst{.name = "worst",
+              .colour = series_colour(1),
+              .size = 0.9,
+              .glyph = Glyph::cross,
+              .in_key = true};
+  double most = 1.0;
+  for (std::size_t first = 0; first < trials.size(); first += together) {
+    const std::size_t count = std::min(together, trials.size() - first);
+    const LatenessRow row = row_of(trials.subspan(first, count));
+    const double x = static_cast<double>(first) + 0.5 * static_cast<double>(count + 1);
+    median.rows.push_back({.x = x, .y = row.median});
+    late.rows.push_back({.x = x, .y = row.late});
+    worst.rows.push_back({.x = x, .y = row.worst});
+    most = std::max(most, row.worst);
+  }
+  Figure figure = figure_named("servo-lateness", section, report.simulated, kPage_cm);
   figure.caption = stamped(
       report.simulated,
       "lateness of the servo's ticks, by trial in the order of sessions" +
@@ -246,24 +217,18 @@ std::optional<Figure> servo_figure(const StudyHead& report, const std::string& s
   figure.alt = fmt::format(
       "Lateness of the servo over {} trials: latest tick of all {:.0f} microseconds; median of the "
       "trials' 99th percentiles {:.0f} microseconds.",
-      trials.size(), worst, row_of(trials, 0.0)[2]);
-  figure.script = data_block("servo", rows) + sheet_head(sheet) + panel_at(sheet, margins) +
-                  fmt::format(
-                      "set logscale y\nset format y '%g'\nset ylabel 'lateness, µs'\nset "
-                      "xlabel 'trial' offset 0, 0.4\nset xrange [0:{}]\nset yrange "
-                      "[*:{:.6g}]\n",
-                      trials.size() + 1, std::max(2.0 * worst, 1500.0)) +
-                  session_lines(trials) + period_line(trials) + legend.script() + plot + "\n";
+      trials.size(), most, row_of(trials).late);
+  figure.panels = {
+      {.x = {.label = "trial", .low = 0.0, .high = static_cast<double>(trials.size() + 1)},
+       .y = {.label = "lateness, µs", .high = std::max(2.0 * most, 1500.0), .logarithmic = true},
+       .layers = {session_lines(trials), period_line(trials), median, late, worst}}};
   return figure;
 }
 
 void stamp_figures(const std::string& stamp, std::vector<Figure>& figures) {
   if (stamp.empty()) return;
   for (Figure& figure : figures) {
-    const Sheet sheet{figure.width_cm, figure.height_cm, false};
-    figure.script = text_on_sheet(sheet, stamp, sheet.width_cm - 0.17, 0.6,
-                                  "left rotate by -90 textcolor rgb '#b3261e'") +
-                    figure.script;
+    figure.stamp = stamp;
     figure.alt = stamp + ". " + figure.alt;
   }
 }

@@ -10,14 +10,15 @@
 
 namespace touchtrial::analysis {
 
-/// Participants from enrolment to analysis. For papers: a page shows this as text.
+/// Participants from enrolment to analysis; nothing if nobody was lost on the way. For papers: a
+/// page shows this as text.
 [[nodiscard]] std::optional<Figure> flow_figure(const StudyHead& report);
 /// The servo's lateness; nothing for studies in virtual time.
 /// \param section  Figure::section
 [[nodiscard]] std::optional<Figure> servo_figure(const StudyHead& report,
                                                  const std::string& section);
 
-/// Stamps the right edges with upright text below SIMULATED, where every figure leaves room.
+/// Stamps figures and their text alternatives besides SIMULATED.
 /// \param stamp  empty: leaves the figures as they are
 void stamp_figures(const std::string& stamp, std::vector<Figure>& figures);
 

@@ -2,6 +2,7 @@
 
 #include "analysis/report/escaping.hpp"
 #include "analysis/report/figures/gnuplot.hpp"
+#include "analysis/report/figures/layout.hpp"
 #include "core/errors.hpp"
 
 #include <array>
@@ -143,10 +144,10 @@ std::string accessible_svg(string_view drawn, const Figure& figure) {
   const std::string body = without_tool_tips(drawn.substr(described + kDescribed.size()));
   return fmt::format(
              "<svg xmlns=\"http://www.w3.org/2000/svg\" "
-             "xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"{0}cm\" height=\"{1}cm\" "
+             "xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"{0}cm\" height=\"{1:.4g}cm\" "
              "viewBox=\"{2}\" role=\"img\" aria-labelledby=\"{3}-title {3}-desc\">\n"
              "<title id=\"{3}-title\">{4}</title>\n<desc id=\"{3}-desc\">{5}</desc>\n",
-             figure.width_cm, figure.height_cm, box, figure.id,
+             figure.width_cm, layout_of(figure).height_cm, box, figure.id,
              xml_escaped(one_line(first_sentence(figure.caption))),
              xml_escaped(one_line(figure.alt))) +
          without_empty_groups(with_prefixed_ids(body, figure.id + "-"));

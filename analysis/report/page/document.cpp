@@ -18,6 +18,13 @@ void add_sources(const Table& table, std::vector<Source>& references) {
   for (const Cited& note : table.notes) add_sources(note, references);
 }
 
+void add_sources(const std::vector<Block>& blocks, std::vector<Source>& references) {
+  for (const Block& block : blocks) {
+    if (const auto* cited = std::get_if<Cited>(&block)) add_sources(*cited, references);
+    if (const auto* table = std::get_if<Table>(&block)) add_sources(*table, references);
+  }
+}
+
 }  // namespace
 
 std::vector<Column> columns_of(const std::vector<std::string>& titles,
@@ -30,20 +37,30 @@ std::vector<Column> columns_of(const std::vector<std::string>& titles,
   return columns;
 }
 
+std::vector<const Block*> all_blocks(const Section& section) {
+  std::vector<const Block*> blocks;
+  for (const auto* some : {&section.blocks, &section.more}) {
+    for (const Block& block : *some) blocks.push_back(&block);
+  }
+  return blocks;
+}
+
 bool has_tables_or_warnings(const Section& section) {
-  return std::any_of(section.blocks.begin(), section.blocks.end(), [](const Block& block) {
-    return std::holds_alternative<Table>(block) || std::holds_alternative<Warnings>(block);
+  return std::ranges::any_of(all_blocks(section), [](const Block* block) {
+    return std::holds_alternative<Table>(*block) || std::holds_alternative<Warnings>(*block);
   });
+}
+
+std::size_t references_in_print(const Document& document) {
+  std::vector<Source> references;
+  for (const Section& section : document.sections) add_sources(section.blocks, references);
+  return references.size();
 }
 
 std::vector<Source> references_of(const Document& document) {
   std::vector<Source> references;
-  for (const Section& section : document.sections) {
-    for (const Block& block : section.blocks) {
-      if (const auto* cited = std::get_if<Cited>(&block)) add_sources(*cited, references);
-      if (const auto* table = std::get_if<Table>(&block)) add_sources(*table, references);
-    }
-  }
+  for (const Section& section : document.sections) add_sources(section.blocks, references);
+  for (const Section& section : document.sections) add_sources(section.more, references);
   return references;
 }
 
@@ -84,8 +101,8 @@ std::string stamped(const std::string& caption, const std::string& stamp) {
 std::vector<const Table*> tables_of(const Document& document) {
   std::vector<const Table*> tables;
   for (const Section& section : document.sections) {
-    for (const Block& block : section.blocks) {
-      if (const auto* table = std::get_if<Table>(&block)) tables.push_back(table);
+    for (const Block* block : all_blocks(section)) {
+      if (const auto* table = std::get_if<Table>(block)) tables.push_back(table);
     }
   }
   return tables;

@@ -93,7 +93,15 @@ struct Section {
   std::string title;
   std::vector<Block> blocks;
   bool page_only = false;  ///< left out of the text for a terminal
+  /// What only specialists read: folded on the page, and left out in print and on a terminal.
+  std::vector<Block> more{};
+
+  /// Whether a page shows nothing of it unless it is opened.
+  [[nodiscard]] bool is_folded() const { return blocks.empty() && !more.empty(); }
 };
+
+/// A section's blocks, then those that are folded.
+[[nodiscard]] std::vector<const Block*> all_blocks(const Section& section);
 
 /// Tells whether the files of tables include anything from a section.
 [[nodiscard]] bool has_tables_or_warnings(const Section& section);
@@ -109,8 +117,11 @@ struct Document {
   std::string about = "This report";  ///< the title of the header
 };
 
-/// Every cited source, in the order of first citation. Reference number n is element n - 1.
+/// Every cited source, in the order of first citation, those that only folded blocks cite at the
+/// end. Reference number n is element n - 1.
 [[nodiscard]] std::vector<Source> references_of(const Document& document);
+/// How many of references_of are cited outside folded blocks.
+[[nodiscard]] std::size_t references_in_print(const Document& document);
 /// Every source that one table cites, in the order of first citation.
 [[nodiscard]] std::vector<Source> references_of(const Table& table);
 
@@ -126,7 +137,8 @@ struct Document {
 /// Every table of a document, in order.
 [[nodiscard]] std::vector<const Table*> tables_of(const Document& document);
 
-/// One HTML page without scripts and without references to other files.
+/// One HTML page without scripts and without references to other files. Sections that are folded
+/// as a whole follow the others; the numbers of folded tables and figures begin with S.
 [[nodiscard]] std::string page_html(const Document& document);
 
 /// One table in GitHub's Markdown, with its notes and references.
@@ -147,9 +159,9 @@ struct Document {
 [[nodiscard]] std::string tables_latex(const Document& document);
 
 /// The document as text for a terminal: the sections that are not for the page alone, then the
-/// header. Without pictures, subheadings and the notes that only name a method, which are those
-/// with sources. An asterisk precedes emphasised cells. Begins with the banners and ends with the
-/// stamp, if there are any.
+/// header. Without pictures, subheadings, the notes that only name a method, which are those with
+/// sources, and what is folded, but for its warnings. An asterisk precedes emphasised cells. Begins
+/// with the banners and ends with the stamp, if there are any.
 /// \param width  columns of the terminal, >= 80
 [[nodiscard]] std::string document_text(const Document& document, std::size_t width = kTextWidth);
 

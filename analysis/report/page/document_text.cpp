@@ -134,9 +134,12 @@ std::string document_text(const Document& document, std::size_t width) {
   text += wrapped("", stamped(document.title, document.stamp), width);
   const BlockText blocks(document.stamp, width);
   for (const Section& section : document.sections) {
-    if (section.page_only) continue;
+    if (section.page_only || section.blocks.empty()) continue;
     text += section_title(section.title, document.stamp);
     for (const Block& block : section.blocks) text += std::visit(blocks, block);
+    for (const Block& block : section.more) {
+      if (const auto* warnings = std::get_if<Warnings>(&block)) text += blocks(*warnings);
+    }
   }
   if (!document.header.entries.empty()) {
     text += section_title(document.about, document.stamp) + blocks(document.header);

@@ -35,8 +35,7 @@ ServoNumbers servo_numbers(const std::vector<ServoTrial>& trials) {
 
 }  // namespace
 
-Section registration_section(const study::Registration& registration) {
-  Section section{"registration", "What was registered beforehand", {}, true};
+std::vector<Block> registration_blocks(const study::Registration& registration) {
   const auto stated = [](const std::string& text) { return text.empty() ? "not stated" : text; };
   Definitions definitions{
       {{"hypothesis", stated(registration.hypothesis)},
@@ -46,8 +45,7 @@ Section registration_section(const study::Registration& registration) {
        {"stopping rule", stated(registration.stopping_rule)},
        {"exclusions", stated(registration.exclusions)}}};
   for (const auto& field : study::fields_of(registration)) definitions.entries.push_back(field);
-  section.blocks.emplace_back(std::move(definitions));
-  return section;
+  return {Subheading{"registration", "What was registered beforehand"}, std::move(definitions)};
 }
 
 std::optional<Table> servo_table(const Collection& collection) {

@@ -12,10 +12,9 @@ namespace touchtrial::analysis {
 
 [[nodiscard]] Section warnings_section(const std::vector<std::string>& warnings);
 
-/// The answer to the registered question, departures from what was registered, and the estimate
-/// under every choice of sessions and trials.
-/// \return without blocks if the study has no question and no departure
-[[nodiscard]] std::vector<Block> verdict_blocks(const StudyHead& head);
+/// Adds the answer to the registered question, and the estimate under every choice of sessions and
+/// trials, which is folded if no choice changes it. Nothing if the study has no question.
+void add_verdict(const StudyHead& head, Section& section);
 /// Adds to every table and every sentence with a p that it is not adjusted for unregistered looks.
 void say_unadjusted(const std::vector<Look>& looks, std::vector<Section>& sections);
 
@@ -25,14 +24,13 @@ void say_unadjusted(const std::vector<Look>& looks, std::vector<Section>& sectio
 /// themselves in bands, and looks at outcomes; null: none of these
 [[nodiscard]] Section participants_section(const Collection& collection,
                                            const StudyHead* head = nullptr);
-/// Times, forces and speeds.
-/// \return without blocks if no trial counts
-[[nodiscard]] Section exploration_section(const StudyHead& head);
 /// Answers to closing questions: counts of options, quartiles of numbers, and texts.
 /// \return without blocks if nobody answered any
 [[nodiscard]] Section said_section(const StudyHead& head);
 /// What was registered before the study.
-[[nodiscard]] Section registration_section(const study::Registration& registration);
+[[nodiscard]] std::vector<Block> registration_blocks(const study::Registration& registration);
+/// "touch (12 sessions), ideal device (3 sessions)", by model; empty for none.
+[[nodiscard]] std::string device_summary(const Collection& collection);
 /// The timing of the servo over the trials that ran in real time.
 /// \return nothing if there is no such trial
 [[nodiscard]] std::optional<Table> servo_table(const Collection& collection);

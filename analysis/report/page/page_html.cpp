@@ -2,6 +2,7 @@
 #include "analysis/report/figures/svg.hpp"
 #include "analysis/report/page/document.hpp"
 #include "analysis/report/page/page_style.hpp"
+#include "core/text.hpp"
 
 #include <algorithm>
 
@@ -23,12 +24,25 @@ constexpr const char* kHead = R"(<!doctype html>
 <meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
 )";
 
-/// The document with its references, and the number of tables and of figures written so far.
+/// How many tables and figures were written so far.
+struct Numbers {
+  int tables = 0;
+  int figures = 0;
+};
+
+/// The document with its references. What is folded is numbered by itself, so that the numbers in
+/// print have no gaps.
 struct Writer {
   const Document& document;
   std::vector<Source> references;
-  int tables = 0;
-  int figures = 0;
+  Numbers shown{};
+  Numbers folded{};
+  bool is_folding = false;
+
+  std::string next(int Numbers::*what) {
+    Numbers& numbers = is_folding ? folded : shown;
+    return (is_folding ? "S" : "") + std::to_string(++(numbers.*what));
+  }
 };
 
 /// The text escaped, with no line break within "p < 0.001" or "N = 20".
@@ -120,7 +134,7 @@ std::string body_rows(const Table& table) {
 }
 
 /// "<b>Table 3.</b> "; nothing on a page that does not number.
-std::string number_of(const Writer& writer, const char* what, int number) {
+std::string number_of(const Writer& writer, const char* what, const std::string& number) {
   return writer.document.numbered ? fmt::format("<b>{} {}.</b> ", what, number) : "";
 }
 
@@ -132,7 +146,8 @@ std::string notes_html(const Writer& writer, const Table& table) {
 }
 
 std::string html_of(Writer& writer, const Table& table) {
-  const std::string caption = fmt::format("{}{}", number_of(writer, "Table", ++writer.tables),
+  const std::string number = writer.next(&Numbers::tables);
+  const std::string caption = fmt::format("{}{}", number_of(writer, "Table", number),
                                           html_text(stamped(table.caption, writer.document.stamp)));
   std::string html = fmt::format(
       "<div class=\"scroll\" role=\"region\" tabindex=\"0\" "
@@ -141,7 +156,7 @@ std::string html_of(Writer& writer, const Table& table) {
       table.id, caption);
   html += header_row(table) + body_rows(table) + "</table>\n</div>\n" + notes_html(writer, table);
   if (table.rows.size() > kFoldedRows) {
-    html = fmt::format("<details>\n<summary>Table {}, {} rows</summary>\n", writer.tables,
+    html = fmt::format("<details>\n<summary>Table {}, {} rows</summary>\n", number,
                        table.rows.size()) +
            html + "</details>\n";
   }
@@ -150,15 +165,27 @@ std::string html_of(Writer& writer, const Table& table) {
          html + "</div>\n";
 }
 
+/// \return the width that an SVG file states, else that of a page
+double width_cm(std::string_view svg) {
+  constexpr std::string_view kWidth = "width=\"";
+  constexpr double kPage_cm = 17.0;
+  const std::size_t begin = svg.find(kWidth);
+  if (begin == std::string_view::npos) return kPage_cm;
+  const std::string_view value = svg.substr(begin + kWidth.size());
+  const std::size_t end = value.find("cm\"");
+  return end > 8 ? kPage_cm : number_in<double>(value.substr(0, end)).value_or(kPage_cm);
+}
+
 std::string html_of(Writer& writer, const Picture& picture) {
   const std::string svg = inline_svg(picture.svg, "figure-" + picture.id + "-");
-  const int number = ++writer.figures;
+  const std::string number = writer.next(&Numbers::figures);
   std::string html = "<figure id=\"figure-" + picture.id + "\">\n";
   if (!svg.empty()) {
     html += fmt::format(
         "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"Figure {}\">"
-        "<div class=\"plot\" role=\"img\" aria-label=\"{}\">\n{}\n</div></div>\n",
-        number, html_text(picture.alt), svg);
+        "<div class=\"plot\" style=\"--cm: {}\" role=\"img\" aria-label=\"{}\">\n{}\n"
+        "</div></div>\n",
+        number, width_cm(picture.svg), html_text(picture.alt), svg);
   }
   if (svg.empty()) {
     // The caption would describe marks and bars that are missing, so the description stands
@@ -184,17 +211,62 @@ std::string html_of(Writer& writer, const Flow& flow) {
     html += step.leaving.empty() ? "</li>\n" : "</ul></li>\n";
   }
   return html + fmt::format("</ol>\n<figcaption><b>Figure {}.</b> {}</figcaption>\n</figure>\n",
-                            ++writer.figures,
+                            writer.next(&Numbers::figures),
                             html_text(stamped(flow.caption, writer.document.stamp)));
 }
 
-std::string section_html(Writer& writer, const Section& section) {
-  std::string html = fmt::format("<section aria-labelledby=\"{0}\">\n<h2 id=\"{0}\">{1}</h2>\n",
-                                 section.id, html_text(section.title));
-  for (const Block& block : section.blocks) {
+std::string blocks_html(Writer& writer, const std::vector<Block>& blocks) {
+  std::string html;
+  for (const Block& block : blocks) {
     html += std::visit([&](const auto& one) { return html_of(writer, one); }, block);
   }
-  return html + "</section>\n";
+  return html;
+}
+
+/// "2 tables, 1 figure"; what has neither is "notes".
+std::string contents_of(const std::vector<Block>& blocks) {
+  int tables = 0;
+  int figures = 0;
+  for (const Block& block : blocks) {
+    tables += std::holds_alternative<Table>(block) ? 1 : 0;
+    figures += std::holds_alternative<Picture>(block) ? 1 : 0;
+  }
+  std::string text = tables > 0 ? counted(tables, "table") : "";
+  if (figures > 0) text += (text.empty() ? "" : ", ") + counted(figures, "figure");
+  return text.empty() ? "notes" : text;
+}
+
+std::string folded_html(Writer& writer, const Section& section, const std::string& title) {
+  if (section.more.empty()) return "";
+  writer.is_folding = true;
+  const std::string html = blocks_html(writer, section.more);
+  writer.is_folding = false;
+  return "<details class=\"more\">\n<summary>" + title + "</summary>\n" + html + "</details>\n";
+}
+
+std::string section_html(Writer& writer, const Section& section) {
+  return fmt::format("<section aria-labelledby=\"{0}\">\n<h2 id=\"{0}\">{1}</h2>\n", section.id,
+                     html_text(section.title)) +
+         blocks_html(writer, section.blocks) +
+         folded_html(writer, section, "More: " + contents_of(section.more)) + "</section>\n";
+}
+
+constexpr const char* kFurther = "Further analyses";
+
+/// The sections that are folded as a whole, under one heading.
+std::string further_html(Writer& writer) {
+  std::string html;
+  for (const Section& section : writer.document.sections) {
+    if (!section.is_folded()) continue;
+    html +=
+        fmt::format("<section class=\"whole-more\" aria-labelledby=\"{}\">\n", section.id) +
+        folded_html(writer, section,
+                    fmt::format("<h3 id=\"{}\">{}</h3>", section.id, html_text(section.title))) +
+        "</section>\n";
+  }
+  if (html.empty()) return "";
+  return "<section class=\"further\" aria-labelledby=\"further\">\n<h2 id=\"further\">" +
+         std::string(kFurther) + "</h2>\n" + html + "</section>\n";
 }
 
 std::string references_html(const Writer& writer) {
@@ -202,8 +274,10 @@ std::string references_html(const Writer& writer) {
   std::string html =
       "<section aria-labelledby=\"references\">\n<h2 id=\"references\">References</h2>\n"
       "<ol class=\"references\">\n";
+  const std::size_t in_print = references_in_print(writer.document);
   for (std::size_t i = 0; i < writer.references.size(); ++i) {
-    html += fmt::format("<li id=\"reference-{}\">{}</li>\n", i + 1,
+    html += fmt::format("<li id=\"reference-{}\"{}>{}</li>\n", i + 1,
+                        i < in_print ? "" : " class=\"further\"",
                         html_text(std::string(citation_of(writer.references[i]))));
   }
   return html + "</ol>\n</section>\n";
@@ -212,11 +286,16 @@ std::string references_html(const Writer& writer) {
 std::string navigation(const Writer& writer) {
   std::string html =
       "<nav aria-labelledby=\"contents\">\n<h2 id=\"contents\">Contents</h2>\n<ul>\n";
-  for (const Section& section : writer.document.sections) {
-    html += "<li><a href=\"#" + section.id + "\">" + html_text(section.title) + "</a></li>\n";
+  const auto add = [&](const std::string& id, const std::string& title) {
+    html += "<li><a href=\"#" + id + "\">" + html_text(title) + "</a></li>\n";
+  };
+  const std::vector<Section>& sections = writer.document.sections;
+  for (const Section& section : sections) {
+    if (!section.is_folded()) add(section.id, section.title);
   }
-  if (!writer.references.empty()) html += "<li><a href=\"#references\">References</a></li>\n";
-  html += "<li><a href=\"#this-report\">" + html_text(writer.document.about) + "</a></li>\n";
+  if (std::ranges::any_of(sections, &Section::is_folded)) add("further", kFurther);
+  if (!writer.references.empty()) add("references", "References");
+  add("this-report", writer.document.about);
   return html + "</ul>\n</nav>\n";
 }
 
@@ -233,10 +312,11 @@ std::string main_html(Writer& writer) {
   std::string html = "<main id=\"main\" tabindex=\"-1\">\n";
   std::string contents = navigation(writer);
   for (const Section& section : writer.document.sections) {
+    if (section.is_folded()) continue;
     html += section_html(writer, section) + contents;
     contents.clear();
   }
-  html += references_html(writer);
+  html += further_html(writer) + references_html(writer);
   return html + "<section aria-labelledby=\"this-report\">\n<h2 id=\"this-report\">" +
          html_text(writer.document.about) + "</h2>\n" + html_of(writer, writer.document.header) +
          "</section>\n</main>\n";

@@ -27,10 +27,10 @@ body { font: 16px/1.55 system-ui, -apple-system, "Segoe UI", "Noto Sans", "DejaV
 header, main, footer { max-width: 62rem; margin: 0 auto; padding: 0 1.25rem; }
 header { padding-top: 1rem; }
 h1 { font-size: 1.6rem; line-height: 1.2; margin: 0 0 .6rem; overflow-wrap: anywhere; }
-h2 { font-size: 1.4rem; line-height: 1.25; margin: 3rem 0 1rem; padding-top: .6rem;
+h2 { font-size: 1.3rem; line-height: 1.25; margin: 2.2rem 0 .8rem; padding-top: .5rem;
      border-top: 2px solid var(--rule); overflow-wrap: anywhere; }
 main > section:first-child > h2 { margin-top: 0; padding-top: .4rem; margin-bottom: .5rem; }
-h3 { font-size: 1.1rem; margin: 2rem 0 .6rem; overflow-wrap: anywhere; }
+h3 { font-size: 1.05rem; margin: 1.4rem 0 .5rem; overflow-wrap: anywhere; }
 p { margin: 0 0 .8rem; max-width: 46rem; overflow-wrap: anywhere; }
 a { color: var(--link); }
 a:focus-visible, summary:focus-visible, .scroll:focus-visible { outline: 3px solid var(--link);
@@ -39,6 +39,7 @@ a:focus-visible, summary:focus-visible, .scroll:focus-visible { outline: 3px sol
 .banner { border-left: 6px solid var(--stamp-line); background: var(--stamp-ground);
           color: var(--stamp-ink); padding: .4rem 1rem; margin: 0 0 .6rem; font-weight: 600;
           font-size: .95rem; line-height: 1.4; max-width: none; }
+.banner + .banner { margin-top: -.6rem; padding-top: 0; }
 .warnings { border-left: 6px solid var(--warn-line); background: var(--warn-ground);
             color: var(--warn-ink); padding: .5rem 1rem; margin: 0 0 1rem; font-size: .95rem;
             line-height: 1.4; }
@@ -51,8 +52,8 @@ dt { color: var(--soft); }
 dd { margin: 0; overflow-wrap: anywhere; }
 nav { margin-top: 2rem; }
 nav h2 { font-size: 1rem; margin: 0 0 .3rem; padding: 0; border: 0; }
-nav ul { margin: 0; padding: 0; list-style: none; columns: 17rem; column-gap: 2rem; }
-nav li { padding: .15rem 0; break-inside: avoid; }
+nav ul { margin: 0; padding: 0; list-style: none; display: flex; flex-wrap: wrap;
+         gap: .15rem 1.4rem; }
 .table { margin: 1.2rem 0 1.8rem; }
 main > section:first-child .table { margin: .8rem 0; }
 .scroll { overflow-x: auto; }
@@ -81,12 +82,15 @@ tbody tr td.s { background: var(--strong); font-weight: 600; }
 main > section:first-child .notes p { max-width: none; }
 details { margin: 1rem 0; }
 summary { cursor: pointer; padding: .25rem 0; }
+details.more > summary { color: var(--link); font-weight: 600; }
+details.more[open] { border-left: 3px solid var(--line); padding-left: 1rem; }
+.whole-more details { margin: .2rem 0; }
+.whole-more h3 { display: inline; margin: 0; font-size: 1rem; }
 figure { margin: 1.6rem 0 2rem; }
 figcaption { margin-top: .5rem; max-width: 46rem; overflow-wrap: anywhere; }
 figure details { margin: .3rem 0 0; font-size: .9rem; }
-.plot { background: #fff; padding: .4rem; border: 1px solid var(--line); width: 46rem;
-        max-width: 100%; }
-figure[id^="figure-exploration"] .plot { width: 34rem; }
+.plot { background: #fff; padding: .4rem; border: 1px solid var(--line); max-width: 100%;
+        width: calc(var(--cm) * 2.9rem); }
 .plot svg { display: block; width: 100%; height: auto; max-width: 100%; }
 .flow ol { list-style: none; margin: 0; padding: 0; max-width: 34rem; }
 .flow ol > li { position: relative; padding-bottom: 1.6rem; }
@@ -115,6 +119,12 @@ footer { border-top: 1px solid var(--line); margin-top: 3rem; padding-top: .8rem
   table { font-size: .76rem; }
   th, td { padding: .25rem .22rem; }
 }
+@media screen and (min-width: 62rem) {
+  main > section:first-child, main > section:first-child > .warnings { display: flow-root; }
+  main > section:first-child > figure { float: left; clear: left; width: 38rem;
+    margin: .2rem 1.5rem .6rem 0; }
+  main > section:first-child > :is(.table, .more) { clear: both; }
+}
 @page { size: A4; margin: 16mm 15mm; }
 @media print {
   :root { color-scheme: light; --ink: #000; --soft: #444; --ground: #fff; --panel: #f6f6f4;
@@ -123,9 +133,9 @@ footer { border-top: 1px solid var(--line); margin-top: 3rem; padding-top: .8rem
     --strong: #e8e8e8; }
   body { font-size: 9.5pt; line-height: 1.4; }
   header, main, footer { max-width: none; padding: 0; }
-  nav, figure details { display: none; }
+  nav, figure details, .more, .further { display: none; }
   h1 { font-size: 18pt; }
-  h2 { font-size: 13pt; margin: 7mm 0 2mm; padding-top: 2mm; }
+  h2 { font-size: 12pt; margin: 5mm 0 2mm; padding-top: 1.5mm; }
   h3 { font-size: 11pt; margin: 5mm 0 2mm; }
   h2, h3 { break-after: avoid; }
   .banner, .warnings { font-size: 9pt; padding: 1.5mm 3mm; margin: 0 0 3mm; }
@@ -144,9 +154,8 @@ footer { border-top: 1px solid var(--line); margin-top: 3rem; padding-top: .8rem
   tbody tr:nth-child(even), tbody tr td.s { print-color-adjust: exact;
     -webkit-print-color-adjust: exact; }
   .notes { font-size: 7.8pt; }
-  .plot { border: 0; padding: 0; width: 125mm; max-width: 100%; }
+  .plot { border: 0; padding: 0; width: calc(var(--cm) * 1cm); }
   figure { margin: 4mm 0; }
-  figure[id^="figure-exploration"] .plot { width: 85mm; }
   .table { margin: 3mm 0 5mm; }
 }
 )";

@@ -251,32 +251,19 @@ Table looks_table(const std::vector<Look>& looks, bool is_public) {
   return table;
 }
 
-Table people_table(const StudyHead& head) {
+/// "20 planned, 19 enrolled, 18 completed, 1 excluded, 0 withdrew; 17 in the results"
+Cited people_sentence(const StudyHead& head) {
   const ParticipantFlow& flow = head.collection.flow;
   const int planned = head.course.planned;
-  Table table{"people",
-              "How many people took part",
-              {{"number of", Align::left},
-               {"planned"},
-               {"enrolled"},
-               {"completed"},
-               {"excluded"},
-               {"withdrew"},
-               {"in the results"}}};
-  table.rows = {{"participants", planned > 0 ? std::to_string(planned) : "not stated",
-                 std::to_string(flow.enrolled), std::to_string(head.course.completed),
-                 std::to_string(flow.excluded), std::to_string(flow.withdrawn),
-                 std::to_string(flow.analysed)}};
-  table.notes = {
-      {"Completed: with those who were left out afterwards. In the results: after all "
-       "exclusions as they were made; the sections below are about these."}};
+  std::string text =
+      fmt::format("{}{} enrolled, {} completed, {} excluded, {} withdrew; {} in the results.",
+                  planned > 0 ? std::to_string(planned) + " planned, " : "", flow.enrolled,
+                  head.course.completed, flow.excluded, flow.withdrawn, flow.analysed);
   if (head.course.excluded_afterwards > 0) {
-    table.notes.push_back(
-        {fmt::format("Excluded after outcomes were seen: {}. The first row of the result counts "
-                     "these.",
-                     counted(head.course.excluded_afterwards, "session"))});
+    text += fmt::format(" Excluded after outcomes were seen: {}; the verdict counts these.",
+                        counted(head.course.excluded_afterwards, "session"));
   }
-  return table;
+  return {text};
 }
 
 /// "age: 20-29 (12), others (8)"
@@ -299,37 +286,56 @@ Cited bands_sentence(const Characteristic& of) {
   return {text + "."};
 }
 
-std::vector<Cell> exploration_row(const std::string& what, const Quartiles& of, int decimals,
-                                  double unit = 1.0) {
-  const auto cell = [&](std::optional<double> value) {
-    return Cell(plain_figure(value ? std::optional(unit * *value) : value, decimals));
+/// "12.1 (11.6, 12.9)"
+std::string quartiles_figure(const Quartiles& of, int decimals, double unit) {
+  const auto figure = [&](std::optional<double> value) {
+    return plain_figure(value ? std::optional(unit * *value) : value, decimals);
   };
-  return {what, std::to_string(of.n), cell(of.lower), cell(of.median), cell(of.upper)};
+  if (!of.median) return kNoFigure;
+  return fmt::format("{} ({}, {})", figure(of.median), figure(of.lower), figure(of.upper));
 }
 
-Table explorations_table(const StudyHead& head, std::size_t index) {
-  const Explorations& one = head.explorations[index];
-  const std::string method = head.explorations.size() > 1 ? one.method + ": " : "";
-  Table table{
-      "explorations-" + std::to_string(index + 1),
-      method + "how hands explored, over the trials that count",
-      {{"what", Align::left}, {"trials"}, {"lower quartile"}, {"median"}, {"upper quartile"}}};
-  table.rows = {exploration_row("time until answer (s)", one.answer_s, 1),
-                exploration_row("time in contact (s)", one.contact_s, 1),
-                exploration_row("path in contact (mm)", one.path_mm, 0),
-                exploration_row("speed in contact (mm/s)", one.speed_mm_s, 0),
-                exploration_row("force, rms (N)", one.force_n, 2),
-                exploration_row("at the force limit (%)", one.saturated, 1, 100.0)};
+struct Explored {
+  const char* what;
+  Quartiles Explorations::*of;
+  int decimals;
+  double unit = 1.0;
+};
+
+constexpr Explored kExplored[] = {
+    {"time until answer (s)", &Explorations::answer_s, 1},
+    {"time in contact (s)", &Explorations::contact_s, 1},
+    {"path in contact (mm)", &Explorations::path_mm, 0},
+    {"speed in contact (mm/s)", &Explorations::speed_mm_s, 0},
+    {"force, rms (N)", &Explorations::force_n, 2},
+    {"at the force limit (% of contact)", &Explorations::saturated, 1, 100.0}};
+
+/// A column for each method.
+std::optional<Table> explorations_table(const StudyHead& head) {
+  Table table{"explorations",
+              "How hands explored, over the trials that count: medians and quartiles",
+              {{"", Align::left}}};
+  std::vector<const Explorations*> methods;
+  std::string missed;
+  for (const Explorations& one : head.explorations) {
+    if (one.trials == 0) continue;
+    methods.push_back(&one);
+    table.columns.push_back({head.explorations.size() > 1 ? one.method : "median (quartiles)"});
+    missed += fmt::format("{}{} of {}", missed.empty() ? "" : ", ", one.without_response,
+                          counted(one.trials, "trial"));
+  }
+  if (methods.empty()) return {};
+  for (const Explored& row : kExplored) {
+    std::vector<Cell>& cells = table.rows.emplace_back(std::vector<Cell>{row.what});
+    for (const Explorations* one : methods) {
+      cells.emplace_back(quartiles_figure(one->*row.of, row.decimals, row.unit));
+    }
+  }
   const double limit_s = head.collection.prescription.explore_limit_s;
-  const std::string allowed = limit_s > 0.0
-                                  ? fmt::format("{} s were allowed", plain_figure(limit_s, 0))
-                                  : std::string("the time was not limited");
   table.notes = {{fmt::format(
-      "Trials of all participants pooled, each with the same weight. {}; {} of {} ended without "
-      "a response. Path, speed, force: in contact; speed: a trial's path over its time there. At "
-      "the "
-      "force limit: share of the time in contact.",
-      allowed, one.without_response, counted(one.trials, "trial"))}};
+      "Trials of all participants, each with the same weight. {}; without a response: {}.",
+      limit_s > 0.0 ? plain_figure(limit_s, 0) + " s were allowed" : "Time was not limited",
+      missed)}};
   return table;
 }
 
@@ -357,34 +363,47 @@ std::string said_in(const QuestionSummary& of) {
 
 Section participants_section(const Collection& collection, const StudyHead* head) {
   Section section{"participants", "Participants", {}};
-  if (head != nullptr) section.blocks.emplace_back(people_table(*head));
-  if (head != nullptr) {
-    for (const Characteristic& one : head->demographics) {
-      section.blocks.emplace_back(bands_sentence(one));
-    }
+  const auto add = [&](Block block) { section.blocks.emplace_back(std::move(block)); };
+  if (head != nullptr) add(people_sentence(*head));
+  if (Flow flow = flow_of(collection.flow);
+      head == nullptr || !flow.steps.front().leaving.empty()) {
+    add(std::move(flow));
   }
-  section.blocks.emplace_back(flow_of(collection.flow));
-  for (const std::string& note : people_notes(collection)) {
-    section.blocks.emplace_back(Cited{note, {}});
-  }
-  section.blocks.emplace_back(conditions_of(collection));
+  if (head != nullptr) std::ranges::for_each(head->demographics, add, bands_sentence);
+  for (const std::string& note : people_notes(collection)) add(Cited{note});
   if (auto deviations = deviations_table(collection)) {
-    section.blocks.emplace_back(std::move(*deviations));
+    add(std::move(*deviations));
   } else {
     const bool has_departures = head != nullptr && !head->departures.empty();
-    section.blocks.emplace_back(Cited{
-        has_departures ? "No deviation was recorded during sessions; departures from the plan are "
-                         "listed above."
-                       : "No deviation from the protocol was recorded.",
-        {}});
+    add(Cited{has_departures ? "No deviation was recorded during sessions."
+                             : "No deviation from the protocol was recorded."});
   }
-  if (head != nullptr && !head->looks.empty()) {
-    section.blocks.emplace_back(looks_table(head->looks, collection.is_public));
+  if (head == nullptr) {
+    add(conditions_of(collection));
+    if (auto sessions = sessions_table(collection)) add(std::move(*sessions));
+    return section;
   }
-  if (auto sessions = sessions_table(collection)) {
-    section.blocks.emplace_back(std::move(*sessions));
+  if (auto explored = explorations_table(*head)) add(std::move(*explored));
+  section.more.emplace_back(conditions_of(collection));
+  if (auto sessions = sessions_table(collection)) section.more.emplace_back(std::move(*sessions));
+  if (!head->looks.empty()) {
+    section.more.emplace_back(looks_table(head->looks, collection.is_public));
   }
   return section;
+}
+
+std::string device_summary(const Collection& collection) {
+  if (const std::string simulated = simulated_devices(collection); !simulated.empty()) {
+    return simulated;
+  }
+  std::map<std::string, int> devices;
+  for (const SessionRecord& one : collection.sessions) {
+    if (one.row.erased) continue;
+    ++devices[one.station && !one.station->model.empty() ? one.station->model : one.row.device];
+  }
+  std::vector<std::string> all;
+  for (const auto& [name, n] : devices) all.push_back(name + " (" + counted(n, "session") + ")");
+  return listed(all, " and ");
 }
 
 Section said_section(const StudyHead& head) {
@@ -405,14 +424,6 @@ Section said_section(const StudyHead& head) {
   }
   section.blocks.emplace_back(std::move(questions));
   if (!texts.rows.empty()) section.blocks.emplace_back(std::move(texts));
-  return section;
-}
-
-Section exploration_section(const StudyHead& head) {
-  Section section{"exploration", "Exploration", {}};
-  for (std::size_t i = 0; i < head.explorations.size(); ++i) {
-    if (head.explorations[i].trials > 0) section.blocks.emplace_back(explorations_table(head, i));
-  }
   return section;
 }
 

@@ -1,6 +1,8 @@
 #include "analysis/report/page/report_folder.hpp"
 
 #include "analysis/report/figures/gnuplot.hpp"
+#include "analysis/report/figures/redraw.hpp"
+#include "analysis/report/methods.hpp"
 #include "core/bytes.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
@@ -9,6 +11,7 @@
 #include <set>
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -18,11 +21,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kList = "report-files.txt";
+constexpr const char* kMethods = "methods.md";
 constexpr std::uintmax_t kLongestList = 1U << 20U;
 
 /// Tells whether a report could have written a file of this name. No other file may be removed,
 /// even if a list names it.
 bool could_be_ours(const std::string& path) {
+  if (path == kMethods) return true;
   if (!path.starts_with("tables/") && !path.starts_with("figures/")) return false;
   const std::string name = path.substr(path.find('/') + 1);
   return !name.empty() && name.front() != '.' &&
@@ -83,6 +88,9 @@ ReportFiles report_files(const Document& document, const std::string& results) {
   files["report.html"] = page_html(document);
   files["tables/tables.md"] = tables_markdown(document);
   files["tables/tables.tex"] = tables_latex(document);
+  if (std::string methods = methods_markdown(document); !methods.empty()) {
+    files[kMethods] = std::move(methods);
+  }
   for (const Table* table : tables_of(document)) {
     files["tables/" + table->id + ".md"] = table_markdown(*table, document.stamp);
     files["tables/" + table->id + ".tex"] = table_latex(*table, document.stamp);
@@ -102,7 +110,7 @@ void write_report_folder(const fs::path& folder, const ReportFiles& files) {
   const std::set<std::string> before = removable(claimed);
   for (const auto& [path, content] : files) require_place(folder, claimed, path);
   for (const std::string& path : before) require_place(folder, claimed, path);
-  if (!claimed.contains("results.json")) make_way(folder / kList);
+  if (!claimed.contains("results.json")) clear_output_place(folder / kList);
   // The list is written first, so that after a crash the next report still recognises its own
   // files.
   std::string list = list_of(files);
@@ -117,7 +125,7 @@ void write_report_folder(const fs::path& folder, const ReportFiles& files) {
   }
   for (const std::string& path : before) {
     if (files.contains(path)) continue;
-    if (!is_unmarked(folder, claimed, path)) make_way(folder / path);
+    if (!is_unmarked(folder, claimed, path)) clear_output_place(folder / path);
     std::error_code ignored;
     fs::remove(folder / path, ignored);
   }
@@ -138,6 +146,9 @@ DrawnFigures draw_report_figures(const std::vector<Figure>& figures) {
   }
   for (std::size_t i = 0; i < figures.size(); ++i) {
     const Figure& figure = figures[i];
+    for (auto& [name, content] : redraw_files(figure)) {
+      drawn.files["figures/" + name] = content;
+    }
     drawn.pictures.push_back({figure.id, figure.caption, figure.alt, svg[i], figure.section});
   }
   return drawn;

@@ -22,12 +22,12 @@ using ReportFiles = std::map<std::string, std::string>;
 /// The figures of a report as pictures for its page and as files beside it.
 struct DrawnFigures {
   std::vector<Picture> pictures;
-  ReportFiles files;    ///< "figures/<id>.svg" and ".pdf"
+  ReportFiles files;    ///< "figures/<id>.svg" and ".pdf", data and scripts (redraw_files)
   std::string missing;  ///< one line on why gnuplot could not draw; empty if it could
 };
 
 /// Draws the figures. Without gnuplot the pictures have only their captions and descriptions, and
-/// there are no files.
+/// the files are data and scripts.
 /// \throws Error if gnuplot is installed and rejects a figure
 [[nodiscard]] DrawnFigures draw_report_figures(const std::vector<Figure>& figures);
 

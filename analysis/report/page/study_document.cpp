@@ -20,7 +20,7 @@ namespace {
 std::string state_words(const record::StudyState& state) {
   if (state.question) {
     return std::string(state.closed ? "closed" : "collecting") +
-           "; blind but for the registered question (" + state.unblinding_reason + ")";
+           "; blind except for the registered question (" + state.unblinding_reason + ")";
   }
   if (!state.unblinded) return state.closed ? "closed, still blind" : "collecting, blind";
   const std::string reason =
@@ -82,21 +82,98 @@ Definitions header_of(const StudyHead& report, const Provenance& provenance,
   return header;
 }
 
-/// Puts a picture below the sentences of a section or subheading, if it belongs there.
-void place(const Picture& picture, Section& section) {
-  auto at = section.blocks.begin();
+/// Puts a picture below the sentences of a section or subheading.
+/// \return whether it belongs there
+bool place(const Picture& picture, Section& section) {
+  std::vector<Block>& blocks = section.is_folded() ? section.more : section.blocks;
+  auto at = blocks.begin();
   if (section.id != picture.section) {
-    at = std::ranges::find_if(section.blocks, [&](const Block& one) {
+    at = std::ranges::find_if(blocks, [&](const Block& one) {
       const auto* heading = std::get_if<Subheading>(&one);
       return heading != nullptr && heading->id == picture.section;
     });
-    if (at == section.blocks.end()) return;
+    if (at == blocks.end()) return false;
     ++at;
   }
-  at = std::find_if(at, section.blocks.end(), [](const Block& one) {
-    return std::holds_alternative<Table>(one) || std::holds_alternative<Subheading>(one);
+  at = std::find_if(at, blocks.end(), [](const Block& one) {
+    return !std::holds_alternative<Cited>(one) && !std::holds_alternative<Picture>(one);
   });
-  section.blocks.insert(at, picture);
+  blocks.insert(at, picture);
+  return true;
+}
+
+void place(const Picture& picture, std::vector<Section>& sections) {
+  if (picture.section.empty()) return;
+  const bool placed =
+      std::ranges::any_of(sections, [&](Section& section) { return place(picture, section); });
+  if (!placed) sections.front().more.emplace_back(picture);
+}
+
+/// The pictures, of which the first of a section that is not folded stands in the result if none
+/// says that it belongs there.
+Pictures with_leading(Pictures pictures, const std::vector<Section>& sections) {
+  if (std::ranges::find(pictures, "result", &Picture::section) != pictures.end()) return pictures;
+  const auto is_shown = [&](const std::string& id) {
+    return std::ranges::any_of(sections, [&](const Section& section) {
+      return section.id == id && !section.blocks.empty();
+    });
+  };
+  const auto first = std::ranges::find_if(pictures, is_shown, &Picture::section);
+  if (first != pictures.end()) first->section = "result";
+  return pictures;
+}
+
+/// What the result is about: how many people, on which device, and when.
+Cited facts_sentence(const StudyHead& head) {
+  std::string text = fmt::format("{}, {}", counted(head.participants, "participant"),
+                                 counted(head.trials, "trial"));
+  const std::string devices = device_summary(head.collection);
+  if (!devices.empty()) text += ", on " + devices;
+  if (const auto dates = dates_of(head.collection.sessions)) {
+    text += dates->first == dates->last ? ", " + dates->first
+                                        : fmt::format(", {} to {}", dates->first, dates->last);
+  }
+  text += ".";
+  if (head.registration.analysis && head.departures.empty()) {
+    text += " No departure from what was registered is recorded.";
+  }
+  return {text};
+}
+
+/// Longer lists of warnings go on in what is folded: the gravest come first.
+constexpr std::size_t kShownWarnings = 4;
+
+void add_warnings(const std::vector<std::string>& warnings, Section& section, std::size_t at) {
+  const std::size_t shown = std::min(warnings.size(), kShownWarnings);
+  const auto end = warnings.begin() + static_cast<std::ptrdiff_t>(shown);
+  if (shown > 0) {
+    section.blocks.insert(section.blocks.begin() + static_cast<std::ptrdiff_t>(at),
+                          Warnings{{warnings.begin(), end}, "What to bear in mind:"});
+  }
+  if (end != warnings.end()) {
+    section.more.insert(section.more.begin(), Warnings{{end, warnings.end()}, "And also:"});
+  }
+}
+
+/// The first section: the verdict, the protocol's sentences, what it is about, what to bear in
+/// mind, and then tables.
+Section result_section(const StudyHead& head, Section headline) {
+  std::vector<Block> own = std::move(headline.blocks);
+  headline.blocks.clear();
+  add_verdict(head, headline);
+  const auto first_table = std::ranges::find_if(
+      own, [](const Block& one) { return std::holds_alternative<Table>(one); });
+  headline.blocks.insert(headline.blocks.end(), own.begin(), first_table);
+  headline.blocks.emplace_back(facts_sentence(head));
+  if (!head.departures.empty()) {
+    headline.blocks.emplace_back(Warnings{
+        head.departures, head.registration.analysis ? "Departures from what was registered:"
+                                                    : "Departures from the plan:"});
+  }
+  add_warnings(head.warnings, headline, headline.blocks.size());
+  headline.blocks.insert(headline.blocks.end(), first_table, own.end());
+  std::ranges::move(registration_blocks(head.registration), std::back_inserter(headline.more));
+  return headline;
 }
 
 }  // namespace
@@ -151,22 +228,15 @@ Document framed_document(const StudyHead& head, Section headline, std::vector<Se
   document.stamp = joined(head.simulated ? "SIMULATED" : "", further_stamp(head.pilot, provenance));
   document.banners = banners_of(head, provenance);
   document.header = header_of(head, provenance, pictures);
-  std::vector<Block> verdict = verdict_blocks(head);
-  headline.blocks.insert(headline.blocks.begin(), std::make_move_iterator(verdict.begin()),
-                         std::make_move_iterator(verdict.end()));
-  std::vector<Section> sections = {std::move(headline),
-                                   participants_section(head.collection, &head),
-                                   exploration_section(head),
-                                   said_section(head),
-                                   warnings_section(head.warnings),
-                                   registration_section(head.registration)};
+  std::vector<Section> sections = {result_section(head, std::move(headline))};
   std::ranges::move(results, std::back_inserter(sections));
+  sections.push_back(participants_section(head.collection, &head));
+  sections.push_back(said_section(head));
+  // Methods come here, the last before what is folded, the references and the header.
   say_unadjusted(head.looks, sections);
-  for (const Picture& picture : pictures) {
-    for (Section& section : sections) place(picture, section);
-  }
+  for (const Picture& picture : with_leading(pictures, sections)) place(picture, sections);
   for (Section& section : sections) {
-    if (!section.blocks.empty()) document.sections.push_back(std::move(section));
+    if (!all_blocks(section).empty()) document.sections.push_back(std::move(section));
   }
   document.colophon =
       fmt::format("{}touchtrial {}, {}, event {} of the file's chain, {}",

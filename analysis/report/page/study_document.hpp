@@ -37,15 +37,15 @@ struct Provenance {
 /// Pictures for a report.
 using Pictures = std::vector<Picture>;
 
-/// The frame of every protocol's report: title, banners, header, and the sections on warnings,
-/// participants and registration.
+/// The frame of every protocol's report: title, banners, header, warnings and participants.
 ///
-/// \param headline  the result in a few sentences; stands first, after the verdict on the
-///   registered question
-/// \param results  the protocol's other sections, in their order; sections without blocks are left
-///   out
-/// \param pictures  in their order; each stands before the first table or subheading of its section,
-///   or of what is below its subheading. One whose section is none of these is left out.
+/// \param headline  the result in a few sentences, then tables; stands first. Before it comes the
+///   verdict on the registered question; before its tables, what the result is about and what to
+///   bear in mind
+/// \param results  the protocol's other sections, in their order; empty ones are left out
+/// \param pictures  in their order; each follows the sentences of its section, or of its
+///   subheading. If none belongs to the result, the first one does. One whose section is none of
+///   these is folded under the result, and one without a section is left out.
 [[nodiscard]] Document framed_document(const StudyHead& head, Section headline,
                                        std::vector<Section> results, const Provenance& provenance,
                                        const Pictures& pictures = {});

@@ -155,9 +155,9 @@ std::string tables_latex(const Document& document) {
   for (const Section& section : document.sections) {
     if (!has_tables_or_warnings(section)) continue;
     text += "\\section*{" + latex_escaped(section.title) + "}\n";
-    for (const Block& block : section.blocks) {
-      if (const auto* warnings = std::get_if<Warnings>(&block)) text += warnings_latex(*warnings);
-      const auto* table = std::get_if<Table>(&block);
+    for (const Block* block : all_blocks(section)) {
+      if (const auto* warnings = std::get_if<Warnings>(block)) text += warnings_latex(*warnings);
+      const auto* table = std::get_if<Table>(block);
       if (table != nullptr)
         text += one_table(*table, document.stamp, references, References::elsewhere);
     }

@@ -118,7 +118,7 @@ std::string document_markdown(const Document& document, const std::string& pictu
   if (!document.header.entries.empty()) text += writer(document.header);
   for (const Section& section : document.sections) {
     text += "## " + markdown_escaped(section.title) + "\n\n";
-    for (const Block& block : section.blocks) text += std::visit(writer, block);
+    for (const Block* block : all_blocks(section)) text += std::visit(writer, *block);
   }
   if (!writer.references.empty()) {
     text += "## References\n\n" + references_text(writer.references, kMarkdownWidth) + '\n';
@@ -140,9 +140,9 @@ std::string tables_markdown(const Document& document) {
   for (const Section& section : document.sections) {
     if (!has_tables_or_warnings(section)) continue;
     text += "## " + markdown_escaped(section.title) + "\n\n";
-    for (const Block& block : section.blocks) {
-      if (const auto* warnings = std::get_if<Warnings>(&block)) text += warnings_text(*warnings);
-      const auto* table = std::get_if<Table>(&block);
+    for (const Block* block : all_blocks(section)) {
+      if (const auto* warnings = std::get_if<Warnings>(block)) text += warnings_text(*warnings);
+      const auto* table = std::get_if<Table>(block);
       if (table != nullptr) text += table_text(*table, document.stamp, references) + '\n';
     }
   }

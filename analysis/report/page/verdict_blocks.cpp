@@ -75,6 +75,15 @@ std::string lead_of(Verdict verdict) {
   return first_letter_raised(name_of(verdict)) + (is_decided ? " by the registered test." : ".");
 }
 
+/// "; t(19) = 2.41, d = 0.54 [0.06, 1.00]"; empty without a t.
+std::string statistic_phrase(const PrimaryResult& primary) {
+  if (!primary.statistic) return "";
+  return fmt::format("; {}, {} = {} {}", t_phrase(*primary.statistic),
+                     is_difference(primary) || is_of_thresholds(primary) ? "d_z" : "d",
+                     plain_figure(primary.statistic->d, 2),
+                     plain_range(primary.statistic->interval, 2));
+}
+
 /// The verdict, the estimate with its interval and test, and why the verdict is what it is.
 Cited verdict_sentence(const StudyHead& head) {
   const PrimaryResult& primary = *head.primary;
@@ -94,6 +103,7 @@ Cited verdict_sentence(const StudyHead& head) {
   }
   text += ". " + first_letter_raised(primary.test);
   if (primary.p) text += ": " + p_phrase(*primary.p);
+  text += statistic_phrase(primary);
   text += fmt::format(", alpha {:.3g}", primary.alpha);
   if (primary.level != primary.alpha) {
     text += fmt::format(", nominal level at this look {:.3g}", primary.level);
@@ -105,6 +115,7 @@ Cited verdict_sentence(const StudyHead& head) {
   std::vector<Source> sources{Source::student};
   if (primary.crossover) sources = {Source::hills_armitage, Source::senn};
   if (is_of_thresholds(primary)) sources.push_back(Source::tobin);
+  if (primary.statistic) sources.push_back(Source::cumming_finch);
   return {text + ". " + primary.because, std::move(sources), lead_of(primary.verdict)};
 }
 
@@ -283,41 +294,34 @@ bool tells_p(const std::string& text) {
 
 }  // namespace
 
-std::vector<Block> verdict_blocks(const StudyHead& head) {
-  std::vector<Block> blocks;
-  if (head.primary) {
-    blocks.emplace_back(verdict_sentence(head));
-    if (const auto& crossover = head.primary->crossover) {
-      blocks.emplace_back(crossover_sentence(*head.primary, *crossover));
-    }
+void add_verdict(const StudyHead& head, Section& section) {
+  if (!head.primary) return;
+  const PrimaryResult& primary = *head.primary;
+  section.blocks.emplace_back(verdict_sentence(head));
+  if (primary.crossover) {
+    section.blocks.emplace_back(crossover_sentence(primary, *primary.crossover));
   }
-  if (!head.departures.empty()) {
-    blocks.emplace_back(Warnings{head.departures, head.registration.analysis
-                                                      ? "Departures from what was registered:"
-                                                      : "Departures from the plan:"});
-  } else if (head.registration.analysis) {
-    blocks.emplace_back(Cited{"No departure from what was registered is recorded."});
-  }
-  if (head.primary) blocks.emplace_back(choices_table(head));
-  if (head.primary && head.primary->pairs.size() > 1) {
-    blocks.emplace_back(pairs_table(*head.primary));
-  }
-  return blocks;
+  const bool is_same = different(primary.choices).size() == 1 && !primary.stations &&
+                       head.course.excluded_afterwards == 0;
+  (is_same ? section.more : section.blocks).emplace_back(choices_table(head));
+  if (primary.pairs.size() > 1) section.blocks.emplace_back(pairs_table(primary));
 }
 
 void say_unadjusted(const std::vector<Look>& looks, std::vector<Section>& sections) {
   const std::string words = unadjusted_words(looks);
   if (words.empty()) return;
-  for (Section& section : sections) {
-    for (Block& block : section.blocks) {
-      if (auto* table = std::get_if<Table>(&block)) {
-        const bool has_p = std::ranges::any_of(table->columns, is_of_p) ||
-                           std::ranges::any_of(table->notes, tells_p, &Cited::text);
-        if (has_p) table->notes.push_back({words});
-      } else if (auto* sentence = std::get_if<Cited>(&block)) {
-        if (tells_p(sentence->text)) sentence->text += " The " + words;
-      }
+  const auto say_in = [&](Block& block) {
+    if (auto* table = std::get_if<Table>(&block)) {
+      const bool has_p = std::ranges::any_of(table->columns, is_of_p) ||
+                         std::ranges::any_of(table->notes, tells_p, &Cited::text);
+      if (has_p) table->notes.push_back({words});
+    } else if (auto* sentence = std::get_if<Cited>(&block)) {
+      if (tells_p(sentence->text)) sentence->text += " The " + words;
     }
+  };
+  for (Section& section : sections) {
+    std::ranges::for_each(section.blocks, say_in);
+    std::ranges::for_each(section.more, say_in);
   }
 }
 

@@ -57,6 +57,16 @@ std::string p_phrase(double p) {
   return (p < 0.001 ? "p " : "p = ") + p_figure(p);
 }
 
+std::string t_phrase(const TStatistic& statistic) {
+  return fmt::format("t({}) = {}", statistic.degrees_of_freedom, plain_figure(statistic.t, 2));
+}
+
+std::string effect_figure(const std::optional<TStatistic>& statistic) {
+  if (!statistic) return kNoFigure;
+  const std::string estimate = signed_plain_figure(statistic->d, 2);
+  return statistic->interval ? estimate + " " + plain_range(statistic->interval, 2) : estimate;
+}
+
 std::string slug_of(const std::string& name) {
   std::string slug;
   for (const char c : name) {

@@ -2,6 +2,7 @@
 /// decimal point in every locale, and "–" for a number that does not exist or is not finite.
 #pragma once
 
+#include "analysis/statistics/mean_test.hpp"
 #include "analysis/statistics/proportion.hpp"
 
 #include <optional>
@@ -29,6 +30,10 @@ inline constexpr double kUsualLevel = 0.05;
 [[nodiscard]] std::string p_figure(std::optional<double> p);
 /// A p value in a sentence: "p = 0.023", "p < 0.001".
 [[nodiscard]] std::string p_phrase(double p);
+/// "t(19) = 2.41"
+[[nodiscard]] std::string t_phrase(const TStatistic& statistic);
+/// "0.54 [0.06, 1.00]", with its sign: the effect in units of participants' standard deviation.
+[[nodiscard]] std::string effect_figure(const std::optional<TStatistic>& statistic);
 /// A name reduced to lower-case letters, digits and single hyphens, for ids and file names. May be
 /// empty.
 [[nodiscard]] std::string slug_of(const std::string& name);

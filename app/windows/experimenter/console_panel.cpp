@@ -95,7 +95,7 @@ void draw_progress(const session::SessionStatus& status, float density) {
   ImGui::ProgressBar(std::min(share, 1.0F), {-1.0F, 10.0F * density}, "");
 }
 
-/// The participant's comfort stop, until it is settled.
+/// The pending comfort stop of the participant.
 void draw_stop(const session::SessionStatus& status) {
   if (!status.participant_stopped) return;
   ImGui::PushStyleColor(ImGuiCol_Text, kVermillion);
@@ -113,14 +113,14 @@ void draw_alert(const session::SessionStatus& status) {
 
 void fact(const char* name, const std::string& value) {
   ImGui::TableNextColumn();
-  // The name is closer to its value than to the row above.
+  // Spacing that places a name closer to its value than to the row above.
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0.0F, 2.0F});
   grey(name);
   ImGui::PopStyleVar();
   ImGui::TextWrapped("%s", value.c_str());
 }
 
-/// The three levels side by side, with the present one marked; all grey while there is none.
+/// The three levels side by side, with the current one marked; all grey without a level.
 void level(const char* name, std::optional<session::HandLevel> now) {
   using session::HandLevel;
   ImGui::TableNextColumn();
@@ -183,7 +183,7 @@ bool button(const char* label, ImVec2 size, bool is_enabled = true) {
   return pressed;
 }
 
-/// A list from which one can be taken into the field.
+/// A list of suggestions for the field.
 void draw_suggestions(const ExperimenterQuestion& question, std::array<char, 501>& text) {
   if (!ImGui::BeginCombo("##choices", "",
                          ImGuiComboFlags_NoPreview | ImGuiComboFlags_HeightLarge)) {
@@ -226,7 +226,7 @@ void ConsolePanel::draw(Vec2 size, float density, bool may_write) {
   draw_question(view, density, may_write);
   draw_asked(view);
   ImGui::End();
-  // An action or answer of this picture may have begun another line.
+  // An action or answer in this frame may have started another line.
   const ExperimenterView now = desk_.view();
   if (now.questions != questions_) wants_keyboard_ = true;
   if (!may_write || now.question.kind != Kind::text) wants_keyboard_ = false;
@@ -290,7 +290,7 @@ void ConsolePanel::draw_choices(const ExperimenterQuestion& question) {
 
 bool ConsolePanel::draw_line(const ExperimenterQuestion& question, float density, bool may_write) {
   ImGui::BeginDisabled(!may_write);
-  // Another line is another field, which can get the keyboard from the one before.
+  // Each line is a separate field, which can take the focus from the previous one.
   ImGui::PushID(static_cast<int>(questions_));
   // Room for the list of suggestions beside it.
   ImGui::SetNextItemWidth(question.choices.empty() ? -1.0F : -50.0F * density);
@@ -305,7 +305,8 @@ bool ConsolePanel::draw_line(const ExperimenterQuestion& question, float density
   }
   ImGui::PopID();
   ImGui::EndDisabled();
-  // After the plane, the experimenter selects the field again: the next keys may be an answer.
+  // After a plane, the experimenter must select the field again, because the next keys may be the
+  // participant's answer.
   if (is_writing_ && !may_write) ImGui::SetWindowFocus(nullptr);
   is_writing_ = is_writing_ && may_write;
   return is_ended;

@@ -21,9 +21,9 @@ class ConsolePanel {
   /// \param density  as ScreenScale::density
   /// \param may_write  false while the keyboard is the participant's
   void draw(Vec2 size, float density, bool may_write);
-  /// Whether a field takes letters.
+  /// Whether a field has the keyboard.
   [[nodiscard]] bool is_writing() const noexcept { return is_writing_; }
-  /// Whether a new field is about to take letters. Until then they have to wait.
+  /// Whether a new field is about to get the keyboard. Until then letters must wait.
   [[nodiscard]] bool is_settling() const noexcept { return wants_keyboard_; }
 
  private:

@@ -26,7 +26,7 @@ namespace {
 constexpr const char* kTitle = "Touchtrial console";
 constexpr int kWidth = 920;
 constexpr int kHeight = 640;
-/// After this number of pictures, ImGui's layout no longer changes.
+/// After this number of frames, ImGui's layout is stable.
 constexpr int kSettling = 3;
 
 /// The editing keys of a line of text in GLFW and in ImGui.
@@ -55,7 +55,7 @@ struct Event {
 };
 
 #if IMGUI_VERSION_NUM >= 18700
-void tell(ImGuiIO& io, const Event& event) {
+void notify(ImGuiIO& io, const Event& event) {
   switch (event.kind) {
     case Event::Kind::moved:
       return io.AddMousePosEvent(event.at.x, event.at.y);
@@ -70,7 +70,7 @@ void tell(ImGuiIO& io, const Event& event) {
 }
 void name_keys(ImGuiIO& /*io*/) {}
 #else
-void tell(ImGuiIO& io, const Event& event) {
+void notify(ImGuiIO& io, const Event& event) {
   switch (event.kind) {
     case Event::Kind::moved:
       io.MousePos = event.at;
@@ -126,7 +126,7 @@ void place(GLFWwindow* window, int wanted) {
 GLFWwindow* make_window() {
   glfwDefaultWindowHints();
   hint_opengl_3_2();
-  // The keyboard remains the participant's.
+  // Does not take the focus from the participant's window.
   glfwWindowHint(GLFW_FOCUSED, GLFW_FALSE);
   glfwWindowHint(GLFW_FOCUS_ON_SHOW, GLFW_FALSE);
   glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
@@ -159,10 +159,10 @@ float enlargement(const Surface& surface) {
 }  // namespace
 
 struct ConsoleWindow::State final : ExperimenterFace {
-  State(ExperimenterDesk& its_desk, ConsoleWindowOptions wanted)
-      : desk(its_desk), options(std::move(wanted)), panel(desk) {}
+  State(ExperimenterDesk& shared_desk, ConsoleWindowOptions wanted)
+      : desk(shared_desk), options(std::move(wanted)), panel(desk) {}
 
-  /// Every change needs a picture.
+  /// Every change requires a new frame.
   void show(const ExperimenterView& view) override {
     const std::string words =
         status_line(view.status) + view.need + view.question.text + std::to_string(view.questions);
@@ -189,7 +189,7 @@ struct ConsoleWindow::State final : ExperimenterFace {
     glfwSetWindowUserPointer(window, this);
     take_callbacks();
     glfwShowWindow(window);
-    tell_surface();
+    notify_surface();
     desk.add_face(*this);
   }
 
@@ -211,8 +211,8 @@ struct ConsoleWindow::State final : ExperimenterFace {
     glfwSetWindowCloseCallback(window,
                                [](GLFWwindow* w) { glfwSetWindowShouldClose(w, GLFW_FALSE); });
     glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { of(w).redraw(); });
-    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).tell_surface(); });
-    glfwSetWindowPosCallback(window, [](GLFWwindow* w, int, int) { of(w).tell_surface(); });
+    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).notify_surface(); });
+    glfwSetWindowPosCallback(window, [](GLFWwindow* w, int, int) { of(w).notify_surface(); });
   }
 
   [[nodiscard]] bool takes_text() const {
@@ -224,7 +224,7 @@ struct ConsoleWindow::State final : ExperimenterFace {
     if (!takes_text() && !is_release) return options.key(key, action, modifiers);
     for (const auto& [glfw, named] : kTextKeys) {
       if (glfw != key) continue;
-      // A key that repeats goes up and down again.
+      // A repeated key is sent as release and press.
       if (action == GLFW_REPEAT) push({.kind = Event::Kind::key, .key = named, .is_down = false});
       push({.kind = Event::Kind::key,
             .key = named,
@@ -250,7 +250,7 @@ struct ConsoleWindow::State final : ExperimenterFace {
     options.wake();
   }
 
-  void tell_surface() {
+  void notify_surface() {
     Surface now;
     glfwGetWindowSize(window, &now.width, &now.height);
     glfwGetFramebufferSize(window, &now.width_px, &now.height_px);
@@ -265,8 +265,8 @@ struct ConsoleWindow::State final : ExperimenterFace {
     redraw();
   }
 
-  /// Takes one button or key, or all events before it: each needs a picture of its own, and ImGui
-  /// would else keep some for a later one, when their field is gone.
+  /// Processes events up to one button or key, because each needs its own frame: ImGui would defer
+  /// further ones to a later frame, when their field may be gone.
   void take_events(ImGuiIO& io) {
     const std::lock_guard lock(mutex);
     for (bool is_first = true; !events.empty(); is_first = false) {
@@ -274,7 +274,7 @@ struct ConsoleWindow::State final : ExperimenterFace {
       const bool is_alone = event.kind == Event::Kind::button || event.kind == Event::Kind::key;
       if (is_alone && !is_first) return;
       events.pop_front();
-      tell(io, event);
+      notify(io, event);
       if (is_alone) return;
     }
   }
@@ -344,7 +344,7 @@ ConsoleWindow::~ConsoleWindow() {
 
 void ConsoleWindow::begin_drawing() {
   glfwMakeContextCurrent(state_->window);
-  // No wait for this screen: it would delay the participant's.
+  // No vertical sync here, because it would delay the participant's window.
   glfwSwapInterval(0);
   state_->context = ImGui::CreateContext();
   ImGui::SetCurrentContext(state_->context);

@@ -22,20 +22,20 @@ struct ScreenArea {
 struct ConsoleWindowOptions {
   /// From 1, as the system counts monitors; nothing: `area`.
   std::optional<int> monitor;
-  /// The window lies in its corner, and is no larger; nothing: the system chooses the place.
+  /// The window is placed in its corner and limited to its size; nothing: the system chooses the
+  /// position.
   std::optional<ScreenArea> area;
-  /// Whether the participant is under force; then every key is the participant's. Called on both
-  /// threads.
+  /// Whether a plane is on; all keys then go to the participant's window. Called on both threads.
   std::function<bool()> keyboard_is_participants;
-  /// Takes the arguments of GLFW's key callback for every key that is not text of this window.
+  /// Receives the arguments of GLFW's key callback for every key that is not text of this window.
   /// Called on the main thread.
   std::function<void(int key, int action, int modifiers)> key;
-  /// Makes the drawing thread check whether this window needs a picture. Called on any thread.
+  /// Makes the drawing thread check whether this window needs a new frame. Called on any thread.
   std::function<void()> wake;
 };
 
-/// Takes no focus when it opens, and the window manager cannot close it: only the participant's
-/// window or Abort ends a session.
+/// Does not take the focus when it opens, and the window manager cannot close it: only the
+/// participant's window or Abort ends a session.
 class ConsoleWindow {
  public:
   /// Call it on the main thread while GLFW is running.
@@ -47,7 +47,7 @@ class ConsoleWindow {
   ConsoleWindow(const ConsoleWindow&) = delete;
   ConsoleWindow& operator=(const ConsoleWindow&) = delete;
 
-  /// Whether keys come to this window. Runs on the main thread.
+  /// Whether this window has the keyboard focus. Runs on the main thread.
   [[nodiscard]] bool has_focus() const;
 
   /// \name Drawing thread. These functions change the current OpenGL context.
@@ -59,7 +59,7 @@ class ConsoleWindow {
   ///@}
 
   /// Waits for the next picture. May be called from any thread except the drawing thread.
-  /// \return nothing if no picture comes in time
+  /// \return nothing if there is no picture in time
   [[nodiscard]] std::optional<engine::ColourImage> picture(std::chrono::milliseconds longest);
 
  private:

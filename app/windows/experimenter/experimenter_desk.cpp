@@ -155,9 +155,9 @@ void ExperimenterDesk::add(const session::ExperimenterRequest& request) {
 ExperimenterQuestion ExperimenterDesk::own_question() const {
   switch (own_) {
     case Own::pause_reason:
-      return {Question::Kind::text, "Paused. The reason, if it should be noted"};
+      return {Question::Kind::text, "Paused. The reason, if it should be recorded"};
     case Own::stop_reason:
-      return {Question::Kind::text, "Stopped. The reason, without a word about the texture"};
+      return {Question::Kind::text, "Stopped. The reason, without mentioning the texture"};
     case Own::note:
       return {Question::Kind::text, "Note"};
     case Own::code: {
@@ -292,7 +292,7 @@ std::optional<session::ExperimenterRequest> ExperimenterDesk::request() {
   each_face([](ExperimenterFace& face) { face.take_input(); });
   const std::lock_guard lock(mutex_);
   if (requests_.empty()) return std::nullopt;
-  // The force may only come on after it is said again that it may.
+  // Force requires that `ready` is shown again first.
   is_ready_shown_ = false;
   is_armed_ = false;
   Request first = std::move(requests_.front());
@@ -319,32 +319,32 @@ std::optional<std::vector<session::Tick>> ExperimenterDesk::day_sheet(
   return std::nullopt;
 }
 
-session::Attendant::Says ExperimenterDesk::attend(const std::string& need) {
-  forget_spoken_answer();  // that of an interrupted trial would hide what is needed
+session::Attendant::Reply ExperimenterDesk::attend(const std::string& need) {
+  forget_spoken_answer();  // the question of an interrupted trial would hide the request
   each_face([](ExperimenterFace& face) { face.take_input(); });
-  Says says{};
+  Reply says{};
   {
     const std::lock_guard lock(mutex_);
     says = said(need.empty());
-    waits_ = says == Says::wait;
+    waits_ = says == Reply::wait;
     need_ = need;
     is_ready_shown_ = waits_ && need.empty();
     is_armed_ = false;
     is_at_reset_ = false;
   }
-  if (says != Says::wait) return says;
+  if (says != Reply::wait) return says;
   show_faces();
   each_face([](ExperimenterFace& face) { face.rest(); });
   return says;
 }
 
-/// When the session asks, it records an abort, its reason and everything else that was typed.
-session::Attendant::Says ExperimenterDesk::said(bool is_ready) const {
+/// When polled, the session records an abort, its reason and all other entries.
+session::Attendant::Reply ExperimenterDesk::said(bool is_ready) const {
   if (std::ranges::find(requests_, RequestKind::abort, &Request::kind) != requests_.end()) {
-    return Says::stop;
+    return Reply::stop;
   }
-  if (is_ready) return is_armed_ ? Says::arm : Says::wait;
-  return is_at_reset_ ? Says::at_reset : Says::wait;
+  if (is_ready) return is_armed_ ? Reply::arm : Reply::wait;
+  return is_at_reset_ ? Reply::at_reset : Reply::wait;
 }
 
 void ExperimenterDesk::forget_spoken_answer() {

@@ -1,5 +1,5 @@
-/// \file The experimenter of a session: what they may do, what they are asked, and what they see.
-/// Terminal and window are two faces of one desk, and offer the same.
+/// \file The experimenter's interface: actions, questions, and status. Terminal and window are two
+///   faces of one desk with the same functions.
 ///
 ///     ExperimenterDesk desk(true);
 ///     TerminalFace terminal(desk, standard_terminal());
@@ -24,7 +24,7 @@
 
 namespace touchtrial::app {
 
-/// What an experimenter may begin at any time.
+/// An action that is possible at any time.
 struct ExperimenterAction {
   enum class What { pause, resume, comfort_stop, note, deviation, abort, arm, at_reset };
   What what{};
@@ -32,8 +32,8 @@ struct ExperimenterAction {
   const char* label;  ///< of the window's button
 };
 
-/// All of them, in the order of the buttons. Pause and comfort stop take effect at once; their
-/// reason is asked afterwards.
+/// All actions, in the order of the buttons. Pause and comfort stop take effect at once; the reason
+/// is asked for afterwards.
 inline constexpr std::array<ExperimenterAction, 8> kExperimenterActions = {{
     {ExperimenterAction::What::pause, 'p', "Pause"},
     {ExperimenterAction::What::resume, 'r', "Resume"},
@@ -45,7 +45,7 @@ inline constexpr std::array<ExperimenterAction, 8> kExperimenterActions = {{
     {ExperimenterAction::What::at_reset, 'h', "Arm is here"},
 }};
 
-/// What the experimenter is asked.
+/// A question to the experimenter.
 struct ExperimenterQuestion {
   enum class Kind {
     none,
@@ -63,17 +63,17 @@ struct ExperimenterQuestion {
   std::string text{};
   std::vector<Choice> choices{};
 
-  /// Whether the experimenter began it, and may discard it. Then it hides what the session asks.
+  /// Whether the experimenter started it, and may discard it. It then hides the session's question.
   [[nodiscard]] bool is_own() const noexcept { return kind == Kind::text || kind == Kind::sure; }
 };
 
-/// What the faces show. Nothing in it depends on a stimulus or an outcome.
+/// The displayed state. Nothing in it depends on a stimulus or an outcome.
 struct ExperimenterView {
   session::SessionStatus status;
   ExperimenterQuestion question;
-  std::size_t questions = 0;        ///< changes when another line is to be typed
-  std::string need;                 ///< what the device waits for, while it waits
-  std::deque<std::string> asked{};  ///< what the experimenter asked of the session, newest first
+  std::size_t questions = 0;        ///< changes when a new line starts
+  std::string need;                 ///< what the device waits for
+  std::deque<std::string> asked{};  ///< the experimenter's requests, newest first
   std::array<bool, kExperimenterActions.size()> may{};  ///< in the order of kExperimenterActions
 
   [[nodiscard]] bool allows(ExperimenterAction::What what) const noexcept {
@@ -81,18 +81,17 @@ struct ExperimenterView {
   }
 };
 
-/// One of the ways in which the experimenter sees the desk. All functions are called on the
-/// session's thread.
+/// One display of the desk. All functions are called on the session's thread.
 class ExperimenterFace {
  public:
   virtual ~ExperimenterFace() = default;
-  /// Hands on what was typed since.
+  /// Forwards new input.
   virtual void take_input() {}
   /// Called after every change, and several times a second.
   virtual void show(const ExperimenterView& view) = 0;
-  /// A line of standard output follows.
+  /// Called before a line of standard output.
   virtual void make_room() {}
-  /// The session waits for a person: leaves the processor to others for a moment.
+  /// Called while the session waits for a person: sleeps for a moment.
   virtual void rest() {}
 };
 
@@ -103,12 +102,12 @@ struct SpokenAnswer {
   std::optional<int> confidence;
 };
 
-/// Never knows what is presented, nor whether an answer was right.
+/// It has no access to stimuli or to the correctness of answers.
 class ExperimenterDesk final : public session::Experimenter, public session::Attendant {
  public:
   using What = ExperimenterAction::What;
 
-  /// \param is_attended  whether somebody answers; else no questions are asked
+  /// \param is_attended  whether an experimenter is present; else no questions are asked
   explicit ExperimenterDesk(bool is_attended) : is_attended_(is_attended) {}
 
   /// \name Faces. Any thread.
@@ -121,13 +120,13 @@ class ExperimenterDesk final : public session::Experimenter, public session::Att
   /// \name The experimenter. Any thread.
   ///@{
   [[nodiscard]] ExperimenterView view() const;
-  /// Does nothing if it may not be done now. Discards the own question that is open.
+  /// No effect if the action is not allowed now. Discards the open question of an earlier action.
   void act(What what);
-  /// Answers the open question; an answer that it does not know changes nothing.
+  /// Answers the open question; an invalid answer has no effect.
   void answer(const std::string& text);
-  /// Discards the own question that is open.
+  /// Discards the open question if the experimenter started it.
   void discard();
-  /// Adds a request that is not the experimenter's, such as one of the sound.
+  /// Adds a request from another source, such as the sound.
   void add(const session::ExperimenterRequest& request);
   ///@}
 
@@ -135,17 +134,17 @@ class ExperimenterDesk final : public session::Experimenter, public session::Att
   ///@{
   void show(const session::SessionStatus& status) override;
   [[nodiscard]] std::optional<session::ExperimenterRequest> request() override;
-  /// Returns an empty list at once if nobody is there.
+  /// Returns an empty list at once if no experimenter is present.
   [[nodiscard]] std::optional<std::vector<session::Tick>> day_sheet(
       const std::vector<session::DaySheetItem>& items) override;
   void acknowledged(int trial) override;
-  /// Force comes on only by an action after `need` was empty and shown as such.
-  [[nodiscard]] Says attend(const std::string& need) override;
+  /// Force requires an action after an empty `need` was shown.
+  [[nodiscard]] Reply attend(const std::string& need) override;
   /// Call it repeatedly until there is an answer.
   /// \param labels  in alphabetical order, so that they reveal nothing about the presentation
   [[nodiscard]] std::optional<SpokenAnswer> spoken_answer(const session::AnswerStep& step,
                                                           const std::vector<std::string>& labels);
-  /// Discards a spoken answer that is not confirmed, because a plane is on.
+  /// Discards an unconfirmed spoken answer, because a plane is on.
   void forget_spoken_answer();
   ///@}
 
@@ -165,7 +164,7 @@ class ExperimenterDesk final : public session::Experimenter, public session::Att
     std::optional<int> confidence{};
   };
 
-  /// Lets every face do something, without the lock of the state.
+  /// Calls a function on every face, without holding the lock.
   void each_face(const std::function<void(ExperimenterFace&)>& work);
   void show_faces();
   // The following need the lock.
@@ -177,22 +176,22 @@ class ExperimenterDesk final : public session::Experimenter, public session::Att
   void answer_own(const std::string& text);
   void answer_sheet(const std::string& text);
   void answer_spoken(const std::string& text);
-  [[nodiscard]] Says said(bool is_ready) const;
+  [[nodiscard]] Reply said(bool is_ready) const;
 
   const bool is_attended_;
   std::mutex faces_mutex_;
   std::vector<ExperimenterFace*> faces_;
-  mutable std::mutex mutex_;  ///< of all that follows
+  mutable std::mutex mutex_;  ///< guards all members below
   session::SessionStatus status_;
   std::deque<Request> requests_;
   std::deque<std::string> asked_;
   Own own_ = Own::none;
   std::size_t questions_ = 0;
-  std::string code_;  ///< of the deviation that is being entered; in Own::code one that was refused
+  std::string code_;  ///< of the deviation being entered; in Own::code, a refused one
   std::optional<Sheet> sheet_;
   std::optional<Spoken> spoken_;
   bool is_pause_asked_ = false;
-  bool waits_ = false;  ///< the device waits for what is in need_, or for consent
+  bool waits_ = false;  ///< the device waits for need_, or for consent
   std::string need_;
   bool is_ready_shown_ = false;
   bool is_armed_ = false;

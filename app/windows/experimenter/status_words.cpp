@@ -29,7 +29,7 @@ std::string stop_advice(const session::SessionStatus& status) {
          session::kComfortStopCode + "). " +
          (status.needs_consent
               ? "The force stays off until you switch it on again (g); abort ends the session."
-              : "They go on by themselves; abort ends the session.");
+              : "They continue by themselves; abort ends the session.");
 }
 
 std::string progress_words(const session::SessionStatus& status) {

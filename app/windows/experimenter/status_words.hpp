@@ -7,14 +7,14 @@
 
 namespace touchtrial::app {
 
-/// Participant, stage, trial, time, device, and how the hand presses and strokes, else how punctual
-/// the servo was; as far as they are known. Nothing in it depends on a stimulus or an outcome.
+/// Participant, stage, trial, time, device, and pressure and speed of the hand, or else the servo's
+/// timing, as far as known. Nothing in it depends on a stimulus or an outcome.
 [[nodiscard]] std::string status_line(const session::SessionStatus& status);
 
 /// "low", "right" or "high".
 [[nodiscard]] const char* level_word(session::HandLevel level) noexcept;
 
-/// What the experimenter is to do after the participant's comfort stop; empty if there is none.
+/// Advice to the experimenter after the participant's comfort stop; empty if there was none.
 [[nodiscard]] std::string stop_advice(const session::SessionStatus& status);
 
 /// The part of the status that does not change every second.

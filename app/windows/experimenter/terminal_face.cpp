@@ -63,7 +63,7 @@ ExperimenterTerminal standard_terminal() {
   if (::isatty(STDIN_FILENO) != 0) {
     terminal.key = [keys = std::make_shared<TerminalKeys>()] { return keys->next(); };
   }
-  device::StopOnSignals::before_dying(TerminalKeys::restore);
+  device::StopOnSignals::set_crash_cleanup(TerminalKeys::restore);
   terminal.write = [](const std::string& text) {
     std::fputs(text.c_str(), stderr);
     std::fflush(stderr);
@@ -82,7 +82,7 @@ bool TypedLine::take(char key) {
     return false;
   }
   const bool is_control = static_cast<unsigned char>(key) < 0x20U;
-  // Only the first byte of a character is refused for length, so that no character is cut in two.
+  // The length limit refuses only first bytes, so that no character is cut in two.
   if (is_control || (text_.size() >= kMaxLineBytes && !continues_character(key))) return false;
   text_ += key;
   return false;
@@ -155,7 +155,7 @@ bool TerminalFace::take_for(const ExperimenterQuestion& question, char key) {
   return true;
 }
 
-/// The next choice that begins with what was typed before Tab, in a circle.
+/// The next choice with the typed prefix, cyclically.
 void TerminalFace::complete(const ExperimenterQuestion& question) {
   const auto& choices = question.choices;
   const auto now = std::ranges::find(choices, line_.text(), &Question::Choice::answer);
@@ -194,7 +194,7 @@ void TerminalFace::write_above(const std::string& line) {
 }
 
 void TerminalFace::rewrite(const std::string& line) {
-  // A wrapped line cannot be overwritten; of a typed line, the end is what matters.
+  // A wrapped line cannot be overwritten, so the start of a long typed line is cut off.
   const std::string cut = last_of(line, terminal_.columns - 1);
   if (cut == shown_) return;
   shown_ = cut;

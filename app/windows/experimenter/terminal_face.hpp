@@ -1,4 +1,4 @@
-/// \file The experimenter at a terminal: a line that is overwritten, and keys.
+/// \file The experimenter's interface at a terminal: a status line that is overwritten, and keys.
 #pragma once
 
 #include "app/windows/experimenter/experimenter_desk.hpp"
@@ -11,20 +11,20 @@ namespace touchtrial::app {
 
 /// The terminal of an experimenter.
 struct ExperimenterTerminal {
-  /// The next key, if one was pressed; never waits. Null if nobody types.
+  /// The next key, if one was pressed; never waits. Null without keys.
   std::function<std::optional<char>()> key;
   std::function<void(const std::string&)> write;
-  /// Whether a line can be overwritten; else every change is a line of its own.
+  /// Whether a line can be overwritten; else every change is a new line.
   bool rewrites = false;
   int columns = 80;
-  /// Pauses between two calls that wait for a person. Null, as in tests: no pause.
+  /// Sleeps between two polls for a person's input. Null, as in tests: no sleep.
   std::function<void()> pause;
 };
 
 /// Standard input and standard error. Keys are read one by one while a copy of it lives.
 [[nodiscard]] ExperimenterTerminal standard_terminal();
 
-/// A line of UTF-8 that keys extend; backspace deletes the last character.
+/// A line of UTF-8 text being typed; backspace deletes the last character.
 class TypedLine {
  public:
   /// \return whether the key ended the line
@@ -36,8 +36,8 @@ class TypedLine {
   std::string text_;
 };
 
-/// A question takes the keys that can answer it; every other key is that of an action. In a line,
-/// Tab completes to the next of the question's choices, and Escape discards it.
+/// Keys that can answer an open question go to it; other keys start actions. In a line, Tab
+/// completes to the next choice, and Escape discards it.
 class TerminalFace final : public ExperimenterFace {
  public:
   /// \param desk  must outlive this
@@ -61,15 +61,15 @@ class TerminalFace final : public ExperimenterFace {
   void complete(const ExperimenterQuestion& question);
   [[nodiscard]] std::string prompt(const ExperimenterQuestion& question) const;
   void rewrite(const std::string& line);
-  /// Writes a line above the one that is overwritten.
+  /// Writes a line above the status line.
   void write_above(const std::string& line);
 
   ExperimenterDesk& desk_;
   ExperimenterTerminal terminal_;
   TypedLine line_;
-  std::string completed_;      ///< what was typed before Tab
+  std::string completed_;      ///< the text typed before Tab
   std::size_t questions_ = 0;  ///< as of the view, when line_ was begun
-  std::string item_;           ///< the question by keys that was shown last
+  std::string item_;           ///< the last shown question answered by keys
   std::string shown_;
   std::string progress_;
   bool is_stop_told_ = false;

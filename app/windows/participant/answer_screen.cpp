@@ -143,7 +143,7 @@ void AnswerScreen::paint_names(Canvas& canvas, const Box& area) {
   for (int i = 0; i < count(); ++i) {
     const Box box = {std::round(left + (i / rows) * (width + gap)),
                      std::round(top + (i % rows) * (height + gap)), width, height};
-    // No numbers: those of the experimenter's list differ, because it is in alphabetical order.
+    // Without numbers, because those of the experimenter's alphabetical list differ.
     canvas.button(i, box, name_of(i), ButtonKind::line, !is_fixed(), chosen_ == i);
   }
   if (chosen_ < 0) return;

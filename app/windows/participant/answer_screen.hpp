@@ -1,5 +1,5 @@
-/// \file The screens on which the participant answers: the choice after exploring, how sure the
-/// participant is of it, in practice whether it was right, and a questionnaire.
+/// \file The participant's answer screens: choice, confidence, feedback in practice, and
+///   questionnaire.
 #pragma once
 
 #include "app/windows/participant/screen.hpp"
@@ -10,9 +10,9 @@
 
 namespace touchtrial::app {
 
-/// Shows pictures of the originals in the participant's layout, or their names if answers are
-/// spoken; large buttons if the step has a question, whose choices are words. A choice may be
-/// changed once; after that, only Next remains.
+/// Shows pictures of the originals in the participant's layout, their names if answers are spoken,
+/// or large buttons with words if the step has a question. A choice may be changed once; after
+/// that, only Next remains.
 class AnswerScreen final : public Screen {
  public:
   AnswerScreen(const session::AnswerStep& step, const ScreenContext& context,
@@ -27,7 +27,7 @@ class AnswerScreen final : public Screen {
   void paint_pictures(Canvas& canvas, const Box& area);
   void paint_picture(Canvas& canvas, int position, const Box& picture);
   void paint_words(Canvas& canvas, const Box& area);
-  /// The number of a choice, below it.
+  /// Draws the number of a choice below it.
   void paint_number(Canvas& canvas, int position, const Box& badge) const;
   void paint_names(Canvas& canvas, const Box& area);
   void paint_confidence(Canvas& canvas);
@@ -49,11 +49,11 @@ class AnswerScreen final : public Screen {
   std::vector<std::string> labels_;
   int chosen_ = -1;
   std::optional<int> first_;
-  std::optional<Time> answered_at_;  ///< set while the confidence is asked
+  std::optional<Time> answered_at_;  ///< set while the confidence is asked for
   int confidence_ = 0;
 };
 
-/// What a practice answer was, and what it should have been.
+/// Feedback: the practice answer and the right one.
 class FeedbackScreen final : public Screen {
  public:
   FeedbackScreen(const session::FeedbackStep& step, const ScreenContext& context,
@@ -91,7 +91,7 @@ class QuestionScreen final : public Screen {
   [[nodiscard]] const study::Question& question() const { return questionnaire_.questions[page_]; }
   [[nodiscard]] std::u32string& typed() { return typed_[page_]; }
   [[nodiscard]] bool is_answered() const;
-  /// Whether what was typed is no number, or none that the question accepts.
+  /// Whether the typed text is not a number that the question accepts.
   [[nodiscard]] bool is_misfit() const;
   [[nodiscard]] bool may_go_on() const {
     return (is_answered() || !question().required) && !is_misfit();
@@ -100,7 +100,7 @@ class QuestionScreen final : public Screen {
   [[nodiscard]] std::string in_language(const study::Translated& text) const;
   [[nodiscard]] std::vector<std::string> answers() const;
 
-  study::Questionnaire questionnaire_;  ///< a copy: the screen may be seen for longer than the step
+  study::Questionnaire questionnaire_;  ///< a copy, because the screen may outlive the step
   ScreenContext context_;
   std::size_t page_ = 0;
   std::vector<int> chosen_;            ///< by question, the option; -1: none

@@ -140,7 +140,7 @@ void Canvas::draw_line(const TextLine& line, Letters letters, Vec2 at, double si
       list_.AddText(&face, static_cast<float>(size), to_imgui(x, at.y), colour, run.text.c_str());
     };
     draw(at.x + run.x);
-    // There is no bold face for East Asian letters: they are drawn twice, side by side.
+    // East Asian letters have no bold face, so they are drawn twice with an offset.
     if (is_bold && std::ranges::any_of(code_points(run.text), is_east_asian)) {
       draw(at.x + run.x + std::max(1.0, std::round(size / 28.0)));
     }

@@ -37,7 +37,7 @@ struct Box {
 /// Colours as ImGui packs them: 0xAABBGGRR.
 namespace tone {
 inline constexpr std::uint32_t kGround =
-    0xFFECEAE8;  ///< the same for all screens, so that none flashes
+    0xFFECEAE8;  ///< the same for all screens, to avoid flashes
 inline constexpr std::uint32_t kCard = 0xFFFFFFFF;
 inline constexpr std::uint32_t kEdge = 0xFFD2CDC8;
 inline constexpr std::uint32_t kText = 0xFF332A22;
@@ -94,7 +94,7 @@ class PictureShelf {
   [[nodiscard]] virtual void* texture(const std::string& label, int width, int height) = 0;
 };
 
-/// Something that can be clicked or chosen by keys.
+/// An element that can be clicked or chosen by keys.
 struct Target {
   int id = 0;
   Box box;
@@ -102,7 +102,7 @@ struct Target {
 
 struct PlacedText {
   std::string text;
-  Box box;   ///< used by the letters
+  Box box;   ///< occupied by the letters
   Box room;  ///< available
 };
 
@@ -113,7 +113,7 @@ struct Attention {
   int held = -1;   ///< pressed by the mouse button
 };
 
-/// One picture of the window, within a frame of ImGui. Belongs to the drawing thread.
+/// One frame of the window, within a frame of ImGui. Belongs to the drawing thread.
 class Canvas {
  public:
   /// \param high_contrast  black on white in place of the design's colours
@@ -140,7 +140,7 @@ class Canvas {
   void curve(const std::array<Vec2, 4>& points, double thickness, std::uint32_t colour);
   /// \param corners  of a convex area, clockwise
   void area(std::span<const Vec2> corners, std::uint32_t colour);
-  /// Until `end_clip`, only what lies in the box is drawn.
+  /// Clips drawing to the box until `end_clip`.
   void clip_to(const Box& box);
   void end_clip();
   void button(int id, const Box& box, const std::string& label, ButtonKind kind,
@@ -160,11 +160,11 @@ class Canvas {
   [[nodiscard]] ImFont* font(Letters letters) const;
   [[nodiscard]] std::vector<TextLine> lines(Letters letters, const std::string& text, double width,
                                             double shrink) const;
-  /// As few lines as the width allows, of similar widths, so that no word is alone on the last one.
+  /// Breaks text into the fewest lines of similar widths, so that no word is alone on the last one.
   [[nodiscard]] std::vector<TextLine> balanced_lines(Letters letters, const std::string& text,
                                                      double width, double shrink) const;
   void draw_line(const TextLine& line, Letters letters, Vec2 at, double size, std::uint32_t colour);
-  /// The colour in place of one of the design's.
+  /// The replacement for a colour of the design.
   [[nodiscard]] std::uint32_t seen(std::uint32_t colour) const noexcept;
   void look_for_missing(const ImFont& face, const std::string& text);
 

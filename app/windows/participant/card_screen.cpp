@@ -10,7 +10,7 @@
 namespace touchtrial::app {
 namespace {
 
-// Every bank card. Source: ISO/IEC 7810, ID-1.
+// The width of bank cards. Source: ISO/IEC 7810, ID-1.
 constexpr double kCardWidthMm = 85.60;
 constexpr double kCardHeightMm = 53.98;
 constexpr double kCardCornerMm = 3.18;
@@ -18,7 +18,7 @@ constexpr double kMmPerInch = 25.4;
 // At 40 and 400 window units per inch.
 constexpr double kNarrowest = 135.0;
 constexpr double kWidest = 1348.0;
-constexpr double kLargeStep = 10.0;  ///< of the arrows up and down, window units
+constexpr double kLargeStep = 10.0;  ///< for the up and down arrows, window units
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-/// \file The screen of `screen calibrate`: a frame that becomes as large as a bank card.
+/// \file The screen of `screen calibrate`: a frame to match with a bank card.
 #pragma once
 
 #include "app/windows/participant/screen.hpp"
@@ -7,11 +7,11 @@
 
 namespace touchtrial::app {
 
-/// Somebody holds a card against the frame, and changes the frame with the arrow keys until both
-/// are equally large; Enter replies. Texts are English, as in all windows for experimenters.
+/// The user holds a card against the frame, and resizes the frame with the arrow keys until both
+/// match; Enter replies. Texts are English, as in all windows for experimenters.
 class CardScreen final : public Screen {
  public:
-  /// \param mm_per_unit  as far as it is known
+  /// \param mm_per_unit  the initial estimate
   explicit CardScreen(double mm_per_unit);
 
   /// The scale at which frame and card are equally large: 25.4 / 400 to 25.4 / 40.

@@ -1,4 +1,4 @@
-/// \file Sounds that a participant's window asks for; app/sound plays them.
+/// \file Sounds requested by the participant's window; app/sound plays them.
 #pragma once
 
 namespace touchtrial::app {
@@ -8,7 +8,7 @@ enum class Cue {
   plane_off,  ///< the plane is off: an answer is due
   too_hard,   ///< too much force for hand and device
   stopped,    ///< a comfort stop: the force is off
-  // Of a trial with several planes:
+  // In a trial with several planes:
   first_begins,  ///< the first can be touched
   second_begins,
   third_begins,

@@ -9,8 +9,7 @@
 namespace touchtrial::app {
 namespace {
 
-// The ranges that the instructions ask for, and the ends of the bars.
-// Source: docs/running-sessions.md.
+// The ranges of the instructions, and the ends of the bars. Source: docs/running-sessions.md.
 constexpr double kGoodForceN[] = {0.5, 0.8};
 constexpr double kTooHardN = 2.0;
 constexpr double kFullForceN = 2.5;
@@ -84,7 +83,7 @@ void ExploringScreen::paint_plane(Canvas& canvas) {
   const Box plane = {placed.corner.x, placed.corner.y, drawn.x, drawn.y};
   canvas.fill(plane, 0xFFF7F6F5);
   canvas.outline(plane, 0xFFA09A94, 1.0);
-  // In practice the bars are below.
+  // In practice the bars are drawn below.
   const double up = (view_.bars == nullptr ? 84.0 : 126.0) * unit;
   canvas.label({0.0, canvas.size().y - up, canvas.size().x, 30.0 * unit}, Letters::small,
                tone::kQuiet, below_plane());
@@ -101,7 +100,7 @@ const std::string& ExploringScreen::below_plane() const {
   return view_.interval->hand_off ? words.exploring_hand_off : words.exploring_interval_mouse;
 }
 
-/// Beside a plane, in the margin above it; else in the middle, with what to do.
+/// With a plane on screen, in the margin above it; else in the middle, with the instruction.
 void ExploringScreen::paint_interval(Canvas& canvas) {
   const Words& words = *context_.words;
   const double unit = canvas.unit();

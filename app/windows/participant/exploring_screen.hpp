@@ -11,31 +11,31 @@
 
 namespace touchtrial::app {
 
-/// Values of the bars in practice. Written by the servo's listener, read by the drawing thread.
+/// Values of the practice bars. Written by the servo's listener, read by the drawing thread.
 struct FeltNow {
   std::atomic<float> force_n{0.0F};
   std::atomic<float> speed_mm_s{0.0F};
 };
 
-/// The place of the mouse device's plane in the window.
+/// The area of the mouse device's plane in the window.
 struct PlaneOnScreen {
   Vec2 corner;
   double mm_per_unit = 1.0;
 };
 [[nodiscard]] PlaneOnScreen place_plane(Vec2 window, Vec2 plane_mm, double mm_per_unit);
 
-/// An interval's bar grows in steps, so that the screen is seldom drawn.
+/// An interval's bar grows in steps, so that the screen is redrawn rarely.
 inline constexpr int kExploredSteps = 40;
 
-/// What the exploring screen shows.
+/// The data of the exploring screen.
 struct ExploringView {
   const FeltNow* bars = nullptr;               ///< in practice; null: no bars
   device::PointerExchange* pointer = nullptr;  ///< of the mouse device; null: no plane or stylus
   const std::atomic<bool>* pressed = nullptr;  ///< the mouse button; set if `pointer` is
-  const std::atomic<bool>* asks_for_touch = nullptr;  ///< says that feeling comes before answering
+  const std::atomic<bool>* asks_for_touch = nullptr;  ///< request to feel before answering
   PlaneGeometry plane;
   std::optional<session::IntervalStep> interval{};  ///< the plane is one of several
-  /// How much of the interval was explored as asked for, of kExploredSteps; set if `interval` is.
+  /// The explored part of the interval, in kExploredSteps; set if `interval` is.
   const std::atomic<int>* explored = nullptr;
   const std::atomic<bool>* has_lifted = nullptr;  ///< the plane is on; set if `interval` is
 };

@@ -23,7 +23,7 @@ constexpr Curve kInsideOfPalm = {{{262, 190}, {256, 184}, {252, 180}, {246, 174}
 constexpr std::array<Vec2, 4> kPlate = {{{8, 262}, {86, 200}, {292, 200}, {214, 262}}};
 constexpr std::array<Vec2, 3> kTip = {{{124, 248}, {131, 222}, {145, 230}}};
 
-/// Draws in the drawing's own coordinates.
+/// Draws in the coordinates of the drawing.
 class HandDrawing {
  public:
   HandDrawing(Canvas& canvas, const Box& box)

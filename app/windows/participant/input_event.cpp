@@ -59,7 +59,7 @@ InputEvent event_of_key(int key, int action, int modifiers) {
   return event;
 }
 
-void Gamepads::poll(const std::function<void(Key, InputEvent::Kind)>& tell) {
+void Gamepads::poll(const std::function<void(Key, InputEvent::Kind)>& on_button) {
   const InputEvent::Time now = std::chrono::steady_clock::now();
   for (int pad = 0; pad < kPads; ++pad) {
     GLFWgamepadstate state;
@@ -73,10 +73,10 @@ void Gamepads::poll(const std::function<void(Key, InputEvent::Kind)>& tell) {
       if (state.buttons[kPadKeys[i].first] != GLFW_PRESS) {
         repeats.reset();
       } else if (!repeats) {
-        tell(kPadKeys[i].second, InputEvent::Kind::key);
+        on_button(kPadKeys[i].second, InputEvent::Kind::key);
         repeats = now + kUntilRepeat;
       } else if (now >= *repeats) {
-        tell(kPadKeys[i].second, InputEvent::Kind::repeat);
+        on_button(kPadKeys[i].second, InputEvent::Kind::repeat);
         repeats = now + kBetweenRepeats;
       }
     }

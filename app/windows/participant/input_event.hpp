@@ -1,5 +1,5 @@
-/// \file What a participant did with keyboard, mouse or gamepad, and when; made from what GLFW
-/// says.
+/// \file Input events of a participant by keyboard, mouse or gamepad, with times; converted from
+///   GLFW's.
 #pragma once
 
 #include "core/vec.hpp"
@@ -39,7 +39,7 @@ struct InputEvent {
     released,
   };
   Kind kind = Kind::key;
-  Time at{};  ///< when it arrived
+  Time at{};  ///< time of arrival
   Key key = Key::none;
   int digit = 0;        ///< 0 to 9
   bool shift = false;   ///< held down with the key
@@ -52,20 +52,19 @@ struct InputEvent {
 /// \return an event of Key::none for a key without meaning or a key that is released
 [[nodiscard]] InputEvent event_of_key(int key, int action, int modifiers);
 
-/// Turns buttons of gamepads into keys: the cross moves, A is Enter, B is the space bar. A button
-/// that is held down repeats, as a key does.
-/// GLFW has no events for gamepads, so the time of a key is that of the poll. Belongs to the main
-/// thread.
+/// Turns buttons of gamepads into keys: the cross moves, A is Enter, B is the space bar. A held
+/// button repeats, like a key. GLFW has no events for gamepads, so the time of a key is that of the
+/// poll. Belongs to the main thread.
 class Gamepads {
  public:
   /// Reads all gamepads.
-  /// \param tell  called for each button that was pressed since the last poll, or is to repeat
-  void poll(const std::function<void(Key, InputEvent::Kind)>& tell);
+  /// \param tell  called for each button that was pressed since the last poll or repeats
+  void poll(const std::function<void(Key, InputEvent::Kind)>& on_button);
 
  private:
   static constexpr int kPads = 16;
   static constexpr int kButtons = 6;
-  /// When the buttons that are held down repeat.
+  /// When held buttons repeat next.
   std::array<std::array<std::optional<InputEvent::Time>, kButtons>, kPads> repeats_{};
 };
 

@@ -17,7 +17,7 @@ constexpr double kCardWidth = 900.0;
 constexpr double kMinLetters = 0.4;
 
 constexpr double kBarMm = 10.0;
-/// The gap between pictures where there is little room, as a share of a picture's side.
+/// The gap between pictures in little space, as a share of a picture's side.
 constexpr double kGapShare = 0.25;
 
 Vec2 largest_of(const std::vector<Vec2>& sizes) {
@@ -142,8 +142,8 @@ void draw_footer(Canvas& canvas, const std::vector<FooterButton>& buttons) {
   const double unit = canvas.unit();
   const double gap = 24.0 * unit;
   std::vector<double> widths;
-  double before = 0.0;               // the width of what stands before Next
-  double own = kButtonWidth * unit;  // the width of Next, or of its place
+  double before = 0.0;               // the width of the buttons before Next
+  double own = kButtonWidth * unit;  // the width of Next, or of its empty place
   for (const FooterButton& button : buttons) {
     const double letters =
         canvas.width_of(button.primary ? Letters::strong : Letters::body, button.label);
@@ -187,7 +187,7 @@ Box draw_heading(Canvas& canvas, const std::string& title, const std::string& no
 
 namespace {
 
-/// The side that each of `count` pictures can have in a row or column, with something below each.
+/// The largest side of each of `count` pictures in a row or column, with space below each.
 double side_in(double room, int count, double gap, double below) {
   const double side = (room - gap * (count - 1)) / count - below;
   if (kGapShare * side >= gap) return side;

@@ -1,5 +1,5 @@
-/// \file Where things lie on every screen: progress above, the content in the middle, buttons
-/// below; and pictures beside each other.
+/// \file The layout of every screen: progress at the top, content in the middle, buttons at the
+///   bottom; and rows of pictures.
 #pragma once
 
 #include "app/windows/participant/canvas.hpp"
@@ -10,22 +10,22 @@
 
 namespace touchtrial::app {
 
-/// How far the participant is; not drawn if `of` is 0.
+/// The participant's progress; not drawn if `of` is 0.
 struct Progress {
   int done = 0;  ///< finished items, for the bar
   int of = 0;
   std::string text;
 };
 
-/// Before a trial is answered.
+/// The progress before a trial is answered.
 /// \param trial  from 1 to `of`
 [[nodiscard]] Progress progress_of(const Words& words, int trial, int of, bool practice);
 void draw_progress(Canvas& canvas, const Progress& progress);
 
-/// What a card shows beside its text.
+/// The pictures beside a card's text.
 struct CardPictures {
   std::vector<std::string> names;  ///< as in a page of instructions
-  PictureShelf* shelf = nullptr;   ///< of pictures that are files
+  PictureShelf* shelf = nullptr;   ///< of pictures from files
 };
 
 /// The shelf's label of a page's picture.
@@ -49,8 +49,8 @@ struct FooterButton {
   bool primary = true;
   bool enabled = true;
 };
-/// Draws buttons in the footer: Next (kNextTarget) in the middle, where it stays when others come
-/// and go, and the others to its left, in their order.
+/// Draws buttons in the footer: Next (kNextTarget) at a fixed place in the middle, and the others
+/// to its left, in order.
 void draw_footer(Canvas& canvas, const std::vector<FooterButton>& buttons);
 
 /// Draws a heading above the content.
@@ -58,20 +58,20 @@ void draw_footer(Canvas& canvas, const std::vector<FooterButton>& buttons);
 Box draw_heading(Canvas& canvas, const std::string& title, const std::string& note = "",
                  std::uint32_t note_colour = tone::kQuiet);
 
-/// Where pictures lie, and how large they are.
+/// The positions and sizes of pictures.
 struct PictureGrid {
   std::vector<Box> pictures;
   double shown = 1.0;  ///< scale: 1 is true size, which is the largest
 };
 
-/// Arranges pictures in the rows that leave them largest, and in as few rows as that allows. Where
-/// there is no room for the gap, it is at most a quarter of a picture's side.
+/// Arranges pictures in the number of rows that makes them largest; of equal ones, the fewest. In
+/// little space, the gap is at most a quarter of a picture's side.
 /// \param sizes  in window units, true to scale
 /// \param below  window units that each picture needs below it
 [[nodiscard]] PictureGrid lay_out_pictures(const std::vector<Vec2>& sizes, const Box& area,
                                            double gap, double below);
 
-/// Draws a bar as long as 10 mm in the pictures, and says what their scale is.
+/// Draws a bar of 10 mm in the scale of the pictures, and states that scale.
 void draw_scale_bar(Canvas& canvas, const Box& room, const ScreenContext& context, double shown);
 
 }  // namespace touchtrial::app

@@ -31,19 +31,19 @@ using std::chrono::milliseconds;
 constexpr const char* kWindowTitle = "Touchtrial";
 /// The longest time for which the session's thread waits for a reply.
 constexpr milliseconds kAttention{10};
-/// So long that only a window that hangs exceeds it.
+/// Only a hanging window exceeds this.
 constexpr milliseconds kPictureLimit{300'000};
-/// Within this time after the plane comes on, Enter does not end the exploration: it may still be
-/// held from the previous screen. Nor does the second press of a space bar that is pressed twice
-/// within this time, to go on, stop the force.
-constexpr milliseconds kNoAccident{500};
+/// Within this time after the plane comes on, Enter does not end the exploration, because it may
+/// still be held from the previous screen. Likewise, a second press of the space bar within this
+/// time does not stop the force.
+constexpr milliseconds kRepeatGuard{500};
 // A tone signals a force above the first limit. It is repeated only after the force was below the
 // second limit.
 constexpr double kPushTooHardN = 2.0;
 constexpr double kSoftAgainN = 1.7;
 constexpr double kBarsTimeS = 0.06;  ///< time constant of the bars in practice
 
-/// Of a window that no monitor holds, participants see a part.
+/// Refuses a window that no monitor can show completely.
 void require_room(std::pair<int, int> size_px, std::span<GLFWmonitor*> monitors) {
   std::pair<int, int> largest{0, 0};
   for (GLFWmonitor* monitor : monitors) {
@@ -75,8 +75,7 @@ GLFWmonitor* monitor_of(const ParticipantWindowOptions& options) {
   return monitors[options.monitor - 1];
 }
 
-/// The letters of all texts and labels that a session shows. What the participant types comes
-/// later.
+/// The letters of all texts and labels of a session. Typed letters are added later.
 /// \throws DeviceError if no font has some of them
 std::set<char32_t> letters_to_show(const ParticipantWindowOptions& options) {
   const study::SessionPlan& plan = options.session;
@@ -124,7 +123,7 @@ GLFWwindow* make_window(const ParticipantWindowOptions& options, GLFWmonitor* mo
   return window;
 }
 
-/// Another monitor than the participant's window fills, for the experimenter's.
+/// A monitor for the experimenter's window, other than the one that the participant's window fills.
 void choose_monitor(GLFWwindow* window, ConsoleWindowOptions& console) {
   int count = 0;
   GLFWmonitor** monitors = glfwGetMonitors(&count);
@@ -139,8 +138,8 @@ void choose_monitor(GLFWwindow* window, ConsoleWindowOptions& console) {
       "--window WIDTHxHEIGHT, or connect another monitor");
 }
 
-/// The free part of the monitor to the right of the participant's window, which moves into the
-/// monitor's corner, or else below it.
+/// The free part of the monitor to the right of the participant's window, or else below it; the
+/// participant's window moves into the monitor's corner.
 void choose_area(GLFWwindow* window, ConsoleWindowOptions& console) {
   constexpr int kMinWidth = 480;
   constexpr int kMinHeight = 320;
@@ -184,7 +183,7 @@ struct ParticipantWindow::State {
                options.ask};
     glfwSetWindowUserPointer(window, this);
     take_callbacks();
-    tell_surface();
+    notify_surface();
     if (options.console != nullptr) open_console();
     drawing = std::thread(
         [this] { draw_until_ended(window, exchange, glass, shelf, look, console.get()); });
@@ -238,8 +237,8 @@ struct ParticipantWindow::State {
     });
     glfwSetWindowCloseCallback(window, [](GLFWwindow* w) { of(w).leave(WindowGone::closed); });
     glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { of(w).exchange.redraw(); });
-    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).tell_surface(); });
-    glfwSetWindowPosCallback(window, [](GLFWwindow* w, int, int) { of(w).tell_surface(); });
+    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).notify_surface(); });
+    glfwSetWindowPosCallback(window, [](GLFWwindow* w, int, int) { of(w).notify_surface(); });
     newest = this;
     glfwSetMonitorCallback([](GLFWmonitor* changed, int what) {
       if (newest != nullptr && what == GLFW_DISCONNECTED && changed == newest->monitor) {
@@ -255,7 +254,7 @@ struct ParticipantWindow::State {
     return event;
   }
 
-  /// Takes the events of keyboards, mouse and gamepads.
+  /// Handles the events of keyboards, mouse and gamepads.
   void take(const InputEvent& event) {
     const bool is_space = event.kind == InputEvent::Kind::key && event.key == Key::space;
     if (is_space && (exploring || between)) return take_stop(event.at);
@@ -264,15 +263,15 @@ struct ParticipantWindow::State {
       return exchange.push(event);
     }
     if (event.kind == InputEvent::Kind::key && event.key == Key::enter && !has_clock &&
-        event.at - Clock::time_point(plane_on) > kNoAccident) {
+        event.at - Clock::time_point(plane_on) > kRepeatGuard) {
       finish_asked = true;
     }
   }
 
   void take_stop(Clock::time_point at) {
-    // One press alone is forgiven: somebody who wants to stop presses again.
+    // Only one press is ignored, because a person who wants to stop presses again.
     const Clock::time_point before{space_on_screen.exchange(Clock::duration{})};
-    if (at - before > kNoAccident) comfort_asked = true;
+    if (at - before > kRepeatGuard) comfort_asked = true;
   }
 
   void take_key(const InputEvent& event) {
@@ -296,7 +295,7 @@ struct ParticipantWindow::State {
     take(event);
   }
 
-  /// Called regularly, because the mouse device needs to know that its window is alive.
+  /// Called regularly as a sign of life for the mouse device.
   void publish_pointer() {
     if (options.pointer == nullptr) return;
     const WindowSurface surface = exchange.surface();
@@ -316,7 +315,7 @@ struct ParticipantWindow::State {
     return plane;
   }
 
-  void tell_surface() {
+  void notify_surface() {
     WindowSurface surface;
     int width = 0;
     int height = 0;
@@ -334,13 +333,13 @@ struct ParticipantWindow::State {
     gone.compare_exchange_strong(nobody, static_cast<int>(why));
   }
 
-  /// A plane whose participant cannot stop it must not stay on.
+  /// A plane must not stay on if the participant cannot stop it.
   void look_at_focus() {
-    constexpr milliseconds kBetweenLooks{50};
+    constexpr milliseconds kPollInterval{50};
     constexpr milliseconds kBetweenAsks{200};
     const Clock::time_point now = Clock::now();
-    if (now - looked_at_focus < kBetweenLooks) return;
-    looked_at_focus = now;
+    if (now - focus_checked < kPollInterval) return;
+    focus_checked = now;
     const bool focused =
         glfwGetWindowAttrib(window, GLFW_FOCUSED) != 0 || (console && console->has_focus());
     if (focused) {
@@ -386,7 +385,7 @@ struct ParticipantWindow::State {
     if (notice != nullptr && notice->what == session::NoticeStep::What::stopped) cue(Cue::stopped);
   }
 
-  /// A stop that comes after a plane has ended stops the next plane of the trial.
+  /// A stop after the end of a plane stops the next plane of the trial.
   void begin_pause(const session::IntervalStep& next) {
     if (next.interval == 1) comfort_asked = false;
     practice = next.practice;
@@ -407,7 +406,7 @@ struct ParticipantWindow::State {
     }
   }
 
-  /// The tone for its end, which a comfort stop has of its own.
+  /// The tone for its end; a comfort stop has its own tone.
   void mark_session_end(const session::Step& next) noexcept {
     const auto* const notice = std::get_if<session::NoticeStep>(&next);
     const bool is_stopped = notice != nullptr && notice->what == session::NoticeStep::What::stopped;
@@ -418,12 +417,12 @@ struct ParticipantWindow::State {
     }
   }
 
-  /// What the hand must do for a plane's clock to run; null: planes have none.
+  /// The conditions under which a plane's clock runs; null: no clock.
   [[nodiscard]] const study::InContact* clock() const noexcept {
     return std::get_if<study::InContact>(&options.ask.exploring);
   }
 
-  /// Counts how long the hand has explored an interval as asked for.
+  /// Counts how long the hand has explored an interval as instructed.
   void count_explored(double press_n, double seconds, Vec2 way_mm) noexcept {
     if (!has_lifted && !interval->hand_off) return;
     constexpr double kSmoothS = 0.005;  ///< positions have steps
@@ -441,7 +440,7 @@ struct ParticipantWindow::State {
 
   [[nodiscard]] engine::ColourImage existing(std::optional<engine::ColourImage> picture) const {
     exchange.check();
-    if (!picture) throw DeviceError("window: no picture came; look at the graphics driver");
+    if (!picture) throw DeviceError("window: no picture was drawn; check the graphics driver");
     return std::move(*picture);
   }
 
@@ -472,25 +471,25 @@ struct ParticipantWindow::State {
   Vec2 pointer_at;
   bool pointer_hidden = false;
   bool had_focus = false;
-  Clock::time_point looked_at_focus{};
+  Clock::time_point focus_checked{};
   Clock::time_point asked_for_focus{};
   Gamepads gamepads;
 
   // Between threads.
   std::atomic<int> gone{-1};
   std::atomic<bool> exploring{false};
-  std::atomic<bool> between{false};        ///< it is said which of a trial's planes comes next
+  std::atomic<bool> between{false};        ///< the next of a trial's planes is announced
   std::atomic<bool> has_clock{false};      ///< the plane ends by itself
   std::atomic<int> explored{0};            ///< of the interval, in steps of its bar
-  std::atomic<Clock::duration> lost_at{};  ///< when another program got the focus; 0: none has it
+  std::atomic<Clock::duration> lost_at{};  ///< when another program got the focus; 0: it has not
   std::atomic<bool> lost_at_plane{false};
   std::atomic<bool> comfort_asked{false};
   std::atomic<bool> finish_asked{false};
-  std::atomic<bool> has_touched{false};  ///< as the options want it
+  std::atomic<bool> has_touched{false};  ///< as the options require
   std::atomic<bool> asks_for_touch{false};
   std::atomic<bool> pressed{false};
   std::atomic<Clock::duration> plane_on{};
-  std::atomic<Clock::duration> space_on_screen{};  ///< when it was last pressed on a screen
+  std::atomic<Clock::duration> space_on_screen{};  ///< time of the last press on a screen
   std::mutex plane_mutex;
   PlaneGeometry plane;
   FeltNow felt;
@@ -505,14 +504,14 @@ struct ParticipantWindow::State {
   Clock::time_point paused_at{};
   int explored_shown = 0;
 
-  // The servo's listener. Only what the hand did counts, so that the hint on the screen is the same
-  // for every texture (decision 54).
+  // The servo's listener. It counts only what the hand did, so that the hint on the screen is the
+  // same for every texture (decision 54).
   double at_plane_s = 0.0;
   double along_plane_mm = 0.0;
   std::optional<device::ServoSample> last_felt;
   bool is_too_hard = false;
   std::optional<session::IntervalStep> interval;  ///< of the plane; set before it comes on
-  std::atomic<bool> has_lifted{false};            ///< since the plane can come on
+  std::atomic<bool> has_lifted{false};            ///< since the plane was announced
   bool lifted_shown = false;
   Vec2 velocity_mm_s;
   double explored_s = 0.0;
@@ -632,7 +631,7 @@ void ParticipantWindow::show_exploring(const PlaneGeometry& plane) {
 
 void ParticipantWindow::exploring(device::ServoControl& servo) {
   State& s = *state_;
-  s.exchange.check();  // a dead window must not allow exploring
+  s.exchange.check();  // throws if the window does not respond
   if (gone()) servo.emergency_stop();
   if (s.comfort_asked) servo.comfort_stop();
   if (s.finish_asked && s.has_touched) servo.finish();
@@ -646,7 +645,7 @@ void ParticipantWindow::exploring(device::ServoControl& servo) {
 
 void ParticipantWindow::feel(const device::ServoSample& sample) noexcept {
   State& s = *state_;
-  // In an interval the hand's force alone: a texture's would tell the planes apart.
+  // In an interval only the hand's force, because a texture's would distinguish the planes.
   const double press_n = s.options.stiffness_n_per_mm * std::max(0.0, -sample.position_mm.z);
   const double force_n = s.interval ? press_n : norm(sample.force_n);
   if (sample.position_mm.z > study::kLiftedMm) s.has_lifted = true;
@@ -732,9 +731,9 @@ void run_beside(ParticipantWindow& window, const std::function<void()>& session)
     ended = true;
     glfwPostEmptyEvent();
   });
-  constexpr milliseconds kBetweenLooks{4};
+  constexpr milliseconds kPollInterval{4};
   try {
-    while (!ended) window.pump(kBetweenLooks);
+    while (!ended) window.pump(kPollInterval);
   } catch (...) {
     window.close();  // makes the session end
     thread.join();

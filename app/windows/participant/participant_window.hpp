@@ -32,29 +32,28 @@ struct ParticipantWindowOptions {
   std::optional<std::pair<int, int>> size_px;
   /// The study's: language, texts, size of the letters, contrast, sight.
   study::SessionPlan session;
-  /// Pictures of the originals by label, including those of practice, and the files that pages of
-  /// instructions show, by page_picture of their names.
+  /// Pictures of the originals by label, including those of practice, and pictures of instruction
+  /// pages, by page_picture of their names.
   std::map<std::string, GreyImage> pictures;
   double pitch_mm = 0.2;    ///< of the study; gives the pictures' true size
   double rate_hz = 1000.0;  ///< of the servo
   /// Textures are made by several methods: the participant is asked which picture fits best.
   bool has_several_methods = false;
-  /// What must be felt before Enter ends an exploration: over all explorations of a presentation.
+  /// The touch required before Enter ends an exploration, over all explorations of a presentation.
   study::LeastTouch least_touch{0.0, 0.0};
   study::Ask ask{};                 ///< of the study's trials
   double stiffness_n_per_mm = 0.0;  ///< of the planes' wall; only needed where planes have a clock
-  /// For how long it is said which of a trial's planes comes next.
+  /// How long the next of a trial's planes is announced.
   std::chrono::milliseconds interval_pause{1000};
   /// Returns the explored device; called when each plane comes on.
   std::function<device::HapticDevice&()> device;
   /// Null: silent. Must outlive the window.
   Cues* cues = nullptr;
-  /// Of the mouse device, for which the window shows plane and stylus; null: another device. Must
-  /// outlive the window.
+  /// The mouse device's exchange; the window then shows plane and stylus. Null: another device.
+  /// Must outlive the window.
   device::PointerExchange* pointer = nullptr;
-  /// Called on the main thread with 1 for Page Down, -1 for Page Up and 0 for Escape, so that
-  /// whoever designs a study can leaf through its screens. Null, as in every session: these keys do
-  /// nothing.
+  /// Called on the main thread with 1 for Page Down, -1 for Page Up and 0 for Escape, to page
+  /// through the screens in a preview. Null, as in every session: these keys have no effect.
   std::function<void(int pages)> turn;
   /// Shows a second window for the experimenter; null: none. Must outlive the window.
   ExperimenterDesk* console = nullptr;
@@ -71,21 +70,20 @@ enum class WindowGone {
 };
 
 /// Three threads use the window. The main thread constructs it, calls `pump` and destroys it; it
-/// takes events and stamps them on arrival with steady_clock, which is the servo's clock. A thread
-/// of the window's own draws. The session's thread calls the functions of Participant and does not
-/// wait for pictures.
+/// stamps events on arrival with steady_clock, which is the servo's clock. The window's own thread
+/// draws. The session's thread calls the functions of Participant and does not wait for frames.
 ///
 /// While a plane is on, the space bar is a comfort stop and Enter ends the exploration; neither
 /// needs the drawing thread. Enter before the least touch shows what is missing. Escape does
 /// nothing.
 ///
-/// In a trial with several planes, Enter ends none of them. The space bar also stops while it is
-/// said which plane comes next: that plane is stopped as soon as it is on. The screen shows which
-/// plane it is and how much of its clock has run, as far as positions tell; neither this nor the
-/// tone for too much force depends on the force of a texture.
+/// In a trial with several planes, Enter does not end a plane. While the next plane is announced,
+/// the space bar stops that plane as soon as it is on. The screen shows the number of the plane and
+/// the progress of its clock by position; neither this nor the tone for too much force depends on
+/// the force of a texture.
 ///
 /// The experimenter's window, if there is one, uses the same threads. Whichever window has the
-/// focus, keys belong to the participant unless they are text typed into the experimenter's window;
+/// focus, keys go to the participant's window unless they are text typed into the experimenter's;
 /// while a plane is on, all keys do.
 class ParticipantWindow final : public session::Participant {
  public:
@@ -97,10 +95,9 @@ class ParticipantWindow final : public session::Participant {
   ParticipantWindow& operator=(const ParticipantWindow&) = delete;
 
   /// \name Main thread
-  ///@{
-  /// Takes events until `longest` has passed or something came.
+  /// @{ Processes events until `longest` has passed or an event arrived.
   void pump(std::chrono::milliseconds longest);
-  /// \throws what the drawing thread threw
+  /// \throws exceptions of the drawing thread
   void check() const;
   /// The scale of the monitor that shows the window.
   [[nodiscard]] ScreenScale screen() const;
@@ -112,7 +109,7 @@ class ParticipantWindow final : public session::Participant {
   /// Blocks for up to 10 ms. A step that a pause interrupts later continues in its previous state.
   /// \return nothing yet; always so during a pause and once the window is gone
   [[nodiscard]] std::optional<session::StepReply> attend(const session::Step& step) override;
-  /// Shows a screen that belongs to no session. Blocks for up to 10 ms.
+  /// Shows a screen outside of a session. Blocks for up to 10 ms.
   /// \return its reply, once; always nothing once the window is gone
   [[nodiscard]] std::optional<session::StepReply> attend(const std::shared_ptr<Screen>& screen);
   /// \throws std::logic_error if the options have no device
@@ -127,15 +124,14 @@ class ParticipantWindow final : public session::Participant {
   /// \name Any thread
   ///@{
   [[nodiscard]] std::optional<WindowGone> gone() const noexcept;
-  /// How long no key has reached the session, because a window of another program has the focus; 0
-  /// while keys do, and before they first did. While a plane is on, the window takes the focus
-  /// back.
+  /// How long keys have not reached the session because another program has the focus; 0 while they
+  /// do, and before the first key. While a plane is on, the window takes the focus back.
   [[nodiscard]] std::chrono::milliseconds out_of_reach() const noexcept;
   /// Whether that happened while a plane was on, once.
   [[nodiscard]] bool take_out_of_reach() noexcept;
   /// Whether a plane is on.
   [[nodiscard]] bool is_exploring() const noexcept;
-  /// Whether the participant chooses an answer. On the thread of `attend`.
+  /// Whether the participant is choosing an answer. On the thread of `attend`.
   [[nodiscard]] bool is_answering() const noexcept;
   /// Acts as if the window manager had closed the window.
   void close() noexcept;
@@ -157,9 +153,8 @@ class ParticipantWindow final : public session::Participant {
   std::unique_ptr<State> state_;
 };
 
-/// Runs a session on a new thread. Meanwhile the calling thread, the main one, takes the window's
-/// events.
-/// \throws what the session or the drawing thread threw
+/// Runs a session on a new thread, while the calling main thread processes the window's events.
+/// \throws exceptions of the session or the drawing thread
 void run_beside(ParticipantWindow& window, const std::function<void()>& session);
 
 }  // namespace touchtrial::app

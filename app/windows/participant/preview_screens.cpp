@@ -19,7 +19,7 @@ InputEvent pressed_key(Key key, int digit = 0) {
 /// Adds screens in their order.
 class ScreenList {
  public:
-  /// \param keys  lead to it from the step's first page
+  /// \param keys  that lead to it from the step's first page
   void add(const std::string& name, const session::Step& step,
            const std::vector<InputEvent>& keys = {}) {
     screens_.push_back({name, step, keys, practice_});
@@ -27,7 +27,7 @@ class ScreenList {
   void add_plane(const std::string& name) {
     screens_.push_back({name, std::nullopt, {}, practice_});
   }
-  /// One of a trial's planes, and what is said before it.
+  /// One of a trial's planes, and its announcement.
   void add_interval(const std::string& announced, const std::string& explored,
                     const session::IntervalStep& step) {
     add(announced, step);
@@ -74,7 +74,7 @@ void ScreenList::add_questions(const std::string& name,
   add_pages(name, session::QuestionStep{&*questionnaire}, leave);
 }
 
-/// The keys that choose and go on, to the scale of confidence.
+/// The keys from the choice to the confidence scale.
 std::vector<InputEvent> keys_to_confidence() {
   return {pressed_key(Key::digit, 1), pressed_key(Key::enter)};
 }
@@ -86,7 +86,7 @@ std::string rated_picture(const study::Study& study, const study::Ask& ask, int 
   return study::picture_of(study, {.picture = class_index});
 }
 
-/// A trial's planes, and what is said before each if there are several.
+/// A trial's planes, with announcements if there are several.
 /// \param prefix  of the screens' names
 void add_planes(ScreenList& list, const study::Ask& ask, const std::string& prefix,
                 session::IntervalStep next) {
@@ -150,7 +150,7 @@ void add_trial(ScreenList& list, const study::Study& study, const study::Ask& as
   }
 }
 
-/// A trial in which the device is only heard, if the study has any.
+/// A trial in which the device can only be heard, if the study has any.
 void add_hand_off(ScreenList& list, const study::Schedule& schedule, const study::Ask& ask) {
   const auto is_heard = [](const study::Trial& trial) { return trial.place.hand_off; };
   if (!std::ranges::any_of(schedule.trials, is_heard)) return;

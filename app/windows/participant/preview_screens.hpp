@@ -16,8 +16,9 @@ namespace touchtrial::app {
 struct PreviewScreen {
   std::string name;  ///< unique, for instance "answer"; further pages of one step: "closing-2"
   std::optional<session::Step> step;  ///< empty: a plane is on
-  std::vector<InputEvent> keys{};     ///< lead from the step's first page to this one; no times
-  bool practice = false;              ///< with the pictures of practice
+  std::vector<InputEvent>
+      keys{};             ///< that lead from the step's first page to this one; without times
+  bool practice = false;  ///< with the pictures of practice
   /// Of a plane that is one of several: the step before it.
   std::optional<session::IntervalStep> interval{};
 };

@@ -42,7 +42,7 @@ std::string utf8_of(const std::u32string& text) {
   return bytes;
 }
 
-/// A number as it is stored, which does not depend on the language.
+/// A number in the stored format, independent of the language.
 std::string number_of(const std::u32string& typed) {
   std::string number = utf8_of(typed);
   std::replace(number.begin(), number.end(), ',', '.');

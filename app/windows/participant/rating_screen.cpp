@@ -10,7 +10,7 @@
 namespace touchtrial::app {
 namespace {
 
-// Targets of scales: of a line the first of its scale's, of a number the one that many places
+// Target numbers of scales: a line has the first of its scale's range, a number n the one n places
 // later.
 constexpr int kScaleTargets = 1000;
 constexpr int kTargetsOfScale = 100;
@@ -19,7 +19,7 @@ constexpr int kTargetsOfScale = 100;
 constexpr double kHintHeight = 30.0;
 constexpr double kBarHeight = 34.0;
 constexpr double kRowHeight = 92.0;     ///< of a scale, at most
-constexpr double kMinRowHeight = 54.0;  ///< before the picture is made smaller
+constexpr double kMinRowHeight = 54.0;  ///< below this the picture shrinks
 constexpr double kRowsWidth = 1000.0;   ///< at most
 constexpr double kGap = 14.0;
 constexpr double kTick = 12.0;
@@ -34,7 +34,7 @@ constexpr double kEndWords = 0.2;   ///< of a row's width, at each end
 constexpr int kMarkerSteps = 100;  ///< in its length
 constexpr int kStepsWithShift = 10;
 
-/// The nearest value that a line can have.
+/// Rounds to the steps of a line.
 double on_line(double share) {
   const double steps = std::round(1.0 / study::kLineStep);
   return std::round(std::clamp(share, 0.0, 1.0) * steps) / steps;
@@ -102,7 +102,7 @@ void RatingScreen::paint(Canvas& canvas) {
   draw_footer(canvas, buttons);
 }
 
-/// The scales are below the picture, or at its right if that leaves it larger.
+/// Places the scales below the picture, or to its right if the picture is then larger.
 RatingScreen::Arrangement RatingScreen::arranged(const Box& room, double unit) const {
   const auto count = static_cast<double>(scales_.size());
   Arrangement at;

@@ -9,9 +9,8 @@
 
 namespace touchtrial::app {
 
-/// Shows a picture and scales, which are lines or rows of numbers. Nothing is marked before the
-/// participant has marked it, so that no rating is suggested. All ratings may be changed until
-/// Next, which waits for the last of them.
+/// Shows a picture and scales, which are lines or rows of numbers. There is no initial mark, so
+/// that no rating is suggested. All ratings may be changed until Next, which requires all of them.
 class RatingScreen final : public Screen {
  public:
   /// \pre the step asks for ratings
@@ -38,14 +37,14 @@ class RatingScreen final : public Screen {
   void paint_points(Canvas& canvas, std::size_t index, const Box& room);
   [[nodiscard]] const std::string& hint() const;
 
-  /// Moves the marker of the scale that has the keys.
+  /// Moves the marker of the scale with the keyboard focus.
   /// \param steps  to the right, if positive
   void move_marker(int steps);
   void choose_number(int number);
-  /// Gives the keys to the next or the previous scale or button.
+  /// Moves the keyboard focus to the next or the previous scale or button.
   void move_keys(int by, bool around);
-  /// After Enter, gives the keys to the next scale without a rating.
-  /// \return whether there is one, and this one has a rating
+  /// After Enter, moves the keyboard focus to the next scale without a rating.
+  /// \return whether there is one, and the current one has a rating
   bool moves_on();
   [[nodiscard]] bool is_complete() const noexcept;
 
@@ -54,7 +53,7 @@ class RatingScreen final : public Screen {
   std::vector<study::Scale> scales_;
   std::vector<std::optional<double>> ratings_;  ///< by scale
   std::vector<Box> lines_;                      ///< by scale, where lines were drawn last
-  std::size_t current_ = 0;  ///< the scale that has the keys, if no target has the focus
+  std::size_t current_ = 0;  ///< the scale with the keyboard focus, if no target has it
 };
 
 }  // namespace touchtrial::app

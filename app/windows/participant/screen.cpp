@@ -87,7 +87,8 @@ Vec2 centre(const Box& box) {
   return {box.x + box.width / 2.0, box.y + box.height / 2.0};
 }
 
-/// The distance between two boxes in a direction; infinite if the other one lies elsewhere.
+/// The distance between two boxes in a direction; infinite if the other one is not in that
+/// direction.
 double way(const Box& from, const Box& to, Key direction) {
   const Vec2 step = centre(to) - centre(from);
   const bool across = direction == Key::left || direction == Key::right;

@@ -1,5 +1,5 @@
-/// \file One screen of the participant's window: what it shows, and how it handles keys and clicks.
-/// A screen knows neither window nor threads; one thread at a time uses it.
+/// \file One screen of the participant's window: drawing, and handling of keys and clicks. It does
+///   not depend on window or threads; one thread at a time uses it.
 #pragma once
 
 #include "app/windows/participant/canvas.hpp"
@@ -22,7 +22,7 @@ struct Glass {
   bool is_known = false;  ///< false: the scale is a guess
 };
 
-/// What all screens of a session share. The objects it points to must outlive the screens.
+/// The shared data of all screens of a session. The objects it points to must outlive the screens.
 struct ScreenContext {
   const Words* words = nullptr;
   std::string language = "en";
@@ -48,9 +48,9 @@ class Screen {
 
   virtual ~Screen() = default;
 
-  /// Draws the screen and remembers the places of its targets.
+  /// Draws the screen and stores the boxes of its targets.
   void draw(Canvas& canvas);
-  /// What the canvas for `draw` must show as focused, hovered and held.
+  /// The focused, hovered and held targets, for the canvas of `draw`.
   [[nodiscard]] const Attention& attention() const noexcept { return attention_; }
   /// Handles an event. Events after the reply are ignored.
   /// \return the reply, once
@@ -91,10 +91,10 @@ class Screen {
                                                  const ScreenContext& context,
                                                  const std::vector<std::string>& labels);
 
-/// Whether two steps are the same, so that their screen stays.
+/// Whether two steps share one screen.
 [[nodiscard]] bool is_same_step(const session::Step& a, const session::Step& b);
 
-/// Targets that screens have in common.
+/// Targets shared by screens.
 inline constexpr int kNextTarget = 100;
 inline constexpr int kBackTarget = 101;
 inline constexpr int kFeelAgainTarget = 102;

@@ -19,7 +19,7 @@ class NoteScreen final : public Screen {
     std::string title;
     std::string body;
     std::string note;
-    std::string button;  ///< empty: no button; the session goes on by itself
+    std::string button;  ///< empty: no button; the session continues by itself
     bool space_goes_on = true;
   };
   explicit NoteScreen(Content content) : content_(std::move(content)) {}
@@ -173,7 +173,7 @@ class Maker {
     if (step.what == What::hand_off) {
       return note(words_.hand_off_title, words_.hand_off_text, "", words_.go_on);
     }
-    // Whoever stops the force may press the space bar more than once.
+    // A person who stops the force may press the space bar more than once.
     return std::make_shared<NoteScreen>(
         NoteScreen::Content{{},
                             words_.stopped_title,

@@ -25,7 +25,7 @@ void WindowExchange::show(std::shared_ptr<Screen> screen) {
   screen_ = std::move(screen);
   reply_.reset();
   replied_by_.reset();
-  // A screen that returns must be drawn again before it counts as shown.
+  // A screen that is shown again must be drawn again before it counts as shown.
   shown_.reset();
   dirty_ = true;
   for_drawing_.notify_all();
@@ -70,16 +70,16 @@ void WindowExchange::end() {
 WindowExchange::Work WindowExchange::wait_for_work(std::chrono::milliseconds longest) {
   std::unique_lock lock(mutex_);
   const auto is_new = [this] { return dirty_ || ending_ || picture_wanted_ || !events_.empty(); };
-  for_drawing_.wait_for(lock, longest, [&] { return stirred_ || is_new(); });
+  for_drawing_.wait_for(lock, longest, [&] { return is_woken_ || is_new(); });
   const bool came = is_new();
-  stirred_ = false;
+  is_woken_ = false;
   dirty_ = false;
   return {screen_, surface_, std::exchange(events_, {}), picture_wanted_, ending_, came};
 }
 
 void WindowExchange::wake() {
   const std::lock_guard lock(mutex_);
-  stirred_ = true;
+  is_woken_ = true;
   for_drawing_.notify_all();
 }
 
@@ -193,7 +193,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-/// The time between pictures if nothing changes: some systems lose the content of hidden windows.
+/// The time between frames without changes, because some systems lose the content of hidden
+/// windows.
 constexpr milliseconds kIdle{500};
 
 bool is_transition(const InputEvent& event) {
@@ -251,10 +252,10 @@ class Drawing {
     return screen_ && screen_->is_alive() ? milliseconds(0) : kIdle;
   }
 
-  /// Whether the window needs a picture. The console's wishes do not count.
+  /// Whether the window needs a new frame, apart from the console.
   [[nodiscard]] bool is_due(const WindowExchange::Work& work) const {
     if (work.surface.width_px <= 0 || work.surface.height_px <= 0) return false;
-    return work.is_new || has_taken_ || !waiting_.empty() || !is_shown_ ||
+    return work.is_new || has_input_ || !waiting_.empty() || !is_shown_ ||
            (screen_ && screen_->is_alive()) || Clock::now() - drawn_at_ >= kIdle;
   }
 
@@ -274,13 +275,13 @@ class Drawing {
   void take_events() {
     while (!waiting_.empty()) {
       const InputEvent event = waiting_.front();
-      // Whether the event came after the screen is known once the screen is shown. Letters may have
-      // enabled a button.
+      // An event can be ordered relative to the screen only once the screen is shown. Letters may
+      // have enabled a button.
       if ((!is_shown_ || has_letters_) && screen_ && is_transition(event)) return;
       waiting_.pop_front();
       if (!screen_) continue;
       if (event.kind != InputEvent::Kind::moved && event.at < shown_at_) continue;
-      has_taken_ = true;
+      has_input_ = true;
       if (const auto reply = screen_->take(event)) exchange_.replied(screen_, *reply);
       if (is_transition(event)) return;
       has_letters_ = has_letters_ || event.kind == InputEvent::Kind::letter;
@@ -297,9 +298,9 @@ class Drawing {
     drawn_at_ = Clock::now();
     if (!is_shown_) shown_at_ = drawn_at_;
     is_shown_ = true;
-    has_letters_ = has_taken_ = false;
+    has_letters_ = has_input_ = false;
     exchange_.shown(screen_, !waiting_.empty());
-    // In case the system does not pace the pictures.
+    // In case the system does not limit the frame rate.
     if (screen_ && screen_->is_alive()) {
       const std::chrono::duration<double> each(0.9 / std::max(work.surface.refresh_hz, 30.0));
       std::this_thread::sleep_until(began + std::chrono::duration_cast<Clock::duration>(each));
@@ -314,7 +315,7 @@ class Drawing {
         imgui_vec({surface.width_px / surface.size.x, surface.height_px / surface.size.y});
     shelf_.set_density(surface.width_px / surface.size.x);
     io.DeltaTime = 1.0F / 60.0F;
-    // Letters that were typed may be new to the fonts; then the picture is drawn once more.
+    // Typed letters may be missing in the fonts; the frame is then drawn again.
     do {
       fit_fonts(surface);
       ImGui_ImplOpenGL3_NewFrame();
@@ -362,7 +363,7 @@ class Drawing {
   Glass& glass_;
   GlPictureShelf& shelf_;
   const ScreenLook& look_;
-  std::set<char32_t> letters_;  ///< of the fonts; those that no typeface has are among them
+  std::set<char32_t> letters_;  ///< of the fonts, including those that no typeface has
   bool has_all_letters_ = true;
   ConsoleWindow* console_;
   ImGuiContext* context_ = nullptr;
@@ -370,7 +371,7 @@ class Drawing {
   double unit_ = 0.0;
   std::shared_ptr<Screen> screen_;
   bool is_shown_ = false;
-  bool has_taken_ = false;    ///< events that the last picture does not show
+  bool has_input_ = false;    ///< events since the last frame
   bool has_letters_ = false;  ///< among them
   Clock::time_point shown_at_{};
   Clock::time_point drawn_at_{};

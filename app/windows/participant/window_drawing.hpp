@@ -1,5 +1,5 @@
-/// \file The thread that draws a participant's window, its pictures, and what it exchanges with the
-/// session's thread and the main thread.
+/// \file The drawing thread of a participant's window, its frames, and its exchange with the
+///   session's thread and the main thread.
 #pragma once
 
 #include "app/windows/participant/canvas.hpp"
@@ -22,14 +22,14 @@ struct GLFWwindow;
 
 namespace touchtrial::app {
 
-/// How the screens look, besides their content.
+/// The appearance of screens.
 struct ScreenLook {
   double text_scale = 1.0;
   bool high_contrast = false;
-  std::set<char32_t> letters;  ///< that the fonts have from the first picture on
+  std::set<char32_t> letters;  ///< in the fonts from the first frame on
 };
 
-/// The window as the main thread knows it.
+/// The window's state, set by the main thread.
 struct WindowSurface {
   Vec2 size;         ///< window units
   int width_px = 0;  ///< of the picture
@@ -38,7 +38,7 @@ struct WindowSurface {
   double refresh_hz = 60.0;
 };
 
-/// All functions may be called from any thread. Only those that say so wait.
+/// All functions are thread-safe. Only those documented so wait.
 class WindowExchange {
  public:
   /// The next work of the drawing thread.
@@ -48,7 +48,7 @@ class WindowExchange {
     std::vector<InputEvent> events;
     bool picture_wanted = false;
     bool ending = false;
-    bool is_new = true;  ///< something came since the last call
+    bool is_new = true;  ///< there was input since the last call
   };
 
   /// \name Session's thread
@@ -105,7 +105,7 @@ class WindowExchange {
   std::exception_ptr failure_;
   bool picture_wanted_ = false;
   bool dirty_ = true;
-  bool stirred_ = false;
+  bool is_woken_ = false;
   bool settled_ = false;  ///< the last picture shows the effect of all events
   bool ending_ = false;
 };

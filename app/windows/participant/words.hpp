@@ -121,7 +121,7 @@ struct Words {
 /// \return the label itself if there is no text for it
 [[nodiscard]] std::string choice_text(const Words& words, const std::string& label);
 
-/// \param values  what stands in the place of "{name}", by name
+/// \param values  the replacements of "{name}", by name
 [[nodiscard]] std::string filled(std::string text,
                                  const std::vector<std::pair<std::string, std::string>>& values);
 /// The same with numbers.

@@ -18,7 +18,7 @@ namespace {
 constexpr double kRestRunS = 10.0;
 constexpr std::size_t kSettledTicks = 4000;  ///< of the rest: the hand has let go
 constexpr double kWayRunS = 7.0;
-constexpr std::size_t kEndTicks = 500;  ///< of a way, at its beginning and at its end
+constexpr std::size_t kEndTicks = 500;  ///< at the start and the end of a motion
 constexpr double kMinPathMm = 10.0;
 constexpr double kPushRunS = 2.5;
 constexpr double kPushReachMm = 30.0;
@@ -29,7 +29,7 @@ constexpr double kMinSwingMm = 0.15;
 constexpr double kMinContactS = 1.0;
 constexpr std::int64_t kWallMs = 2000;  ///< of its record
 
-/// Ends a bring-up that must not go on.
+/// Ends a bring-up that must not continue.
 struct WrongSign {
   std::string why;
 };
@@ -125,7 +125,7 @@ class Steps {
         take(BringUpStep::wall, [&] { return press(); });
         bench_.limit_force(kSecondPushN);
       } else {
-        person_.tell("weight and wall are left out: not all signs are confirmed");
+        person_.show("weight and wall are left out: not all signs are confirmed");
         record_.outcome(BringUpStep::weight) = StepOutcome::left_out;
         record_.outcome(BringUpStep::wall) = StepOutcome::left_out;
       }
@@ -147,20 +147,20 @@ class Steps {
   void end(BringUpEnd how, const std::string& why) {
     record_.ended = how;
     record_.why = why;
-    person_.tell("ended: " + why);
+    person_.show("ended: " + why);
   }
 
   template <typename Work>
   void take(BringUpStep step, const Work& work) {
     StepOutcome& outcome = record_.outcome(step);
-    // Stays if the work throws.
+    // Unchanged if the work throws.
     outcome = StepOutcome::interrupted;
     outcome = work();
     save_();
   }
 
   StepOutcome fail(const std::string& why) {
-    person_.tell("not measured: " + why);
+    person_.show("not measured: " + why);
     return why == kLeftOut ? StepOutcome::left_out : StepOutcome::failed;
   }
 
@@ -182,11 +182,11 @@ class Steps {
   [[nodiscard]] std::optional<Number> number_between(const std::string& question, Number low,
                                                      Number high) {
     while (true) {
-      const std::string answer = person_.saw(question);
+      const std::string answer = person_.ask_observation(question);
       if (answer.empty()) return std::nullopt;
       const auto number = number_in<Number>(answer);
       if (number && *number >= low && *number <= high) return number;
-      person_.tell(fmt::format("type a number from {} to {}", low, high));
+      person_.show(fmt::format("type a number from {} to {}", low, high));
     }
   }
 
@@ -202,7 +202,7 @@ class Steps {
     Listening run(kRestRunS);
     const ServoReport report = bench_.run("rest", run);
     const std::span<const ServoSample> samples = run.samples();
-    // A fault is of interest with the rate of readings before it.
+    // The rate of readings before a fault helps to explain it.
     note_loop(report, run, record_);
     HandleRuns::require_no_fault(report, "rest");
     const auto figures = samples.size() > kSettledTicks
@@ -211,7 +211,7 @@ class Steps {
     if (!figures) return StepOutcome::failed;
     record_.note("noise_mm", {figures->noise_mm});
     record_.note("drift_mm", {figures->drift_mm});
-    person_.tell(
+    person_.show(
         fmt::format("noise {:.4f} mm, drift {:.3f} mm; {:.0f} new readings in a second, "
                     "99 % of ticks within {:.0f} us",
                     figures->noise_mm, figures->drift_mm, record_.number("new_readings_hz"),
@@ -221,11 +221,11 @@ class Steps {
 
   StepOutcome carry() {
     bool all = true;
-    for (const DeviceAxis axis : kDeviceAxes) all = carry_along(axis) && all;
+    for (const DeviceAxis axis : kDeviceAxes) all = measure_carry(axis) && all;
     return all ? StepOutcome::done : StepOutcome::left_out;
   }
 
-  bool carry_along(DeviceAxis axis) {
+  bool measure_carry(DeviceAxis axis) {
     const std::string name(name_of(axis));
     while (true) {
       if (!runs_.consents(
@@ -241,16 +241,16 @@ class Steps {
       const auto samples = run.samples();
       const std::size_t ends = std::min(kEndTicks, samples.size() / 3);
       const Vec3 moved = mean_place_mm(samples.last(ends)) - mean_place_mm(samples.first(ends));
-      person_.tell(
+      person_.show(
           fmt::format("the readings moved by {:+.1f}, {:+.1f}, {:+.1f} mm (x right, y up, z "
                       "towards you)",
                       moved.x, moved.y, moved.z));
       if (norm(moved) < kMinPathMm) {
-        person_.tell("that is too little to tell; carry it further");
+        person_.show("that is too little; carry it further");
         continue;
       }
       record_.note("carried_mm " + name, {moved.x, moved.y, moved.z});
-      if (!was_carried_right(record_, axis)) {
+      if (!followed_axis(record_, axis)) {
         throw WrongSign{fmt::format(
             "the handle was carried {}, and the readings say otherwise; no force was sent",
             towards(axis))};
@@ -270,7 +270,7 @@ class Steps {
     return all ? StepOutcome::done : StepOutcome::left_out;
   }
 
-  /// \return whether the person felt it; else its sign is not confirmed
+  /// \return whether the person felt the push; else its sign is not confirmed
   bool feel_push(DeviceAxis axis, int sign) {
     const std::string name = signed_name(sign, axis);
     for (const double force_n : {kFirstPushN, kSecondPushN}) {
@@ -305,11 +305,11 @@ class Steps {
   }
 
   StepOutcome find_step() {
-    const OrWhy<Measured> step = runs_.encoder_step();
+    const ValueOrReason<Measured> step = runs_.encoder_step();
     if (!step.value) return fail(step.why);
     step_mm_ = step.value->value;
     record_.note("encoder_step_mm", {step_mm_});
-    person_.tell(fmt::format("encoder step: {:.4f} mm", step_mm_));
+    person_.show(fmt::format("encoder step: {:.4f} mm", step_mm_));
     return StepOutcome::done;
   }
 
@@ -335,13 +335,14 @@ class Steps {
   }
 
   StepOutcome weigh() {
-    const OrWhy<StrokeFigures> empty = runs_.empty_strokes("weight", DeviceAxis::y, {}, step_mm_);
+    const ValueOrReason<StrokeFigures> empty =
+        runs_.empty_strokes("weight", DeviceAxis::y, {}, step_mm_);
     if (!empty.value) return fail(empty.why);
     const double load_n = empty.value->load_n.value;
     const double friction_n = empty.value->friction_n.value;
     record_.note("load_n", {load_n});
     record_.note("friction_n", {friction_n});
-    const OrWhy<WeighResult> weighed =
+    const ValueOrReason<WeighResult> weighed =
         runs_.weigh("weight", DeviceAxis::y, {{0.0, load_n, 0.0}, load_n, friction_n}, step_mm_);
     if (!weighed.value) return fail(weighed.why);
     const auto scale = AxisResult{.weight = weighed.value}.scale();
@@ -368,7 +369,7 @@ class Steps {
     WallTrial run(stiffness_n_per_mm, kMinSwingMm, acceptance_forces(info, bench_.limits()).hold_n);
     const ServoReport report = runs_.measure("wall", run);
     if (!run.oscillated() && run.contact_s() < kMinContactS) {
-      return fail("nobody pressed on the floor");
+      return fail("the floor was not pressed");
     }
     record_.note("stiffness_n_per_mm", {stiffness_n_per_mm});
     record_.note("wall", run.oscillated() ? "swung" : "steady");
@@ -380,12 +381,12 @@ class Steps {
 
   StepOutcome pull_cable() {
     if (!device_failed_) return watch(BringUpStep::cable, runs_.pull_cable("cable"));
-    person_.tell("the device has failed and must be opened anew: run this again for the cable");
+    person_.show("the device has failed and must be reopened: run this again for the cable");
     return StepOutcome::left_out;
   }
 
-  /// A fault is what these runs are for, so it does not end the bring-up.
-  StepOutcome watch(BringUpStep step, const OrWhy<ServoReport>& run) {
+  /// These runs provoke a fault, so it does not end the bring-up.
+  StepOutcome watch(BringUpStep step, const ValueOrReason<ServoReport>& run) {
     if (!run.value) return fail(run.why);
     device_failed_ = run.value->device_fault != DeviceFault::none;
     const auto force = choose("What did the force do meanwhile?", kSilences);
@@ -414,7 +415,7 @@ class Steps {
   const std::function<void()>& save_;
   HandleRuns runs_;
   double step_mm_ = 0.0;        ///< 0: not known
-  bool device_failed_ = false;  ///< its fault lasts until it is opened anew
+  bool device_failed_ = false;  ///< its fault lasts until it is reopened
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-/// \file The bring-up of a device that nobody on the project has: the steps with a person, and the
-/// record that is sent back, without names. Source: docs/devices/bring-up.md.
+/// \file The bring-up of a device that the project does not have: the steps with a person, and the
+///   record without names that is sent in. Source: docs/devices/bring-up.md.
 #pragma once
 
 #include "device/acceptance/acceptance.hpp"
@@ -44,32 +44,31 @@ enum class BringUpEnd { stopped, complete, wrong_sign, fault };
 [[nodiscard]] std::string_view name_of(BringUpEnd end) noexcept;
 
 /// \name Forces, N
-///@{
-/// Of a push before the signs are confirmed, and of a second one where nobody felt the first.
-/// Sources differ by a factor of 1.8 in a Falcon's force, so that even 0.5 N is below 1 N.
+/// @{ Of the first push before the signs are confirmed, and of a second one if the first was not
+/// felt. Sources differ by a factor of 1.8 in a Falcon's force, so that even 0.5 N is below 1 N.
 inline constexpr double kFirstPushN = 0.3;
 inline constexpr double kSecondPushN = 0.5;
-/// The limit of the safety chain, of everything that follows the confirmation.
+/// The limit of the safety chain after the confirmation.
 inline constexpr double kConfirmedN = 2.5;
 ///@}
 
-/// What a step found: numbers of one unit, or a word.
+/// One result of a step: numbers of one unit, or a word.
 struct Finding {
   std::string
-      name;  ///< unique, with the unit: "noise_mm"; of an axis, with " x" or " +x" behind it
+      name;  ///< unique, with the unit: "noise_mm"; of an axis, with the suffix " x" or " +x"
   std::vector<double> numbers{};
   std::string word{};
 };
 
-/// Everything that the file has. Holds no name of a person, machine or path.
+/// The content of the file. It contains no names of people, machines or paths.
 struct BringUp {
   std::string program{};  ///< version and commit
   std::string driver{};
-  std::string device_mark{};  ///< four digits that tell devices of one driver apart; may be empty
+  std::string device_mark{};  ///< four digits that distinguish devices of one driver; may be empty
   std::string model{};
   std::string firmware{};
   std::string library{};
-  std::string stand_in{};    ///< of stand_in_of; empty: nothing says that it is no hardware
+  std::string stand_in{};    ///< of stand_in_of; empty: it appears to be hardware
   std::string scheduling{};  ///< "fifo" or "other"
   bool memory_locked = false;
   std::array<StepOutcome, kBringUpSteps> outcomes{};
@@ -87,27 +86,26 @@ struct BringUp {
   [[nodiscard]] const Finding* find(std::string_view name) const noexcept;
   /// \return its first number; 0 if it was not found
   [[nodiscard]] double number(std::string_view name) const noexcept;
-  /// \name Add a finding, or replace the one of this name
+  /// \name Add a finding, or replace one of this name
   ///@{
   void note(const std::string& name, std::vector<double> numbers);
   void note(const std::string& name, std::string_view word);
-  ///@}
-  /// Whether readings and forces are right on all axes, either way.
+  /// @} Whether readings and forces have the right sign on all axes in both directions.
   [[nodiscard]] bool signs_confirmed() const;
 };
 
-/// \return why this is no real hardware, as far as the program can know: a phrase; empty: nothing
-///   says so
+/// \return evidence that this is not real hardware, as a phrase; empty: none
 [[nodiscard]] std::string stand_in_of(const DeviceInfo& device, const DeviceSettings& settings);
 
-/// \return what a file may say of a device: the serial number's hash, cut to 16 bits, which tells
-///   two devices apart and fits thousands of serial numbers; texts in which the number was replaced
+/// \return a record of the device without its serial number: a hash cut to 16 bits, which
+///   distinguishes two devices but fits thousands of serial numbers; the number is replaced in
+///   texts
 [[nodiscard]] BringUp bring_up_of(const DeviceInfo& device);
 
-/// Leads through the steps. No force beyond kSecondPushN acts before the signs are confirmed, and
-/// none at all on what follows a wrong one.
-/// \param facts  of the driver, whose questions are asked
-/// \param record  of bring_up_of; holds all there is, also after an exception
+/// Guides a person through the steps. No force beyond kSecondPushN acts before the signs are
+/// confirmed, and none after a wrong sign.
+/// \param facts  the driver's unverified facts, whose questions are asked
+/// \param record  from bring_up_of; complete up to now even after an exception
 /// \param save  called after each step
 /// \throws whatever bench, person and save throw
 void bring_up(AcceptanceBench& bench, AcceptancePerson& person,

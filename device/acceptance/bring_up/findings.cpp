@@ -1,4 +1,4 @@
-// The record of a bring-up and its file; what it says of signs, and what is no hardware.
+// The record of a bring-up and its file; signs of axes, and detection of simulated hardware.
 #include "device/acceptance/bring_up/findings.hpp"
 
 #include "core/hash.hpp"
@@ -29,11 +29,11 @@ constexpr std::array<std::string_view, 4> kEndNames = {"stopped", "complete", "w
 
 constexpr double kAgainstMm = 2.0;
 
-/// Words that makers of simulators use for their devices.
+/// Words in the names of simulated devices.
 constexpr std::array<std::string_view, 8> kStandInWords = {"simul", "emul",  "virtual",  "fake",
                                                            "mock",  "dummy", "stand-in", "standin"};
 
-/// \return zeros for what is no vector
+/// \return zeros if it is not a vector
 Vec3 vec_of(const Finding* finding) {
   if (finding == nullptr || finding->numbers.size() != 3) return {};
   return {finding->numbers[0], finding->numbers[1], finding->numbers[2]};
@@ -44,7 +44,7 @@ Finding& noted(std::vector<Finding>& findings, const std::string& name) {
   return same == findings.end() ? findings.emplace_back(Finding{name}) : *same;
 }
 
-bool names_a_stand_in(std::string text) {
+bool is_stand_in_name(std::string text) {
   std::ranges::transform(text, text.begin(), [](char letter) {
     return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
   });
@@ -52,7 +52,7 @@ bool names_a_stand_in(std::string text) {
       kStandInWords, [&](std::string_view word) { return text.find(word) != std::string::npos; });
 }
 
-/// \return the file that the settings name for a driver; empty: it has none
+/// \return the library file of a driver in the settings; empty: none
 std::filesystem::path library_of(const std::string& driver, const DeviceSettings& settings) {
   if (driver == "dhd") return settings.dhd.library;
   if (driver == "openhaptics") return settings.openhaptics.library;
@@ -61,8 +61,8 @@ std::filesystem::path library_of(const std::string& driver, const DeviceSettings
 
 struct LoadedLibrary {
   std::filesystem::path named;  ///< by the settings
-  std::filesystem::path file;   ///< canonical, of what the process has loaded by that name
-  bool says_so = false;         ///< it has the symbol of a stand-in
+  std::filesystem::path file;   ///< canonical path of the library loaded by that name
+  bool has_symbol = false;      ///< it has the symbol of a stand-in
 };
 
 LoadedLibrary loaded_library(const std::filesystem::path& named) {
@@ -72,15 +72,15 @@ LoadedLibrary loaded_library(const std::filesystem::path& named) {
   if (void* const handle = dlopen(named.c_str(), RTLD_LAZY | RTLD_NOLOAD)) {
     link_map* map = nullptr;
     if (dlinfo(handle, RTLD_DI_LINKMAP, &map) == 0) library.file = map->l_name;
-    library.says_so = dlsym(handle, "touchtrial_stand_in") != nullptr;
+    library.has_symbol = dlsym(handle, "touchtrial_stand_in") != nullptr;
     dlclose(handle);
   }
   library.file = std::filesystem::weakly_canonical(library.file, none);
   return library;
 }
 
-/// A bus of umockdev, or of the kernel's own emulator of USB devices. A bus over a network is none:
-/// real devices hang on it too.
+/// Detects a bus of umockdev, or of the kernel's USB emulator. A bus over a network does not count,
+/// because it can have real devices.
 bool usb_is_emulated() {
   if (std::getenv("UMOCKDEV_DIR") != nullptr) return true;
   std::error_code none;
@@ -91,7 +91,7 @@ bool usb_is_emulated() {
   });
 }
 
-/// Several numbers are a text on one line, where a list would take a line for each.
+/// Several numbers are one text, because a JSON list would take a line for each.
 nlohmann::ordered_json value_of(const Finding& finding) {
   if (!finding.word.empty()) return finding.word;
   if (finding.numbers.size() == 1) return finding.numbers.front();
@@ -137,7 +137,7 @@ std::string signed_name(int sign, DeviceAxis axis) {
   return (sign > 0 ? "+" : "-") + std::string(name_of(axis));
 }
 
-bool was_carried_right(const BringUp& record, DeviceAxis axis) {
+bool followed_axis(const BringUp& record, DeviceAxis axis) {
   const Vec3 moved_mm = vec_of(record.find("carried_mm " + std::string(name_of(axis))));
   const double along_mm = dot(moved_mm, direction_of(axis));
   return along_mm > norm(moved_mm - along_mm * direction_of(axis));
@@ -155,7 +155,7 @@ PushSign sign_of_push(const BringUp& record, DeviceAxis axis, int sign) {
 
 bool BringUp::signs_confirmed() const {
   return std::ranges::all_of(kDeviceAxes, [&](DeviceAxis axis) {
-    return was_carried_right(*this, axis) && sign_of_push(*this, axis, 1) == PushSign::right &&
+    return followed_axis(*this, axis) && sign_of_push(*this, axis, 1) == PushSign::right &&
            sign_of_push(*this, axis, -1) == PushSign::right;
   });
 }
@@ -164,11 +164,11 @@ std::string stand_in_of(const DeviceInfo& device, const DeviceSettings& settings
   if (device.simulated) return "the driver simulates a device";
   if (device.visual) return "the driver has no motors";
   for (const std::string& text : {device.model, device.firmware, device.library, device.serial}) {
-    if (names_a_stand_in(text)) return "the device or its library calls itself a stand-in";
+    if (is_stand_in_name(text)) return "the device or its library calls itself a stand-in";
   }
   const LoadedLibrary library = loaded_library(library_of(device.name, settings));
-  if (library.says_so) return "the library says that it is a stand-in";
-  if (names_a_stand_in(library.named.string()) || names_a_stand_in(library.file.string())) {
+  if (library.has_symbol) return "the library identifies itself as a stand-in";
+  if (is_stand_in_name(library.named.string()) || is_stand_in_name(library.file.string())) {
     return "the library's file or folder has a stand-in's name";
   }
   return usb_is_emulated() ? "a USB bus of the machine is emulated" : "";
@@ -200,7 +200,7 @@ BringUp bring_up_of(const DeviceInfo& device) {
   note_known("peak_force_n", device.max_force_n);
   note_known("continuous_force_n", device.continuous_force_n);
   note_known("max_stiffness_n_per_mm", device.max_stiffness_n_per_mm);
-  // It counts only beside the stiffness.
+  // Meaningful only together with the stiffness.
   if (device.max_stiffness_n_per_mm > 0.0)
     note_known("max_damping_n_s_per_mm", device.max_damping_n_s_per_mm);
   note_known("max_rate_hz", device.max_rate_hz);

@@ -1,4 +1,5 @@
-/// \file Words of a bring-up's findings, and what they say of signs. Private to this folder.
+/// \file The words in a bring-up's findings, and their evaluation for signs. Private to this
+///   folder.
 #pragma once
 
 #include "device/acceptance/bring_up/bring_up.hpp"
@@ -9,18 +10,18 @@
 
 namespace touchtrial::device {
 
-/// Where a person feels a push: along +x, -x, +y, -y, +z, -z, or nowhere.
+/// The side on which a person feels a push: +x, -x, +y, -y, +z, -z, or none.
 inline constexpr std::array<std::string_view, 7> kSides = {"right",       "left", "up",     "down",
                                                            "towards you", "away", "nothing"};
-/// What a force did while program or cable were gone.
+/// The behaviour of a force without program or cable.
 inline constexpr std::array<std::string_view, 4> kSilences = {
     "gone at once", "gone within a second", "stayed longer", "became stronger"};
 
 /// \return "+x"
 [[nodiscard]] std::string signed_name(int sign, DeviceAxis axis);
 
-/// Whether the readings of a way followed its axis, and no other more.
-[[nodiscard]] bool was_carried_right(const BringUp& record, DeviceAxis axis);
+/// Whether the readings of a motion followed its axis more than any other.
+[[nodiscard]] bool followed_axis(const BringUp& record, DeviceAxis axis);
 
 enum class PushSign {
   not_felt,

@@ -17,10 +17,10 @@ using Id = ConformanceId;
 using Time = ServoClock::Time;
 
 constexpr Time kTick{1'000'000};
-/// How long the checks wait for what is judged without a limit of time.
+/// How long the checks wait where no time limit is judged.
 constexpr double kPatienceS = 5.0;
 constexpr double kPatienceOutsideTimeS = 300.0;
-/// Zeros must last.
+/// How long the force must remain zero.
 constexpr double kZeroLastsS = 0.050;
 constexpr double kMaxSpeedMmS = 2000.0;
 constexpr double kMaxPlaceMm = 10'000.0;
@@ -33,8 +33,8 @@ std::string force_words(Vec3 force_n) {
   return fmt::format("({:.2f}, {:.2f}, {:.2f}) N", force_n.x, force_n.y, force_n.z);
 }
 
-/// \return what is wrong with a description; empty if nothing is
-std::string trouble_in(const DeviceInfo& info) {
+/// \return the fault of a description; empty if none
+std::string fault_in(const DeviceInfo& info) {
   const auto is_within = [](double value, double low, double high) {
     return value >= low && value <= high;
   };
@@ -58,7 +58,7 @@ std::string trouble_in(const DeviceInfo& info) {
   return sound ? "" : fmt::format("its workspace is {:g} x {:g} x {:g} mm", size.x, size.y, size.z);
 }
 
-/// Judges the velocity by the change of position over parts of 50 ms in which the handle moved.
+/// Compares the velocity with the change of position over parts of 50 ms with motion.
 class VelocityJudge {
  public:
   void add(const DeviceSample& sample, double time_s) noexcept {
@@ -98,7 +98,7 @@ class VelocityJudge {
   double last_s_ = 0.0;
 };
 
-bool lies_in(const Workspace& workspace, Vec3 position_mm) noexcept {
+bool is_inside(const Workspace& workspace, Vec3 position_mm) noexcept {
   const Vec3 size = workspace.greatest_mm - workspace.least_mm;
   const Vec3 middle = 0.5 * (workspace.greatest_mm + workspace.least_mm);
   const Vec3 off = position_mm - middle;
@@ -124,8 +124,8 @@ class ConformanceRun {
  private:
   // --- Time -------------------------------------------------------------------------------------
 
-  /// The time that was watched, s: a tick counts for no more than two, so that a pause of this
-  /// thread, in which the driver may have paused as well, is no evidence against it.
+  /// The observed time, s. One tick counts for two at most, because during a pause of this thread
+  /// the driver may have paused as well.
   [[nodiscard]] double now_s() const noexcept { return seconds_in(watched_); }
   [[nodiscard]] double clock_s() const noexcept { return seconds_in(clock_.now() - begun_); }
   [[nodiscard]] static double seconds_in(Time time) noexcept {
@@ -141,7 +141,7 @@ class ConformanceRun {
   [[nodiscard]] bool ended() const { return lost_ || is_stopped(); }
 
   /// Ticks until a condition holds.
-  /// \return false if it does not within this time, or the run ends
+  /// \return false at the time limit, or if the run ends
   template <typename Holds>
   bool until(double limit_s, const Holds& holds) {
     const double end_s = now_s() + limit_s;
@@ -151,7 +151,7 @@ class ConformanceRun {
       wait_for_tick();
     }
   }
-  /// Reads, and writes what is given, for so long.
+  /// Reads, and writes a given force, for this long.
   void pass_time(double time_s, const std::optional<Vec3>& force_n) {
     until(time_s, [&] {
       (void)read();
@@ -166,7 +166,7 @@ class ConformanceRun {
   // --- The device -------------------------------------------------------------------------------
 
   /// Opens the device.
-  /// \return whether it did; else the check fails
+  /// \return whether it succeeded; else the check fails
   bool open(Id id) {
     try {
       device_ = subject_.open();
@@ -182,7 +182,7 @@ class ConformanceRun {
     device_.reset();
   }
 
-  /// Reads, and blames the driver for a fault.
+  /// Reads, and records a fault as the driver's failure.
   DeviceSample read() {
     DeviceSample sample;
     const DeviceStatus status = device_->read(sample);
@@ -200,7 +200,7 @@ class ConformanceRun {
     if (blame) {
       record_.fail(blame->id, blame->words);
     } else if (device_->fault() == DeviceFault::bad_data) {
-      record_.fail(Id::values, "the driver says that the device's data make no sense");
+      record_.fail(Id::values, "the driver reports invalid data from the device");
     } else {
       record_.fail(Id::staying,
                    "the driver reported a fault after " + fmt::format("{:.1f} s", now_s()));
@@ -221,7 +221,7 @@ class ConformanceRun {
 
   // --- Checks -----------------------------------------------------------------------------------
 
-  /// \return whether it opened, and gave new readings
+  /// \return whether it opened and gave new readings
   [[nodiscard]] bool is_alive() const {
     return !record_.failed(Id::opening) && !record_.failed(Id::numbering);
   }
@@ -240,7 +240,7 @@ class ConformanceRun {
 
   void check_description() {
     info_ = device_->info();
-    const std::string trouble = trouble_in(info_);
+    const std::string trouble = fault_in(info_);
     if (!trouble.empty()) {
       record_.fail(Id::description, trouble);
     } else {
@@ -250,7 +250,7 @@ class ConformanceRun {
     }
   }
 
-  /// \return whether a reading came; else the check of their numbers fails
+  /// \return whether there was a reading; else the check of their numbers fails
   bool wait_for_reading() {
     const bool came = until(patience_s(), [&] { return read().sequence > 0 || lost_; });
     if (!came && !is_stopped()) {
@@ -267,7 +267,7 @@ class ConformanceRun {
       const DeviceSample sample = read();
       if (lost_ || sample.ready) return true;
       if (seen.readings == 0 && options_.advise) options_.advise(device_->readiness());
-      // The driver itself must hold this force back.
+      // The driver itself must suppress this force.
       write(options_.pushes && motors() ? push_n(0, 1.0) : Vec3{});
       look_at_unready(seen);
       return lost_;
@@ -279,14 +279,14 @@ class ConformanceRun {
           fmt::format("the device was not ready within {:.0f} s", options_.ready_limit_s), false);
       return false;
     }
-    // Takes back what was written before.
+    // Resets the force to zero.
     pass_time(ConformanceOptions::kZeroWithinS, Vec3{});
     return !ended();
   }
 
   struct Unready {
     int readings = 0;
-    bool saw_motors = false;
+    bool has_motor_data = false;
     double largest_n = 0.0;
   };
 
@@ -295,15 +295,15 @@ class ConformanceRun {
     const auto force_n = motors();
     // If it has become ready meanwhile, it may push.
     if (!force_n || device_->readiness() == DeviceReadiness::ready) return;
-    seen.saw_motors = true;
+    seen.has_motor_data = true;
     seen.largest_n = std::max(seen.largest_n, norm(*force_n));
   }
 
   void judge(const Unready& seen) {
     if (seen.readings == 0) {
       record_.leave(Id::unready_zero, "it was ready at once");
-    } else if (!seen.saw_motors) {
-      record_.leave(Id::unready_zero, unseen());
+    } else if (!seen.has_motor_data) {
+      record_.leave(Id::unready_zero, not_observable());
     } else {
       judge_motors(Id::unready_zero, seen.largest_n);
     }
@@ -317,7 +317,9 @@ class ConformanceRun {
     }
   }
 
-  [[nodiscard]] std::string unseen() const { return "nobody can see what the motors are told"; }
+  [[nodiscard]] std::string not_observable() const {
+    return "the motor commands cannot be observed";
+  }
 
   void watch() {
     const double begin_s = clock_s();
@@ -342,7 +344,7 @@ class ConformanceRun {
     bool left_workspace = false;
     Vec3 outside_mm;
     VelocityJudge velocity;
-    bool saw_motors = false;
+    bool has_motor_data = false;
     double largest_n = 0.0;
   };
 
@@ -361,7 +363,7 @@ class ConformanceRun {
     look_at_values(sample, seen);
     if (seen.bad_value.empty()) seen.velocity.add(sample, clock_s());
     if (const auto force_n = motors()) {
-      seen.saw_motors = true;
+      seen.has_motor_data = true;
       seen.largest_n = std::max(seen.largest_n, norm(*force_n));
     }
   }
@@ -371,7 +373,7 @@ class ConformanceRun {
     const double speed_mm_s = norm(sample.velocity_mm_s);
     if (!(place_mm <= kMaxPlaceMm)) seen.bad_value = fmt::format("{:g} mm away", place_mm);
     if (!(speed_mm_s <= kMaxSpeedMmS)) seen.bad_value = fmt::format("{:g} mm/s", speed_mm_s);
-    if (info_.workspace && !lies_in(*info_.workspace, sample.position_mm)) {
+    if (info_.workspace && !is_inside(*info_.workspace, sample.position_mm)) {
       seen.left_workspace = true;
       seen.outside_mm = sample.position_mm;
     }
@@ -389,8 +391,8 @@ class ConformanceRun {
                  counted(static_cast<std::int64_t>(seen.last - seen.first), "new reading"));
     judge_values(seen);
     judge_times(seen, watched_s);
-    if (!seen.saw_motors) {
-      record_.leave(Id::rest_zero, unseen());
+    if (!seen.has_motor_data) {
+      record_.leave(Id::rest_zero, not_observable());
     } else {
       judge_motors(Id::rest_zero, seen.largest_n);
     }
@@ -442,21 +444,21 @@ class ConformanceRun {
 
   void check_forces() {
     if (!options_.pushes || !motors()) {
-      const std::string reason = options_.pushes ? unseen() : "no force was permitted";
+      const std::string reason = options_.pushes ? not_observable() : "no force was permitted";
       for (const Id id : {Id::pushing, Id::lapsing, Id::halting, Id::rearming, Id::closing_zero}) {
         record_.leave(id, reason);
       }
       return;
     }
     check_pushing();
-    check_lapsing();
+    check_force_lifetime();
     check_halting();
-    // Leaves a force on, for the closing.
+    // Leaves a force on, to test closing.
     if (!ended()) pushed_at_close_ = push(push_n(1, 1.0), [&] { return !is_zero(); });
   }
 
-  /// Writes a force until the motors show what is wanted.
-  /// \return false if they do not within the patience
+  /// Writes a force until the motors meet a condition.
+  /// \return false at the time limit
   template <typename Holds>
   bool push(Vec3 force_n, const Holds& holds, double limit_s) {
     return until(limit_s, [&] {
@@ -473,15 +475,15 @@ class ConformanceRun {
   void check_pushing() {
     for (int axis = 0; axis < 3; ++axis) {
       for (const double sign : {1.0, -1.0}) {
-        const Vec3 told = push_n(axis, sign);
-        const double allowed_n = 0.05 * norm(told) + ConformanceOptions::kZeroN;
-        const bool arrived = push(told, [&] {
+        const Vec3 sent_n = push_n(axis, sign);
+        const double allowed_n = 0.05 * norm(sent_n) + ConformanceOptions::kZeroN;
+        const bool arrived = push(sent_n, [&] {
           const auto force_n = motors();
-          return force_n && norm(*force_n - told) < allowed_n;
+          return force_n && norm(*force_n - sent_n) < allowed_n;
         });
         if (arrived || ended()) continue;
         const auto force_n = motors();
-        record_.fail(Id::pushing, "told " + force_words(told) + ", the motors had " +
+        record_.fail(Id::pushing, "told " + force_words(sent_n) + ", the motors had " +
                                       (force_n ? force_words(*force_n) : "nothing known"));
         return;
       }
@@ -489,7 +491,7 @@ class ConformanceRun {
     if (!ended()) record_.pass(Id::pushing, "0.3 N along each axis, both ways");
   }
 
-  /// Time from now until the motors are without force.
+  /// The time until the motors are without force.
   std::optional<double> time_to_zero(const std::function<void()>& meanwhile) {
     const double begin_s = now_s();
     const bool zero = until(patience_s(), [&] {
@@ -513,11 +515,11 @@ class ConformanceRun {
     return true;
   }
 
-  void check_lapsing() {
+  void check_force_lifetime() {
     if (ended()) return;
     if (!push(push_n(0, 1.0), [&] { return !is_zero(); })) return leave_without_force(Id::lapsing);
     const bool zero = judge_zero(Id::lapsing, time_to_zero({}));
-    // Let it be zero for good before the next check.
+    // Waits for a lasting zero before the next check.
     if (zero) pass_time(kZeroLastsS, std::nullopt);
   }
 
@@ -561,8 +563,8 @@ class ConformanceRun {
     }
   }
 
-  /// \return whether a reading came that is newer than this number
-  bool reads_on(std::uint64_t& last) {
+  /// \return whether there was a reading after this number
+  bool has_new_reading(std::uint64_t& last) {
     return until(patience_s(),
                  [&] {
                    const DeviceSample sample = read();
@@ -579,7 +581,7 @@ class ConformanceRun {
       return record_.leave(Id::opening_twice, "the rig cannot be asked");
     }
     std::uint64_t last = 0;
-    if (!reads_on(last)) return;
+    if (!has_new_reading(last)) return;
     std::string finding = "the second opening works";
     try {
       const std::unique_ptr<HapticDevice> second = subject_.open();
@@ -587,7 +589,7 @@ class ConformanceRun {
     } catch (const Error& error) {
       finding = std::string("refused: ") + error.what();
     }
-    // The readings of three ticks, as the first may have been on its way.
+    // Of three ticks, because the first reading may have been in transit.
     for (int i = 0; i < 3; ++i) {
       if (ended_by_second(last)) {
         return record_.fail(Id::opening_twice, "the first opening gave no more readings");
@@ -604,9 +606,9 @@ class ConformanceRun {
       (void)device_->write({});
       return sample.sequence > last;
     });
-    const bool goes_on = reads && device_->fault() == DeviceFault::none;
+    const bool continues = reads && device_->fault() == DeviceFault::none;
     last = sample.sequence;
-    return !goes_on && !is_stopped();
+    return !continues && !is_stopped();
   }
 
   void check_reopening() {
@@ -615,7 +617,7 @@ class ConformanceRun {
       if (!open(Id::reopening)) return;
       const DeviceInfo again = device_->info();
       std::uint64_t last = 0;
-      const bool reads = reads_on(last);
+      const bool reads = has_new_reading(last);
       if (i == 0 && reads && !is_stopped()) check_opening_twice();
       close();
       if (lost_ || is_stopped()) return;

@@ -15,12 +15,12 @@ namespace touchtrial::device {
 namespace {
 
 constexpr double kLongestCallUs = 10'000.0;
-/// Of a period: the rest is for the device and for what the host does in between.
+/// As a share of the period; the rest is for the device and the host.
 constexpr double kShareOfCalls = 0.5;
 
 ConformanceId check_of(plugin::PluginFault trouble) noexcept {
   switch (trouble) {
-    case plugin::PluginFault::sequence_fell:
+    case plugin::PluginFault::sequence_decreased:
       return ConformanceId::numbering;
     case plugin::PluginFault::wrote_past:
       return ConformanceId::memory;
@@ -42,9 +42,9 @@ std::optional<ConformanceBlame> blame_of(const HapticDevice& device) {
 }
 
 /// Runs one step of the checks.
-/// \return whether it went well; else the check fails in the error's words
+/// \return whether it succeeded; else the check fails with the error's message
 template <typename Step>
-bool goes_well(ConformanceId id, ConformanceRecord& record, const Step& step) {
+bool may_continue(ConformanceId id, ConformanceRecord& record, const Step& step) {
   try {
     step();
     return true;
@@ -54,27 +54,28 @@ bool goes_well(ConformanceId id, ConformanceRecord& record, const Step& step) {
   }
 }
 
-/// Loads, opens and describes, each of which may fail by itself.
+/// Loads, opens and describes the plug-in; each step is a separate check.
 /// \return nothing if one failed
 std::optional<DeviceInfo> try_interface(const PluginSettings& settings, ConformanceRecord& record) {
   std::optional<plugin::Library> library;
   std::optional<plugin::OpenDevice> opened;
   std::optional<DeviceInfo> info;
-  const bool good = goes_well(ConformanceId::library, record,
-                              [&] {
-                                expect_loading_survived(settings.library, plugin::kRemedy);
-                                library.emplace(settings.library);
-                              }) &&
-                    goes_well(ConformanceId::opening, record,
-                              [&] { opened.emplace(*library, settings.settings); }) &&
-                    goes_well(ConformanceId::description, record, [&] { info = opened->info(); });
+  const bool good =
+      may_continue(ConformanceId::library, record,
+                   [&] {
+                     check_loads(settings.library, plugin::kRemedy);
+                     library.emplace(settings.library);
+                   }) &&
+      may_continue(ConformanceId::opening, record,
+                   [&] { opened.emplace(*library, settings.settings); }) &&
+      may_continue(ConformanceId::description, record, [&] { info = opened->info(); });
   if (library) {
     record.pass(ConformanceId::library, "driver " + library->name());
   }
   return good ? info : std::nullopt;
 }
 
-/// Calls the plug-in as its thread does, without any force, and takes the time.
+/// Times calls of the plug-in like those of its thread, without force.
 void measure_calls(const PluginSettings& settings, double rate_hz, ServoClock& clock,
                    const ConformanceOptions& options, DurationHistogram& durations) {
   const plugin::Library library(settings.library);
@@ -97,7 +98,7 @@ void measure_calls(const PluginSettings& settings, double rate_hz, ServoClock& c
 void check_calls(const PluginSettings& settings, double rate_hz, ServoClock& clock,
                  const ConformanceOptions& options, ConformanceRecord& record) {
   DurationHistogram durations;
-  const bool opened = goes_well(ConformanceId::reopening, record, [&] {
+  const bool opened = may_continue(ConformanceId::reopening, record, [&] {
     ServoThread thread;
     thread.run([&] { measure_calls(settings, rate_hz, clock, options, durations); });
   });

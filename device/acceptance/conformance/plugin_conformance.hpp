@@ -9,9 +9,9 @@
 
 namespace touchtrial::device {
 
-/// Runs the checks on the calling thread, and measures the plug-in's calls on a ServoThread. What
-/// reaches the motors is known if the plug-in exports touchtrial_device_observe_v1.
-/// \param options_of_opening  for each PluginDevice that is opened, so that tests own their time
+/// Runs the checks on the calling thread, and measures the plug-in's calls on a ServoThread. Motor
+/// commands are known if the plug-in exports touchtrial_device_observe_v1.
+/// \param options_of_opening  for each opened PluginDevice, so that tests control time
 /// \return one entry for each check
 [[nodiscard]] std::vector<ConformanceCheck> check_plugin_conformance(
     const PluginSettings& settings, ServoClock& clock, const ConformanceOptions& options,

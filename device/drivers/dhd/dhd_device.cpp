@@ -25,17 +25,18 @@ namespace touchtrial::device {
 namespace dhd {
 namespace {
 
-/// A mass further from the device's own than this is a slip of the pen: 0.2 kg push 2 N.
+/// A mass that differs more than this from the device's own is a typing error: 0.2 kg push with 2
+/// N.
 constexpr double kMaxMassChangeKg = 0.2;
-/// While the vendor's library moves the arm by itself: 32 ms.
+/// During the vendor's automatic motion of the arm: 32 ms.
 constexpr unsigned char kSlowestWatchdog = 255;
-/// A weight of more than this share of the peak force is nonsense, where the model is not known.
+/// For an unknown model, a weight above this share of the peak force is implausible.
 constexpr double kMaxWeightShare = 0.5;
 
-/// The library sheds the weight within 250 ms of exchanges.
+/// The library removes the weight within 250 ms of exchanges.
 constexpr int kPollsToShedWeight = 300;
 
-/// The library's word for a type without a name.
+/// The library's name for an unnamed type.
 constexpr std::string_view kNoName = "unknown device";
 
 constexpr const char* kCalibrate =
@@ -43,7 +44,7 @@ constexpr const char* kCalibrate =
     "the pit; delta: sweep each axis from end to end) until the status light stops blinking, or "
     "run touchtrial device initialise dhd, which moves the arm";
 
-/// \return whether this program has the device open; a second opening would take it from the first
+/// \return whether this program has the device open; a second opening would disconnect the first
 std::atomic<bool>& in_use(int index) {
   static std::array<std::atomic<bool>, 64> of_index{};
   return of_index[static_cast<std::size_t>(std::clamp(index, 0, 63))];
@@ -56,8 +57,8 @@ std::string version_text(double version) {
   return text.str();
 }
 
-/// An open device, without force until `configure`. The destructor switches force off, puts back
-/// what was set, and closes the device. Belongs to the thread that opens it.
+/// An open device, without force until `configure`. The destructor switches force off, restores
+/// settings, and closes the device. Belongs to the thread that opens it.
 class Session {
  public:
   /// \throws DeviceError with the remedy if the library cannot be used or the device not opened
@@ -86,7 +87,7 @@ class Session {
   [[nodiscard]] char device() const noexcept { return device_; }
   [[nodiscard]] const Library& library() const noexcept { return library_; }
 
-  /// \throws DeviceError if a setting is needed for this model, or beyond what the model can
+  /// \throws DeviceError if this model requires a setting, or a setting exceeds the model's limits
   [[nodiscard]] DeviceInfo info() const {
     DeviceInfo info = identity();
     info.max_force_n =
@@ -100,12 +101,13 @@ class Session {
     info.workspace = Workspace{-1.0 * reach_mm, reach_mm, WorkspaceShape::ellipsoid};
     return info;
   }
-  /// \return the most that arms and end-effector can weigh, N; nothing if they are not carried
+  /// \return the largest possible weight of arms and end-effector, N; nothing if it is not
+  ///   compensated
   [[nodiscard]] std::optional<double> most_weight_n(const DeviceInfo& info) const {
     if (!settings_.gravity_compensation || !has_switch()) return std::nullopt;
     return model_ ? model_->max_weight_n : kMaxWeightShare * info.max_force_n;
   }
-  /// \throws DeviceError if the settings' mass, or the device's own, cannot be true
+  /// \throws DeviceError if the mass of the settings or of the device is implausible
   void check_mass(const DeviceInfo& info) const {
     check_change_of_mass();
     const std::optional<double> most_n = most_weight_n(info);
@@ -118,14 +120,14 @@ class Session {
                       " N with its arms; set dhd.effector_mass_kg to what the scales say, or "
                       "dhd.gravity_compensation to false");
   }
-  /// Name, serial number and so on, which need no settings.
+  /// Name, serial number and so on, independent of settings.
   [[nodiscard]] DeviceInfo identity() const {
     DeviceInfo info;
     info.name = "dhd";
     info.max_rate_hz = kPollRateHz;
     info.has_encoders = true;
     const char* name = api().get_system_name ? api().get_system_name(device_) : nullptr;
-    // The library has no name for some types that the table knows.
+    // The library has no name for some types in our table.
     const bool is_named = name != nullptr && std::string_view(name) != kNoName;
     info.model = is_named ? one_line(name) : model_ ? model_->name : "Force Dimension device";
     unsigned short serial = 0;
@@ -151,7 +153,7 @@ class Session {
     return dhd::is_calibrated(api(), status, device_);
   }
 
-  /// Sets mass, limits and watches, with force off.
+  /// Sets mass, limits and watchdogs, with force off.
   /// \param limit_n  of the rendered force, > 0
   /// \param most_weight_n  as most_weight_n()
   /// \throws DeviceError naming what failed
@@ -161,8 +163,8 @@ class Session {
     expect(api().set_gravity_compensation(most_weight_n ? 1 : 0, device_),
            "dhd.gravity_compensation");
     set_time_guard();
-    // A second line, which old firmware may not have. Version 3.17.5 limits the force that it is
-    // given, and adds the weight behind that; another version may limit the sum.
+    // An additional limit, missing in old firmware. Version 3.17.5 limits the requested force, then
+    // adds the weight; other versions may limit the sum.
     if (api().set_max_force != nullptr) {
       (void)api().set_max_force(limit_n + most_weight_n.value_or(0.0), device_);
     }
@@ -171,8 +173,8 @@ class Session {
     expect(api().set_force(0.0, 0.0, 0.0, device_), "zero force");
   }
 
-  /// Lets the device switch force off if no command came for so many times 125 us. Firmware before
-  /// version 3 has no watchdog; then only our own zeros are left.
+  /// Makes the device switch force off without a command for this many times 125 us. Firmware
+  /// before version 3 has no watchdog, so it depends on our zeros.
   void keep_watchdog(unsigned char value) {
     if (api().set_watchdog == nullptr) return;
     unsigned char before = 0;
@@ -199,7 +201,7 @@ class Session {
   /// \return whether force can be switched off
   [[nodiscard]] bool has_switch() const noexcept { return !model_ || model_->has_switch; }
 
-  /// Exchanges positions until the library adds no weight to a force any more.
+  /// Exchanges positions until the library no longer adds a weight to forces.
   void shed_weight() const {
     for (int poll = 0; poll < kPollsToShedWeight; ++poll) {
       Vec3 position_m;
@@ -289,7 +291,7 @@ class Session {
   std::optional<Model> model_;
   std::optional<double> own_mass_kg_;
   bool is_mass_changed_ = false;
-  std::optional<unsigned char> watchdog_;  ///< before ours; nothing: there is none
+  std::optional<unsigned char> watchdog_;  ///< the previous value; nothing: no watchdog
 };
 
 DeviceListing empty_listing(const DhdSettings& settings) {
@@ -342,7 +344,7 @@ std::unique_ptr<HapticDevice> open_dhd(const DeviceSettings& settings) {
                                      settings.use_of("dhd").limits.max_force_n.value_or(kNone));
 }
 
-/// The device's own watchdog ends the motion if this process is killed meanwhile.
+/// The device's watchdog stops the motion if this process is killed.
 std::string initialise_dhd(const DeviceSettings& settings) {
   Session session(settings.dhd);
   const Api& api = session.api();
@@ -366,7 +368,7 @@ std::string initialise_dhd(const DeviceSettings& settings) {
 }  // namespace
 }  // namespace dhd
 
-/// The loop ends before the session through which it talks.
+/// Declared after the session it uses, so that the loop ends first.
 struct DhdDevice::Running {
   Running(const DhdSettings& settings, double limit_n, std::chrono::nanoseconds (*now)())
       : session(settings), info(session.info()) {
@@ -399,7 +401,7 @@ DeviceReadiness DhdDevice::readiness() const noexcept {
   return running_->loop->readiness();
 }
 
-/// Sources of what is unverified: this driver's page in docs/devices.
+/// Sources of unverified facts: this driver's page in docs/devices.
 DeviceDriver dhd_driver() {
   return {.name = "dhd",
           .what = "Force Dimension omega, delta, sigma and lambda, through the vendor's library",

@@ -6,13 +6,13 @@
 namespace touchtrial::device::dhd {
 namespace {
 
-/// What a weight may have sideways: a base that is not level, and rounding.
+/// The sideways share of a weight allowed for an unlevel base and rounding.
 constexpr double kSidewaysShare = 0.3;
 constexpr double kSlackN = 0.2;
 
 constexpr unsigned char kAllJoints = 0xff;
 
-/// The angles of the arms, and the torques that hold them there.
+/// The angles of the arms, and the torques that hold them.
 struct ArmJoints {
   std::array<double, 3> angles_rad{};
   Vec3 torques_nm;
@@ -30,7 +30,7 @@ bool has_old_model(const Api& api) noexcept {
   return api.get_delta_joint_angles != nullptr && api.delta_gravity_joint_torques != nullptr;
 }
 
-/// The function of version 3.16, which replaces the one for the arms alone.
+/// The function since version 3.16, which replaces the one for the arms only.
 std::optional<ArmJoints> joints_by_new_model(const Api& api, char device) noexcept {
   std::array<double, kJoints> angles{};
   std::array<double, kJoints> torques{};

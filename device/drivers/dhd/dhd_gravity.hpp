@@ -10,12 +10,12 @@ namespace touchtrial::device::dhd {
 
 constexpr double kStandardGravityMS2 = 9.80665;
 
-/// The force with which the library carries arms and end-effector where they are now. It tells the
-/// torques t of the joints and the Jacobian J of the position by the joints' angles; the force with
-/// the same effect at the end-effector solves J^T F = t. Neither allocates nor throws.
+/// The force with which the library carries arms and end-effector at their current position. The
+/// library gives the joint torques t and the Jacobian J of position by joint angles; the equivalent
+/// force at the end-effector solves J^T F = t. Neither allocates nor throws.
 /// \param device  open and calibrated, with gravity compensation on; soon after it was switched off,
-///   the library still tells a part
-/// \return DHD's frame, N; nothing if the library does not tell it
+///   the library still reports a part
+/// \return DHD's frame, N; nothing if the library does not report it
 [[nodiscard]] std::optional<Vec3> added_weight_n(const Api& api, char device) noexcept;
 
 /// \param force_n  DHD's frame

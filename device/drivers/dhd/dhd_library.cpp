@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kUsualName = "libdhd.so";
-/// libdrd has the functions of libdhd, and those that know whether the device is initialised.
+/// libdrd has the functions of libdhd, and functions for initialisation.
 constexpr std::array<std::string_view, 2> kStems = {"libdrd.so", "libdhd.so"};
 
 /// \return the numbers after the stem: {3, 17, 6} for libdhd.so.3.17.6
@@ -40,7 +40,7 @@ bool is_version_of(std::string_view name, std::string_view stem) {
                           rest.find_first_not_of(".0123456789") == std::string_view::npos);
 }
 
-/// \return the names in a folder; none if it cannot be read
+/// \return the names in a folder; empty if it cannot be read
 std::vector<fs::path> entries_of(const fs::path& folder) {
   std::vector<fs::path> entries;
   std::error_code error;
@@ -63,7 +63,7 @@ void add_from(const fs::path& folder, std::string_view stem, std::vector<fs::pat
   found.insert(found.end(), versions.begin(), versions.end());
 }
 
-/// \return the folders of a kit in which libraries may lie, the kit's own folder among them
+/// \return the possible library folders of a kit, including its top folder
 std::vector<fs::path> folders_of_kit(const fs::path& kit) {
   std::vector<fs::path> folders = {kit};
   for (const fs::path& system : entries_of(kit / "lib" / "release")) folders.push_back(system);
@@ -106,8 +106,8 @@ bool is_there(const fs::path& candidate) {
   return candidate.has_parent_path() && fs::exists(candidate, error);
 }
 
-/// The linker's words for a library that it does not find, as DynamicLibrary gives them.
-bool says_not_found(const DeviceError& error) {
+/// Whether DynamicLibrary's error is the linker's message for a missing library.
+bool is_not_found(const DeviceError& error) {
   return std::string_view(error.what()).find("(cannot open shared object file") !=
          std::string_view::npos;
 }
@@ -115,12 +115,12 @@ bool says_not_found(const DeviceError& error) {
 /// \return the first candidate that loads in a child process
 fs::path loadable(const fs::path& named) {
   for (const fs::path& candidate : library_candidates(named)) {
-    expect_loading_survived(candidate, kRemedy);
+    check_loads(candidate, kRemedy);
     try {
       const DynamicLibrary trial(candidate, Unload::never, kRemedy);
       return candidate;
     } catch (const DeviceError& error) {
-      if (is_there(candidate) || !says_not_found(error)) throw;
+      if (is_there(candidate) || !is_not_found(error)) throw;
     }
   }
   throw DeviceError(one_line(named.string() + ": is not found, nor any version of libdrd.so or " +

@@ -1,6 +1,6 @@
 /// \file The part of Force Dimension's library that the driver uses, declared from its public
-/// documentation: nothing of the vendor's kit is needed to build. And where a machine has it.
-/// Private to this folder.
+///   documentation, so that the vendor's kit is not needed to build; and the search for the
+///   library. Private to this folder.
 #pragma once
 
 #include "device/platform/dynamic_library.hpp"
@@ -14,29 +14,30 @@
 namespace touchtrial::device::dhd {
 
 /// Most functions return a number below 0 for an error, 0 for success, or one of these, which are
-/// success too: no exchange with the device was necessary, as the values of the last one are
-/// younger than the time guard; the motors gave less force than requested.
+/// success too: the last values are younger than the time guard, so there was no exchange with the
+/// device; the motors exert less force than requested.
 constexpr int kTimeGuard = 1;
 constexpr int kMotorSaturated = 2;
 
-/// The status and places in it. Longer than any version's, so that a newer library stays inside.
+/// The status array and its indices. Longer than any version's, so that a newer library does not
+/// overflow it.
 using Status = std::array<int, 32>;
 constexpr std::size_t kConnected = 1;
 constexpr std::size_t kReset = 3;  ///< the device waits for its calibration
 constexpr std::size_t kForce = 5;  ///< force is switched on
 constexpr std::size_t kError = 9;
-constexpr std::size_t kForceOffCause = 14;  ///< of the last time that force went off, however old
+constexpr std::size_t kForceOffCause = 14;  ///< of the last switch-off, however old
 
-/// Causes for which the device itself switches force off; the other causes are a person's act (its
-/// button) or ours.
+/// Causes of switch-offs by the device itself; the others are due to a person (its button) or us.
 constexpr int kOffByVelocity = 2;
 constexpr int kOffByWatchdog = 3;
 constexpr int kOffByUnplugging = 5;
 
 constexpr int kRecommendedTimeGuard = -1;
-/// The device switches force off if no command came for so many times 125 us: 10 ms.
+/// The device switches force off without a command for this many times 125 us: 10 ms.
 constexpr unsigned char kWatchdog = 80;
-/// Joints of the largest device, as arrays of joint values have them. The first three are the arms.
+/// The number of joints in arrays of the library, for the largest device. The first three are the
+/// arms.
 constexpr std::size_t kJoints = 8;
 
 /// The functions, dhdGetDeviceCount as get_device_count and so on. The last argument is the device.
@@ -53,7 +54,7 @@ struct Api {
   int (*set_gravity_compensation)(int, char);  ///< on: the library adds the weight to every force
   const char* (*error_get_last_str)();
 
-  /// \name Null where the library does not have them
+  /// \name Null if the library lacks them
   ///@{
   int (*stop)(char);  ///< force off and brakes on
   int (*enable_expert_mode)();
@@ -88,14 +89,14 @@ struct Api {
   }
 };
 
-/// \return whether the device, of this status, knows where its axes are
+/// \return whether a device with this status is calibrated
 [[nodiscard]] inline bool is_calibrated(const Api& api, const Status& status,
                                         char device) noexcept {
   return status[kReset] == 0 && (!api.has_drd() || api.drd_is_initialized(device));
 }
 
 /// Calls a function that versions with an expert mode refuse outside it. The mode is left at once,
-/// as other functions of it switch safety off.
+/// because it allows functions that disable safety.
 template <typename Call>
 auto as_expert(const Api& api, Call call) noexcept(noexcept(call())) {
   if (api.enable_expert_mode != nullptr) (void)api.enable_expert_mode();
@@ -109,9 +110,9 @@ extern const char* const kRemedy;
 
 /// \param named  the setting dhd.library: a file, the kit's folder or one with the library in it,
 ///   or a bare name
-/// \return what to load, best first: libdrd before libdhd, which it contains, and newer versions
-///   before older ones. For the name libdhd.so, which the kit does not have, also the names that
-///   it has, in the linker's path, the kit's folder (environment FDSDK), and the usual folders.
+/// \return candidates, best first: libdrd before libdhd, which it contains, and newer before older
+///   versions. For the name libdhd.so, which the kit lacks, also the kit's names in the linker's
+///   path, the kit's folder (environment FDSDK), and the usual folders.
 [[nodiscard]] std::vector<std::filesystem::path> library_candidates(
     const std::filesystem::path& named);
 
@@ -119,15 +120,15 @@ extern const char* const kRemedy;
 class Library {
  public:
   /// Loads the first candidate that exists, after a trial in a child process.
-  /// \throws DeviceError with the remedy if none exists, or the first one cannot be used
+  /// \throws DeviceError with the remedy if none exists, or the first existing one cannot be used
   explicit Library(const std::filesystem::path& named);
 
   [[nodiscard]] const Api& api() const noexcept { return api_; }
-  /// \return what was loaded
+  /// \return the loaded file
   [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
   /// \return the number of connected devices, >= 0
   [[nodiscard]] int device_count() const noexcept;
-  /// \return the library's own words for its last failure on this thread
+  /// \return the library's message for its last error on this thread
   [[nodiscard]] std::string last_error() const;
 
  private:

@@ -10,9 +10,9 @@ namespace {
 
 constexpr std::chrono::nanoseconds kPeriod{static_cast<std::int64_t>(1e9 / kPollRateHz)};
 constexpr std::int64_t kTicksBetweenStatus = 40;
-/// The library sheds the weight within 250 ms after its compensation was switched off: 0.3 s.
+/// The library removes the weight within 250 ms after its compensation was switched off: 0.3 s.
 constexpr std::int64_t kTicksToShedWeight = 1200;
-/// Force that is not on after so many ticks waits for a person: 0.25 s.
+/// If force is not on after this many ticks, it waits for a person: 0.25 s.
 constexpr std::int64_t kTicksToSwitchOn = 1000;
 constexpr int kZerosAtTheEnd = 5;
 constexpr double kMmPerM = 1000.0;
@@ -29,7 +29,7 @@ Vec3 to_dhd_frame(Vec3 device) noexcept {
 
 Loop::Loop(const Api& api, char device, std::optional<double> most_weight_n, Now now)
     : api_(api), device_(device), most_weight_n_(most_weight_n), now_(now) {
-  check_status();  // so that readiness() is true from the beginning
+  check_status();  // so that readiness() is right from the start
   thread_ = std::thread([this] { run(); });
 }
 
@@ -72,8 +72,8 @@ void Loop::check_status() noexcept {
   readiness_.store(need(), std::memory_order_release);
 }
 
-/// The cause is that of the last time that force went off, perhaps of yesterday: it counts only for
-/// force that we have seen on. A person may switch force off at the device, which is no fault.
+/// The cause is that of the last switch-off, which may be old, so it counts only after force was
+/// seen on. A person may switch force off at the device, which is not a fault.
 void Loop::note_force(bool is_on, int cause) noexcept {
   const bool lost = force_on_ && !is_on;
   force_on_ = is_on && switched_on_;
@@ -90,9 +90,8 @@ DeviceReadiness Loop::need() const noexcept {
   return should_be_on && !force_on_ ? DeviceReadiness::needs_force_on : DeviceReadiness::ready;
 }
 
-/// Where there is to be no force there is none that could be set by anybody: after a halt or a
-/// fault, or while the device does not know where it is, force is off and the brakes are on. A
-/// force of zero would not do: the library adds the weight to it.
+/// After a halt or a fault, or while the device is not calibrated, force is off and the brakes are
+/// on. A force of zero would not suffice, because the library adds the weight to it.
 void Loop::switch_force() noexcept {
   const bool is_shed = most_weight_n_ || tick_ >= kTicksToShedWeight;
   const bool may_be_on = calibrated_ && is_shed && !link_.is_stopped();
@@ -105,7 +104,7 @@ void Loop::switch_force() noexcept {
     link_.fail(DeviceFault::bad_data);
     return;
   }
-  // The last force of every tick without force was zero.
+  // In ticks with force off the last force is zero.
   if (api_.enable_force(1, device_) < 0) {
     fail_call();
     return;
@@ -140,9 +139,9 @@ void Loop::take_sample() noexcept {
     link_.fail(DeviceFault::bad_data);
     return;
   }
-  if (got == kTimeGuard && !exchanged_) return;  // the sequence number tells the servo
+  if (got == kTimeGuard && !exchanged_) return;  // the servo sees it by the sequence number
   exchanged_ = false;
-  // The calibration moves the origin, so positions before it say nothing about motion.
+  // Calibration moves the origin, so earlier positions must not enter velocities.
   if (!calibrated_) velocity_.forget();
   DeviceSample sample;
   sample.position_mm = kMmPerM * to_device_frame(position_m);
@@ -161,7 +160,7 @@ void Loop::send(Vec3 force_n) noexcept {
   if (result < 0) fail_call();
 }
 
-/// Reports a failed call: the device is gone, or the library has a reason of its own.
+/// Reports a failed call: the device is gone, or the library gives another reason.
 void Loop::fail_call() noexcept {
   Status status{};
   const bool there = api_.get_status(status.data(), device_) >= 0 && status[kConnected] != 0;

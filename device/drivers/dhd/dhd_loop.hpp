@@ -16,18 +16,19 @@ namespace touchtrial::device::dhd {
 /// About the rate that the device's USB link allows.
 constexpr double kPollRateHz = 4000.0;
 
-/// Readings of the velocity's line: at 4 kHz its lag is 1 ms, and steps of 0.01 mm make 1.5 mm/s of
-/// noise. The library's own velocity compares positions 20 ms apart, which lags by 10 ms.
+/// Readings of the velocity's regression line: at 4 kHz its lag is 1 ms, and steps of 0.01 mm cause
+/// 1.5 mm/s of noise. The library's own velocity compares positions 20 ms apart, which lags by 10
+/// ms.
 constexpr std::size_t kVelocityReadings = 9;
 
 /// Polls the device from its construction to its destruction, in real time where the system permits
-/// it. Force is on only while the device is calibrated, and neither halted nor failed; what it
-/// sends last are zeros, and then it switches force off.
+/// it. Force is on only while the device is calibrated, and neither halted nor failed; at the end
+/// it sends zeros, then switches force off.
 ///
-/// A reading counts as new if the library exchanged data with the device since the one before, be
-/// it for the position or for the force: dhdSetForce brings the positions that dhdGetPosition then
-/// gives with the answer of the time guard. A device that rests gives the same values again and
-/// again, so their change says nothing. A thread that waits for the device makes no reading.
+/// A reading counts as new if the library exchanged data with the device since the previous one,
+/// for position or force: dhdSetForce fetches positions that dhdGetPosition then returns with the
+/// time guard's result. Changed values are no criterion, because a device at rest repeats them. A
+/// thread that waits for the device makes no reading.
 class Loop {
  public:
   using Time = std::chrono::nanoseconds;
@@ -35,8 +36,8 @@ class Loop {
 
   /// \param api  must outlive this
   /// \param device  must stay open as long
-  /// \param most_weight_n  that the library may add to a force, or force is not switched on;
-  ///   nothing: it adds none
+  /// \param most_weight_n  the largest weight that the library may add, else force is not switched
+  ///   on; nothing: it adds none
   /// \param now  the time of a reading, for velocities
   Loop(const Api& api, char device, std::optional<double> most_weight_n, Now now);
   ~Loop();
@@ -69,9 +70,9 @@ class Loop {
   DeviceLink link_;
   VelocityEstimate<kVelocityReadings> velocity_;
   bool calibrated_ = false;
-  bool switched_on_ = false;  ///< we asked for force, and have not switched it off since
+  bool switched_on_ = false;  ///< we requested force, and have not switched it off since
   bool force_on_ = false;     ///< by the device's status
-  bool was_on_ = false;       ///< since we asked
+  bool was_on_ = false;       ///< since our request
   bool exchanged_ = true;     ///< data with the device since the last reading
   bool saturated_ = false;    ///< motors, by the newest force
   std::int64_t tick_ = 0;

@@ -1,6 +1,6 @@
-/// \file What Force Dimension's library does not tell of a device: its size, strength and greatest
-/// weight, by the type that it does tell. Sources: docs/devices/force-dimension.md; nothing was
-/// measured. Private to this folder.
+/// \file Data that Force Dimension's library does not report: size, strength and greatest weight of
+/// a device, by its reported type. Sources: docs/devices/force-dimension.md; nothing was measured.
+/// Private to this folder.
 #pragma once
 
 #include "core/vec.hpp"
@@ -10,7 +10,7 @@
 
 namespace touchtrial::device::dhd {
 
-/// Numbers of 0 are not known: settings must give them.
+/// Numbers of 0 are unknown and must be set in the settings.
 struct Model {
   const char* name;
   /// Width, height and depth of the ellipsoid in the cylinder that the maker states: its axis
@@ -21,10 +21,11 @@ struct Model {
   /// Of a wall, by a public haptics library (CHAI3D): the manuals of omega and delta state 14.5
   /// N/mm in closed loop, which no wall in a servo reaches.
   double stiffness_n_per_mm;
-  /// More than arms and end-effector can weigh: one and a half times the most that the maker's
-  /// library 3.17.5 gave for this model, or for the heaviest of its family.
+  /// An upper bound of the weight of arms and end-effector: 1.5 times the maximum of the maker's
+  /// library 3.17.5 for this model, or for the heaviest of its family.
   double max_weight_n;
-  /// False: nothing switches force off, and a zero has to be one, so the library may add no weight.
+  /// False: force cannot be switched off, so a zero must be exact and the library must not add a
+  /// weight.
   bool has_switch = true;
 };
 
@@ -47,7 +48,7 @@ struct ModelOfType {
   const Model* model;
 };
 
-/// The types of the maker's header, then those that the open library alone takes for these models.
+/// The types of the maker's header, then types that only the open library assigns to these models.
 inline constexpr auto kModelsOfTypes = std::to_array<ModelOfType>({
     {33, &kOmega3},   {34, &kOmega6},   {36, &kOmega6},   {35, &kOmega7},   {37, &kOmega7},
     {63, &kDelta3},   {64, &kDelta6},   {206, &kSigma3},  {106, &kSigma6},  {107, &kSigma6},
@@ -61,8 +62,8 @@ inline constexpr auto kModelsOfTypes = std::to_array<ModelOfType>({
     {128, &kLambda7}, {129, &kLambda7}, {130, &kLambda7}, {210, &kLambda7}, {211, &kLambda7},
 });
 
-/// \return nothing for a type that the table does not have, for instance the stand-alone
-///   controllers and devices of one's own
+/// \return nothing for a type that is not in the table, for instance stand-alone controllers and
+///   custom devices
 [[nodiscard]] constexpr std::optional<Model> model_of(int type) noexcept {
   for (const ModelOfType& entry : kModelsOfTypes) {
     if (entry.type == type) return *entry.model;

@@ -15,10 +15,10 @@ constexpr int kProbes = 5;
 constexpr int kPacketsPerProbe = 20;
 constexpr milliseconds kPacketLimit{20};
 
-/// Sends one question.
-/// \return whether a reply came before the device fell silent
+/// Sends one packet.
+/// \return whether there was a reply before the time limit
 bool answers_once(FtdiTransport& transport) {
-  const Packet question = FalconExchange::farewell();
+  const Packet question = FalconExchange::zero_packet();
   if (transport.send(question, kPacketLimit) != question.size()) return false;
   FalconStream stream;
   std::array<std::uint8_t, kUsbPacketSize> packet{};
@@ -30,7 +30,7 @@ bool answers_once(FtdiTransport& transport) {
   return false;
 }
 
-/// Makes the device run, and loads its firmware if it has none.
+/// Starts the device, and loads its firmware if necessary.
 void make_run(FtdiTransport& transport, const FalconSettings& settings) {
   set_up_running_falcon(transport);
   if (falcon_answers(transport)) return;
@@ -42,8 +42,8 @@ void make_run(FtdiTransport& transport, const FalconSettings& settings) {
                     "settings");
 }
 
-/// \return what is wrong with the firmware's file; empty if nothing is
-std::string firmware_trouble(const FalconSettings& settings) {
+/// \return the fault of the firmware's file; empty if none
+std::string firmware_fault(const FalconSettings& settings) {
   try {
     static_cast<void>(read_falcon_firmware(settings.firmware));
   } catch (const FileError& error) {
@@ -54,7 +54,7 @@ std::string firmware_trouble(const FalconSettings& settings) {
 
 std::vector<DeviceListing> list_falcons(const DeviceSettings& settings) {
   std::vector<DeviceListing> listings;
-  const std::string firmware = firmware_trouble(settings.falcon);
+  const std::string firmware = firmware_fault(settings.falcon);
   for (const UsbFalcon& found : find_usb_falcons()) {
     DeviceListing listing{"falcon", "Novint Falcon", found.serial, found.where, true, {}};
     if (!found.trouble.empty()) listing.missing.push_back(found.trouble);
@@ -135,15 +135,15 @@ void FalconDevice::exchange_until_stopped() noexcept {
     next = options_.pace->now() + kPeriod;
     exchange();
   }
-  say_farewell();
+  send_final_zeros();
   options_.pace->end();
 }
 
 void FalconDevice::exchange() noexcept {
-  // What has come since the last exchange does not answer this one.
+  // Bytes received since the last exchange do not answer this one.
   transport_->serve(std::chrono::microseconds(0));
   exchange_.publish(options_.pace->now());
-  // A command that is not taken shows as a missing reply.
+  // A refused command shows as a missing reply.
   static_cast<void>(transport_->post(exchange_.begin(options_.pace->now())));
   wait_for_reply();
   exchange_.end();
@@ -152,7 +152,7 @@ void FalconDevice::exchange() noexcept {
 }
 
 void FalconDevice::wait_for_reply() noexcept {
-  // The device answers in real time, whatever the pace is.
+  // The device answers in real time, even with a virtual clock.
   const FalconPace::Time until = monotonic_now() + kReplyLimit;
   do {
     transport_->serve(std::chrono::duration_cast<std::chrono::microseconds>(kReplyLimit));
@@ -162,14 +162,14 @@ void FalconDevice::wait_for_reply() noexcept {
   options_.pace->waited(kReplyLimit);
 }
 
-void FalconDevice::say_farewell() noexcept {
+void FalconDevice::send_final_zeros() noexcept {
   transport_->stop_stream();
   try {
-    for (int i = 0; i < kFarewells; ++i) {
-      static_cast<void>(transport_->send(FalconExchange::farewell(), kFarewellLimit));
+    for (int i = 0; i < kFinalPackets; ++i) {
+      static_cast<void>(transport_->send(FalconExchange::zero_packet(), kFinalLimit));
     }
   } catch (const DeviceError&) {
-    // The device is gone, so it needs no farewell.
+    // The device is gone, so no final packets are sent.
   }
 }
 
@@ -177,7 +177,7 @@ void FalconDevice::say_farewell() noexcept {
 
 namespace touchtrial::device {
 
-/// Sources of what is unverified: this driver's page in docs/devices.
+/// Sources of unverified facts: this driver's page in docs/devices.
 DeviceDriver falcon_driver() {
   return {
       .name = "falcon",

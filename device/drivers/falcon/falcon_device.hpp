@@ -17,13 +17,13 @@
 
 namespace touchtrial::device::falcon {
 
-/// The ball that every Falcon reaches.
+/// The sphere that every Falcon reaches.
 inline constexpr Workspace kFalconWorkspace = {
     {-kWorkspaceRadiusMm, -kWorkspaceRadiusMm, -kWorkspaceRadiusMm},
     {kWorkspaceRadiusMm, kWorkspaceRadiusMm, kWorkspaceRadiusMm},
     WorkspaceShape::ellipsoid};
 
-/// Time and rest of the USB thread.
+/// The clock and sleep of the USB thread.
 using FalconPace = LinkPace;
 
 struct FalconOptions {
@@ -32,19 +32,19 @@ struct FalconOptions {
   SchedulingRequest scheduling{SchedulingPolicy::fifo, 81, true};
 };
 
-/// Exchanges one packet each way at up to 1 kHz on a thread of its own. Sends no force before all
+/// Exchanges one packet each way at up to 1 kHz on a separate thread. Sends no force before all
 /// three axes are homed. The gravity bias is its support.
 class FalconDevice final : public LinkedDevice {
  public:
   /// The shortest time from one exchange to the next: the device manages about 1 kHz.
   static constexpr FalconPace::Time kPeriod = std::chrono::milliseconds(1);
-  /// The time for a reply, after which the next command goes out. A frame of the bus each way, the
-  /// chip's latency of 1 ms and 0.1 ms for the bytes each way make 3.2 ms at the very most; so two
-  /// lost replies in a row cost less than the safety chain's 10 ms without a reading.
+  /// The time limit for a reply, after which the next command is sent. A frame of the bus each way,
+  /// the chip's latency of 1 ms and 0.1 ms for the bytes each way make 3.2 ms at the very most; so
+  /// two lost replies in a row cost less than the safety chain's 10 ms without a reading.
   static constexpr FalconPace::Time kReplyLimit = std::chrono::milliseconds(3);
   /// Packets without force before the device is closed, and the time for each.
-  static constexpr int kFarewells = 5;
-  static constexpr std::chrono::milliseconds kFarewellLimit{20};
+  static constexpr int kFinalPackets = 5;
+  static constexpr std::chrono::milliseconds kFinalLimit{20};
 
   /// Loads the firmware unless the device answers already; returns once exchanges have begun.
   /// \throws DeviceError or FileError with the remedy
@@ -69,7 +69,7 @@ class FalconDevice final : public LinkedDevice {
   void exchange_until_stopped() noexcept;
   void exchange() noexcept;
   void wait_for_reply() noexcept;
-  void say_farewell() noexcept;
+  void send_final_zeros() noexcept;
 
   FalconSettings settings_;
   std::unique_ptr<FtdiTransport> transport_;

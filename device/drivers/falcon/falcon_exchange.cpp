@@ -13,7 +13,7 @@ void FalconExchange::receive(std::span<const std::uint8_t> transfer) noexcept {
   const int replies = stream_.push_transfer(transfer);
   if (replies == 0) return;
   fresh_ = replied_ = true;
-  // More than are due: replies to what another program sent, or that had been given up.
+  // More replies than are due: to packets of another program, or late ones.
   due_ = std::max(0, due_ - replies);
 }
 
@@ -50,7 +50,7 @@ bool FalconExchange::take(const Reply& reply, Time now) noexcept {
   if (jumps(position_mm, now)) return false;
   pose_ = pose;
   pose_at_ = now;
-  // Homing moves the origin, so readings before it say nothing about the hand's motion.
+  // Homing moves the origin, so earlier readings must not enter velocities.
   if (!known_ || !homed_) velocity_.forget();
   known_ = homed_;
   DeviceSample sample{position_mm, velocity_.add(position_mm, now), 0, reply.buttons, homed_};
@@ -75,7 +75,7 @@ bool FalconExchange::jumps(Vec3 position_mm, Time now) noexcept {
 }
 
 PerLeg FalconExchange::torques(Time now) noexcept {
-  // Taken even if it is not sent, so that no old force waits in the link.
+  // Read even if it is not sent, so that no old force remains in the link.
   const Vec3 force_n = link_.force_to_send(now);
   if (!homed_ || !known_ || missing_ >= kForcelessAfter) return {};
   if (pose_.status != PoseStatus::ok) return {};

@@ -1,5 +1,5 @@
-/// \file The meaning of a Falcon's replies, and the commands to it: everything between packets and
-/// the DeviceLink, without USB, threads or clocks.
+/// \file Interprets a Falcon's replies and makes its commands: everything between packets and the
+///   DeviceLink, without USB, threads or clocks.
 #pragma once
 
 #include "core/vec.hpp"
@@ -25,12 +25,12 @@ namespace touchtrial::device::falcon {
 /// and its lag 2 ms.
 using VelocityEstimate = device::VelocityEstimate<5>;
 
-/// Belongs to the driver's own thread; the link takes samples to the servo and brings forces.
+/// Belongs to the driver's own thread; the link passes samples to the servo and forces from it.
 /// Nothing here allocates, locks or throws.
 ///
-/// An exchange is one command and the reply to it. Replies do not say to which command they belong,
-/// so they are counted: a Falcon gives one reply to each command that it gets. A reply that comes
-/// after its exchange has ended is still published, but it does not answer the next command.
+/// An exchange is one command and the reply to it. Replies do not identify their command, so they
+/// are counted: a Falcon gives one reply to each command that it gets. A reply that comes after its
+/// exchange has ended is still published, but it does not answer the next command.
 class FalconExchange final : public FtdiStreamSink {
  public:
   using Time = DeviceLink::Time;
@@ -39,9 +39,9 @@ class FalconExchange final : public FtdiStreamSink {
   static constexpr int kForcelessAfter = 2;
   /// ... and after which the device counts as lost.
   static constexpr int kLostAfter = 20;
-  /// Exchanges in a row that ended with a reply still due, after which it will not come any more.
+  /// Exchanges in a row that ended with a reply still due, after which it counts as lost.
   static constexpr int kGivenUpAfter = 3;
-  /// No hand moves faster: a reply that says so is damaged, unless the next ones agree with it.
+  /// No hand moves faster: such a reply is corrupt, unless the next ones confirm it.
   static constexpr double kMaxSpeedMmS = 5'000.0;
   static constexpr int kMaxJumps = 3;
 
@@ -56,20 +56,20 @@ class FalconExchange final : public FtdiStreamSink {
 
   /// Publishes the newest reply, if one has come since the last call.
   void publish(Time now) noexcept;
-  /// Begins an exchange. Call `publish` first, for what came late.
+  /// Begins an exchange. Call `publish` first, for late replies.
   /// \return the packet to send; it has no force before all axes are homed, and none after missing
   ///   replies
   [[nodiscard]] Packet begin(Time now) noexcept;
   /// \return whether the exchange has a reply, and none is due any more
   [[nodiscard]] bool is_answered() const noexcept { return replied_ && due_ == 0; }
   /// Ends an exchange. Too many in a row without a reading fail the link: bad_data if bytes came
-  /// that make no sense, else link_lost.
+  /// that are not replies, else link_lost.
   void end() noexcept;
   /// \return whether all axes are homed, by the newest reply
   [[nodiscard]] bool homed() const noexcept { return homed_; }
 
-  /// \return the last packet of all: lights off, no force
-  [[nodiscard]] static Packet farewell() noexcept { return encode_command({}); }
+  /// \return a packet with lights off and zero force
+  [[nodiscard]] static Packet zero_packet() noexcept { return encode_command({}); }
 
  private:
   void note_missing() noexcept;
@@ -84,9 +84,9 @@ class FalconExchange final : public FtdiStreamSink {
   bool limited_ = false;  ///< the motors could not give the whole force of the last command
 
   FalconStream stream_;
-  int due_ = 0;           ///< replies to commands that went out
+  int due_ = 0;           ///< outstanding replies to sent commands
   int overdue_ = 0;       ///< exchanges in a row that ended while one was due
-  bool fresh_ = false;    ///< a reply came that is not published yet
+  bool fresh_ = false;    ///< a reply is not published yet
   bool replied_ = false;  ///< a reply came since the exchange began
   bool read_ = false;     ///< ... and it was a Falcon's reading
   int missing_ = 0;

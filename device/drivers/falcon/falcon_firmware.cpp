@@ -27,7 +27,7 @@ constexpr std::uint16_t kBaudRunning = 0x02;
 constexpr std::uint16_t kLoadingLatencyMs = 16;
 constexpr std::uint16_t kRunningLatencyMs = 1;
 
-// The loader's two words, and its answers.
+// The loader's two commands, and its answers.
 constexpr std::array<std::uint8_t, 3> kHello = {0x0a, 0x43, 0x0d};
 constexpr std::array<std::uint8_t, 4> kHelloAnswer = {0x0a, 0x44, 0x2c, 0x0d};
 constexpr std::array<std::uint8_t, 1> kStart = {0x41};
@@ -38,7 +38,7 @@ constexpr std::size_t kBlockBytes = kUsbPacketSize - kFtdiStatusSize;
 constexpr milliseconds kSendLimit{200};
 /// Well above the latency timer, which sends a packet every 16 ms even if it is empty.
 constexpr milliseconds kBootPacketLimit{50};
-/// Empty packets after which no answer will come any more.
+/// Empty packets after which no answer is expected.
 constexpr int kPatiencePackets = 2;
 
 void purge(FtdiTransport& transport) {
@@ -56,7 +56,7 @@ bool receive_more(FtdiTransport& transport, Bytes& bytes) {
   return true;
 }
 
-/// Receives this many bytes, or fewer if no more come.
+/// Receives this many bytes, or fewer at the time limit.
 Bytes receive_bytes(FtdiTransport& transport, std::size_t count) {
   Bytes bytes;
   for (int idle = 0; bytes.size() < count && idle < kPatiencePackets;) {
@@ -65,7 +65,7 @@ Bytes receive_bytes(FtdiTransport& transport, std::size_t count) {
   return bytes;
 }
 
-/// \return whether the answer came, perhaps after other bytes: sometimes a zero leads
+/// \return whether the answer was received, possibly after other bytes, such as a leading zero
 bool answers(FtdiTransport& transport, std::span<const std::uint8_t> expected) {
   Bytes bytes;
   for (int idle = 0; idle < kPatiencePackets && bytes.size() < kUsbPacketSize;) {
@@ -116,7 +116,7 @@ std::size_t send_image(FtdiTransport& transport, std::span<const std::uint8_t> i
 }
 
 /// Loads the image once.
-/// \return what failed; empty if nothing did
+/// \return the failure; empty on success
 std::string try_load(FtdiTransport& transport, std::span<const std::uint8_t> image) {
   reset_into_loader(transport);
   if (!shakes_hands(transport)) return "its loader does not answer";

@@ -1,5 +1,5 @@
-/// \file Loads the vendor's firmware into a Falcon, which forgets it without power. The user
-/// provides the image: this program contains none.
+/// \file Loads the vendor's firmware into a Falcon, which loses it without power. The user provides
+/// the image: this program contains none.
 #pragma once
 
 #include "device/drivers/falcon/ftdi_transport.hpp"

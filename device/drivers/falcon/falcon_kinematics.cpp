@@ -28,7 +28,7 @@ double determinant(const std::array<Vec3, 3>& rows) noexcept {
   return dot(rows[0], cross(rows[1], rows[2]));
 }
 
-/// The middle of the sphere on which a leg holds the hand.
+/// The centre of the sphere on which a leg holds the hand.
 Vec3 sphere_middle_m(double theta1_rad, const LegDirection& leg) noexcept {
   return to_native_axes(
       {kOffsetM + kArmM * std::cos(theta1_rad), 0.0, kArmM * std::sin(theta1_rad)}, leg);
@@ -47,7 +47,7 @@ std::optional<Vec3> meeting_point(const std::array<Vec3, 3>& middle_m) noexcept 
   return middle_m[0] + to_circle - std::sqrt(height_square / area_square) * normal;
 }
 
-/// How the legs stand at a position that they reach.
+/// The configuration of the legs at a reachable position.
 struct Stand {
   LegJacobian jacobian;
   bool upright = true;  ///< every parallelogram leads away from the base
@@ -68,7 +68,7 @@ Stand stand_at(Vec3 native_m, const PerLeg& theta1_rad) noexcept {
   return stand;
 }
 
-/// \return whether the legs stand as they do in a Falcon's housing
+/// \return whether the configuration is possible in a Falcon's housing
 bool is_falcon(const Stand& stand) noexcept {
   const PerLeg& lever_m = stand.jacobian.lever_m;
   return stand.upright && lever_m[0] >= 0.0 && lever_m[1] >= 0.0 && lever_m[2] >= 0.0 &&

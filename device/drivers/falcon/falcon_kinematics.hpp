@@ -4,8 +4,8 @@
 /// (its motor); a parallelogram, which yields to either side, leads from the arm's end to the grip.
 /// The grip does not turn, so three spheres around the arms' ends, each moved by the leg's offset,
 /// meet in it. Source: R. Clavel, "Delta, a fast robot with parallel geometry", ISIR 1988. Lengths
-/// and angles are those with which Force Dimension's library 3.17.5 drives a Falcon, as it answers
-/// when asked (docs/devices/falcon.md). Not verified on hardware.
+/// and angles were read from Force Dimension's library 3.17.5, which can drive a Falcon
+/// (docs/devices/falcon.md). Not verified on hardware.
 ///
 /// Two frames. Native, m: z along the device's axis towards the person, measured from the arms'
 /// axes. Device, mm: the frame of HapticDevice. Only `to_device_mm` knows both.
@@ -27,7 +27,7 @@ using PerLeg = std::array<double, 3>;
 
 /// The device frame's origin in the native frame, on the axis, where theta1 is 25.4 degrees.
 inline constexpr Vec3 kCentreM = {0.0, 0.0, 0.155};
-/// Every position nearer to the origin of the device frame than this is in reach, mm.
+/// Every position within this distance of the device frame's origin is reachable, mm.
 inline constexpr double kWorkspaceRadiusMm = 40.0;
 
 [[nodiscard]] constexpr Vec3 to_device_mm(Vec3 native_m) noexcept {
@@ -76,8 +76,8 @@ struct LegPoint {
 [[nodiscard]] double theta1_of_count(std::int16_t count) noexcept;
 [[nodiscard]] PerLeg theta1_of_counts(const EncoderCounts& counts) noexcept;
 
-/// How the legs act on the hand at one pose:
-/// d theta1_i / d position = pull_i / lever_i, in rad/m.
+/// The action of the legs on the hand at one pose: d theta1_i / d position = pull_i / lever_i, in
+/// rad/m.
 struct LegJacobian {
   std::array<Vec3, 3> pull;  ///< of length 1, native axes
   PerLeg lever_m{};          ///< 0 where an arm and its parallelogram are in line
@@ -90,7 +90,7 @@ struct LegJacobian {
 
 enum class PoseStatus {
   ok,
-  out_of_reach,  ///< no position has these angles, so they are not a Falcon's reading
+  out_of_reach,  ///< no position has these angles, so they are not a valid reading
   singular,      ///< the position exists, but no torques give a force there
 };
 

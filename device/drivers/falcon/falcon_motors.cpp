@@ -6,7 +6,7 @@
 namespace touchtrial::device::falcon {
 namespace {
 
-/// The unit of time in which the motors' heat is counted.
+/// The time unit of the motors' heat.
 constexpr double kHeatTickS = 0.001;
 
 ThermalBudget budget_of(const FalconSettings& settings) noexcept {

@@ -1,9 +1,8 @@
-/// \file What a Falcon's motors are asked for: torques as motor values, within the range of every
-/// motor and within what it can hold without getting too warm.
+/// \file Converts torques to a Falcon's motor values, within each motor's range and thermal limit.
 ///
-/// A force may load one motor alone, so the safety chain's limits of the force's norm cannot see
-/// how hard a motor works. Here each has its own. A limit shortens all three motors by one factor,
-/// so that the force keeps its direction.
+/// A force may load a single motor, so the safety chain's limits of the force's norm do not protect
+/// a motor. Here each motor has its own limit. A limit scales all three motors by one factor, which
+/// preserves the force's direction.
 ///
 /// Belongs to the driver's own thread; nothing here allocates, locks or throws.
 #pragma once
@@ -20,17 +19,17 @@ namespace touchtrial::device::falcon {
 
 /// The motor value of a torque, N m, at an arm. Source: S. Martin and N. Hillier, "Characterisation
 /// of the Novint Falcon haptic device for application as a robot manipulator", ACRA 2009. Other
-/// programs have other numbers (docs/devices/falcon.md). Not verified on hardware.
+/// programs use other numbers (docs/devices/falcon.md). Not verified on hardware.
 inline constexpr double kMotorValuePerNm = -6616.0;
 
-/// The force that one unit of motor value gives at least, at every place of the workspace and in
-/// every direction, N. The least is at its edge; at the centre it is 1.85 mN.
+/// The minimum force of one unit of motor value, over all positions of the workspace and all
+/// directions, N. The least is at its edge; at the centre it is 1.85 mN.
 inline constexpr double kForcePerMotorValueN = 1.59e-3;
 
-/// What goes to the motors.
+/// The command to the motors.
 struct MotorCommand {
   MotorValues values{};
-  bool limited = false;  ///< less than the torques asked for
+  bool limited = false;  ///< less than the requested torques
 };
 
 class FalconMotors {
@@ -39,7 +38,7 @@ class FalconMotors {
 
   explicit FalconMotors(const FalconSettings& settings) noexcept;
 
-  /// Begins a command; the one before it counts as sent until now.
+  /// Begins a command; the previous one counts as sent until now.
   /// \param now  never earlier than in the last call
   /// \return values within every limit; zeros, not limited, if a torque is not finite
   [[nodiscard]] MotorCommand command(const PerLeg& torques_nm, Time now) noexcept;

@@ -30,7 +30,7 @@ std::int16_t take_nibbles(std::span<const std::uint8_t, kPacketSize> packet,
   return static_cast<std::int16_t>(static_cast<std::uint16_t>(bits));
 }
 
-/// \return whether a byte may stand at this place of a reply
+/// \return whether a byte is valid at this position of a reply
 bool fits_reply(std::uint8_t byte, std::size_t at) noexcept {
   if (at == 0) return byte == kFirst;
   if (at < kFlagsAt) return byte >= kZero && byte <= kZero + 0xF;
@@ -100,7 +100,7 @@ void FalconStream::start_packet_at(std::uint8_t byte) noexcept {
 }
 
 bool FalconStream::push_byte(std::uint8_t byte) noexcept {
-  // Only the first byte of a packet can begin one, so no byte has to be read twice.
+  // Only a packet's first byte can start a packet, so no byte has to be read twice.
   if (!fits_reply(byte, size_)) {
     start_packet_at(byte);
     return false;

@@ -40,7 +40,7 @@ struct Lights {
 struct Command {
   MotorValues motors{};
   std::uint8_t leds = 0;  ///< from `led_bits`
-  bool homing = true;     ///< lets the axes home when a person moves them; always on
+  bool homing = true;     ///< allows axes to home when a person moves them; always on
 };
 
 [[nodiscard]] Packet encode_command(const Command& command) noexcept;
@@ -72,20 +72,20 @@ struct Reply {
 inline constexpr std::size_t kUsbPacketSize = 64;
 inline constexpr std::size_t kFtdiStatusSize = 2;  ///< at the front of every USB packet from it
 
-/// Finds replies among the bytes from a Falcon, also after bytes were lost. Keeps at most one
+/// Finds replies in the byte stream from a Falcon, even after lost bytes. Keeps at most one
 /// unfinished packet.
 class FalconStream {
  public:
   /// Reads one bulk transfer, with the FTDI's status bytes.
-  /// \return how many replies it finished; `newest` is the last of them
+  /// \return the number of completed replies; `newest` is the last of them
   int push_transfer(std::span<const std::uint8_t> transfer) noexcept;
 
   /// \return the last reply; a default one before the first
   [[nodiscard]] const Reply& newest() const noexcept { return newest_; }
   [[nodiscard]] std::uint64_t replies() const noexcept { return replies_; }
-  /// \return the number of bytes that belonged to no reply: a measure of how bad the link is
+  /// \return the number of bytes outside of replies, a measure of link quality
   [[nodiscard]] std::uint64_t discarded_bytes() const noexcept { return discarded_; }
-  /// Forgets the unfinished packet, after a purge of the chip's buffers. The counters stay.
+  /// Discards the unfinished packet, after a purge of the chip's buffers. Counters are unchanged.
   void restart() noexcept;
 
  private:

@@ -29,13 +29,13 @@ class FtdiStreamSink {
   virtual ~FtdiStreamSink() = default;
   /// \param transfer  the bytes of one bulk transfer, with the chip's status bytes; may be empty
   virtual void receive(std::span<const std::uint8_t> transfer) noexcept = 0;
-  /// A posted packet has gone out.
+  /// A posted packet was sent.
   virtual void sent() noexcept {}
 };
 
-/// A chip that is open and claimed; the destructor closes it. Belongs to one thread at a time. It
-/// has two uses that never mix: single transfers, which wait and throw, for setting up; and the
-/// stream, with one read always queued, which neither waits nor throws.
+/// An open, claimed chip; the destructor closes it. Belongs to one thread at a time. It has two
+/// separate modes: single transfers, which wait and throw, for setup; and the stream, with one read
+/// always queued, which neither waits nor throws.
 class FtdiTransport {
  public:
   virtual ~FtdiTransport() = default;
@@ -46,12 +46,12 @@ class FtdiTransport {
   /// \name Setting up: each waits, and throws DeviceError if the device is gone
   ///@{
   virtual void control(FtdiRequest request, std::uint16_t value) = 0;
-  /// \return how many bytes went out; fewer than all if the limit was too short. Throws at once if
-  ///   the bus gives nothing back.
+  /// \return the number of sent bytes; fewer than all at the time limit. Throws at once if the bus
+  ///   does not return the transfer.
   [[nodiscard]] virtual std::size_t send(std::span<const std::uint8_t> bytes,
                                          std::chrono::milliseconds limit) = 0;
   /// Receives the next packet, with its status bytes.
-  /// \return its length; 0 if none came within the limit
+  /// \return its length; 0 at the time limit
   [[nodiscard]] virtual std::size_t receive(std::span<std::uint8_t, kUsbPacketSize> packet,
                                             std::chrono::milliseconds limit) = 0;
   ///@}
@@ -62,18 +62,18 @@ class FtdiTransport {
   /// \param sink  must outlive the stream
   /// \throws DeviceError if it cannot
   virtual void start_stream(FtdiStreamSink& sink) = 0;
-  /// Ends the stream and waits, a few seconds at most, until no transfer is under way; if one still
-  /// is, the device counts as lost. Safe on a lost device.
+  /// Ends the stream and waits, a few seconds at most, for pending transfers; if one remains, the
+  /// device counts as lost. Safe on a lost device.
   virtual void stop_stream() noexcept = 0;
-  /// Sends without waiting, at most kUsbPacketSize bytes. If the device has not taken the packet
-  /// before it yet, that one is cancelled and these bytes go in its place, so that no old force
-  /// waits in front of a new one. After kMaxStuck such packets in a row the link is lost.
-  /// \return whether the bytes were taken
+  /// Sends without waiting, at most kUsbPacketSize bytes. If the device has not accepted the
+  /// previous packet yet, that one is cancelled and replaced, so that no old force delays a new
+  /// one. After kMaxStuck such packets in a row the link is lost.
+  /// \return whether the bytes were accepted
   [[nodiscard]] virtual bool post(std::span<const std::uint8_t> bytes) noexcept = 0;
   static constexpr int kMaxStuck = 5;
-  /// Waits until bytes arrive, at most this long, and hands them to the sink.
+  /// Waits for bytes, at most this long, and passes them to the sink.
   virtual void serve(std::chrono::microseconds at_most) noexcept = 0;
-  /// \return whether the device is unplugged or unusable. It stays so: open the device anew.
+  /// \return whether the device is unplugged or unusable. Permanent: reopen the device.
   [[nodiscard]] virtual bool lost() const noexcept = 0;
   ///@}
 };

@@ -16,12 +16,12 @@ constexpr unsigned char kInEndpoint = 0x81;
 constexpr std::uint8_t kVendorRequest = 0x40;
 constexpr unsigned kControlTimeoutMs = 1000;
 
-/// As many failed transfers in a row may come from a bad cable; after more the link is lost.
+/// A bad cable may cause this many failed transfers in a row; after more the link is lost.
 constexpr int kMaxFailures = 20;
-/// The time for cancelled transfers to come back.
+/// The time limit for cancelled transfers.
 constexpr std::chrono::seconds kPatience{2};
 
-/// Leaks a transfer that libusb never gave back: it would write to freed memory.
+/// Leaks a transfer that libusb did not return, because it might still write to the memory.
 void leave_to_libusb(UsbTransfer& transfer) {
   static std::vector<UsbTransfer>& left = *new std::vector<UsbTransfer>;
   left.push_back(std::move(transfer));
@@ -59,7 +59,7 @@ class UsbFtdi final : public FtdiTransport {
   void note(libusb_transfer_status status) noexcept;
   [[nodiscard]] DeviceError failure(int error) const;
 
-  // In the order of use, so that they are released in the reverse.
+  // Declared in the order of acquisition, for release in reverse.
   UsbContext context_;
   UsbHandle handle_;
   std::string where_;
@@ -69,7 +69,7 @@ class UsbFtdi final : public FtdiTransport {
   UsbTransfer send_;
   std::array<std::uint8_t, kUsbPacketSize> in_{};
   std::array<std::uint8_t, kUsbPacketSize> out_{};
-  std::array<std::uint8_t, kUsbPacketSize> next_{};  ///< to send once `out_` has come back
+  std::array<std::uint8_t, kUsbPacketSize> next_{};  ///< to send once `out_` has completed
   std::size_t next_size_ = 0;
   FtdiStreamSink* sink_ = nullptr;  ///< null: no stream, so no further read is queued
   bool reading_ = false;
@@ -77,9 +77,9 @@ class UsbFtdi final : public FtdiTransport {
   bool halted_ = false;  ///< the device refuses packets until its endpoint is cleared
   int stuck_ = 0;        ///< packets in a row that the device did not take in time
   int failures_ = 0;
-  int deaf_ = 0;       ///< calls in a row in which libusb failed to handle its events
-  bool lost_ = false;  ///< for the stream; a last packet may still be tried
-  bool dead_ = false;  ///< the bus gave a transfer not back: another would wait for ever
+  int failed_polls_ = 0;  ///< calls in a row in which libusb failed to handle events
+  bool lost_ = false;     ///< for the stream; a final packet may still be tried
+  bool dead_ = false;     ///< the bus did not return a transfer, so another would wait for ever
 };
 
 UsbFtdi::UsbFtdi(UsbContext context, UsbHandle handle)
@@ -110,7 +110,7 @@ std::size_t UsbFtdi::transfer(unsigned char endpoint, std::uint8_t* bytes, int c
                               std::chrono::milliseconds limit) {
   if (dead_) throw failure(LIBUSB_ERROR_IO);
   int done = 0;
-  // To libusb a limit of 0 is no limit.
+  // libusb treats a limit of 0 as no limit.
   const auto limit_ms = static_cast<unsigned>(std::max<std::int64_t>(limit.count(), 1));
   int result = libusb_bulk_transfer(handle_.get(), endpoint, bytes, count, &done, limit_ms);
   if (result == LIBUSB_ERROR_PIPE && libusb_clear_halt(handle_.get(), endpoint) == 0) {
@@ -145,7 +145,7 @@ void UsbFtdi::stop_stream() noexcept {
   if (sending_) libusb_cancel_transfer(send_.get());
   // A transfer belongs to libusb until its callback has run, even if the device is gone.
   const auto give_up = std::chrono::steady_clock::now() + kPatience;
-  while ((reading_ || sending_) && deaf_ <= kMaxFailures &&
+  while ((reading_ || sending_) && failed_polls_ <= kMaxFailures &&
          std::chrono::steady_clock::now() < give_up) {
     serve(std::chrono::milliseconds(100));
   }
@@ -168,7 +168,7 @@ bool UsbFtdi::post(std::span<const std::uint8_t> bytes) noexcept {
   next_size_ = bytes.size();
   if (!sending_) return submit_next();
   if (++stuck_ >= kMaxStuck) lost_ = true;
-  // It comes back cancelled, or sent after all; then the next one is submitted.
+  // It completes as cancelled or sent; then the next one is submitted.
   libusb_cancel_transfer(send_.get());
   return !lost_;
 }
@@ -191,8 +191,8 @@ void UsbFtdi::serve(std::chrono::microseconds at_most) noexcept {
   limit.tv_usec = at_most.count() % 1'000'000;
   const int error = libusb_handle_events_timeout_completed(context_.get(), &limit, nullptr);
   if (error == LIBUSB_ERROR_INTERRUPTED) return;
-  deaf_ = error == 0 ? 0 : deaf_ + 1;
-  if (deaf_ > kMaxFailures) lost_ = true;
+  failed_polls_ = error == 0 ? 0 : failed_polls_ + 1;
+  if (failed_polls_ > kMaxFailures) lost_ = true;
 }
 
 void UsbFtdi::note(libusb_transfer_status status) noexcept {
@@ -218,7 +218,7 @@ void LIBUSB_CALL UsbFtdi::on_sent(libusb_transfer* transfer) {
   if (self.sink_ == nullptr) return;
   const bool cancelled = transfer->status == LIBUSB_TRANSFER_CANCELLED;
   if (!cancelled) self.note(transfer->status);
-  // One that was cancelled too late has gone out as well.
+  // One that was cancelled too late was also sent.
   const bool whole = transfer->actual_length == transfer->length;
   if (whole && (cancelled || transfer->status == LIBUSB_TRANSFER_COMPLETED)) {
     self.stuck_ = 0;
@@ -230,7 +230,7 @@ void LIBUSB_CALL UsbFtdi::on_sent(libusb_transfer* transfer) {
   if (next) static_cast<void>(self.submit_next());
 }
 
-/// Finds out whether the device can be claimed, by claiming it for a moment.
+/// Checks whether the device can be claimed, by claiming it briefly.
 void fill_in(UsbFalcon& falcon, libusb_device* device) {
   try {
     const UsbHandle handle = open_usb_device(device);
@@ -252,8 +252,8 @@ UsbHandle open_only(const std::vector<UsbDevice>& falcons) {
                     "); name the serial number of one in the device settings, falcon.serial");
 }
 
-/// Passes over devices that do not open; if no other has the serial number, the error gives the
-/// reason of the last of them.
+/// Skips devices that do not open; if no other has the serial number, the error gives the last
+/// reason.
 /// \return the handle of the Falcon with this serial number
 UsbHandle open_by_serial(const std::vector<UsbDevice>& falcons, const std::string& serial) {
   std::vector<std::string> seen;

@@ -9,19 +9,19 @@
 
 namespace touchtrial::device::falcon {
 
-/// A Falcon that is plugged in.
+/// A connected Falcon.
 struct UsbFalcon {
   std::string where;    ///< "USB bus 1 port 2, address 7"
   std::string serial;   ///< empty if it has none or may not be opened
   std::string trouble;  ///< why it cannot be opened, with the remedy, one line; empty if it can
 };
 
-/// Opens each Falcon for a moment, and moves nothing.
-/// \return every Falcon that is plugged in
+/// Opens each Falcon briefly, without motion.
+/// \return every connected Falcon
 /// \throws DeviceError if USB cannot be used at all
 [[nodiscard]] std::vector<UsbFalcon> find_usb_falcons();
 
-/// Opens and claims a Falcon; a kernel driver that holds it is detached for as long.
+/// Opens and claims a Falcon; a kernel driver that holds it is detached meanwhile.
 /// \param serial  of the one to open; empty: the only one
 /// \throws DeviceError with the remedy if there is none, more than one, no permission, or another
 ///   program uses it

@@ -1,5 +1,4 @@
-/// \file libusb's objects with owners that release them, and the Falcons on the bus. Private to
-/// this folder.
+/// \file RAII owners of libusb's objects, and the Falcons on the bus. Private to this folder.
 #pragma once
 
 #include <memory>
@@ -26,7 +25,7 @@ using UsbTransfer = std::unique_ptr<libusb_transfer, UsbRelease>;
 /// \throws DeviceError if there is not enough memory
 [[nodiscard]] UsbTransfer make_usb_transfer();
 
-/// The interface of a handle, claimed from a kernel driver if one has it, which gets it back.
+/// The claimed interface of a handle; a kernel driver is detached if necessary, and reattached.
 class UsbClaim {
  public:
   /// \throws DeviceError naming `where` if another program has it
@@ -44,12 +43,12 @@ class UsbClaim {
 [[nodiscard]] std::vector<UsbDevice> falcons_on_bus(libusb_context* context);
 /// \return for instance "USB bus 1 port 2, address 7"
 [[nodiscard]] std::string place_of(libusb_device* device);
-/// \return empty if the device has none or does not tell it
+/// \return empty if the device has none or does not report it
 [[nodiscard]] std::string serial_of(libusb_device_handle* handle);
 /// \throws DeviceError with the remedy if it may not be opened or is gone
 [[nodiscard]] UsbHandle open_usb_device(libusb_device* device);
 
-/// \return the end of a message about an error of libusb: the cause and the remedy
+/// \return the cause and the remedy of an error of libusb, for the end of a message
 [[nodiscard]] std::string usb_remedy(int error);
 
 }  // namespace touchtrial::device::falcon

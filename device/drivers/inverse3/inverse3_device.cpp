@@ -16,19 +16,19 @@ using std::chrono::milliseconds;
 
 constexpr double kMmPerM = 1000.0;
 constexpr double kRateHz = 1e9 / static_cast<double>(Inverse3Device::kPeriod.count());
-/// Radius of the ball that the arm reaches, mm.
+/// Radius of the sphere that the arm reaches, mm.
 constexpr double kInverse3RadiusMm = 100.0;
 constexpr double kMinverseRadiusMm = 40.0;
-/// A place further from the middle than this is no place of the arm, m.
+/// The arm cannot be further from the middle, m.
 constexpr double kFarthestM = 1.0;
-/// The middle of the workspace in the frame of the arm's base, in which services before 3.5 speak,
-/// m. After the positions in the documentation's examples; not verified.
+/// The middle of the workspace in the frame of the arm's base, which services before 3.5 use, m.
+/// From positions in the documentation's examples; not verified.
 constexpr Vec3 kCentreFromBaseM = {0.0, -0.12, 0.15};
-/// How often, and after what pause, the configuration is asked for until it is as wanted.
+/// How often, and at what interval, the configuration is queried until it matches.
 constexpr int kReadBacks = 20;
 constexpr milliseconds kBetweenReadBacks{10};
 constexpr milliseconds kListPatience{5000};
-constexpr milliseconds kFarewellPatience{200};
+constexpr milliseconds kFinalPatience{200};
 
 /// The service's x to the right, y away, z up, and ours: x to the right, y up, z towards the
 /// person.
@@ -50,7 +50,7 @@ ServiceAddress address_of(const Inverse3Settings& settings) {
   return {settings.host, settings.port};
 }
 
-/// Asks a question to which there is an answer.
+/// Sends a query that must have an answer.
 std::string answer_of(const ServiceAddress& http, const std::string& path,
                       std::chrono::nanoseconds patience) {
   const HttpAnswer answer = ask_service(http, path, patience);
@@ -79,7 +79,7 @@ KnownService service_at(const ServiceAddress& http, const std::string& version_a
                     version.text() + ", and versions 3.1 to 3.x are known; install 3.5 or later");
 }
 
-/// Services before later versions 3.5 have HTTP on a port of its own.
+/// Older services, up to early 3.5, have HTTP on a separate port.
 /// \return nothing if that port has no HTTP either
 std::optional<KnownService> older_service(const Inverse3Settings& settings,
                                           std::chrono::nanoseconds patience) {
@@ -131,11 +131,12 @@ DeviceReadiness readiness_of(const ArmStatus& status) noexcept {
   return status.calibrated ? DeviceReadiness::needs_calibration : DeviceReadiness::needs_inkwell;
 }
 
-/// \return why the configuration does not serve, and the remedy; empty if it does
-std::string trouble_in(const DeviceConfig& config) {
+/// \return why the configuration is unsuitable, and the remedy; empty if suitable
+std::string fault_in(const DeviceConfig& config) {
   const std::string remedy = "; reset it for the profile touchtrial in Haply Hub, or close the Hub";
   if (!config.force_gate || !config.damping) {
-    return "the service does not tell its force gate and damping, which alter textures; update it";
+    return "the service does not report its force gate and damping, which alter textures; update "
+           "it";
   }
   if (*config.force_gate != 0.0) {
     return "the service keeps its force gate at " + number_text(*config.force_gate) +
@@ -158,7 +159,7 @@ std::string switched(const std::optional<bool>& on) {
   return *on ? "on" : "off";
 }
 
-/// What a session records of the way from a command to a force, in place of a firmware's number.
+/// The configuration between command and force, which a session records as firmware.
 std::string firmware_text(const DeviceConfig& config, const ServiceVersion& version) {
   std::string text = config.firmware.empty() ? "" : config.firmware + ", ";
   text += "service " + version.text();
@@ -267,7 +268,7 @@ void Inverse3Device::choose_device(const ServiceReport& inventory) {
   describe(device->config.value_or(DeviceConfig{}));
 }
 
-/// Forces of several sessions add up, and only we know what is safe for the hand.
+/// Forces of several sessions would add up beyond our safety limits.
 void Inverse3Device::expect_no_other_session(const ServiceReport& inventory) const {
   const std::string remedy =
       "; forces of several programs would add up: close the other one (Haply Hub too)";
@@ -301,11 +302,11 @@ DeviceReport Inverse3Device::ask_for_inventory(const std::string& message) {
 void Inverse3Device::configure() {
   DeviceReport device = ask_for_inventory(first_message(known_.version, id_));
   if (known_.version.has_filters()) {
-    std::string trouble = "the service does not tell its configuration; update it";
+    std::string trouble = "the service does not report its configuration; update it";
     for (int i = 0; i < kReadBacks && !trouble.empty(); ++i) {
       if (i > 0) std::this_thread::sleep_for(kBetweenReadBacks);
       device = ask_for_inventory(inventory_request(known_.version, id_));
-      if (device.config) trouble = trouble_in(*device.config);
+      if (device.config) trouble = fault_in(*device.config);
     }
     if (!trouble.empty()) throw DeviceError(one_line("inverse3: " + trouble));
   }
@@ -317,7 +318,7 @@ void Inverse3Device::configure() {
   listen_to_events();
 }
 
-/// It belongs to the device and not to the session, so it is not changed here.
+/// It is a setting of the device, not of the session, so it is not changed here.
 void Inverse3Device::refuse_home_return(DeviceConfig& config) const {
   const std::string path = "/inverse3/" + id_ + "/config/home_return";
   if (!config.home_return) {
@@ -331,13 +332,13 @@ void Inverse3Device::refuse_home_return(DeviceConfig& config) const {
                known_.http.text() + path));
 }
 
-/// Services before 3.5 need not have the channel.
+/// Services before 3.5 may lack the channel.
 void Inverse3Device::listen_to_events() try {
   service_->listen_to({settings_.host, settings_.events_port}, options_.patience);
 } catch (const DeviceError&) {
   if (!known_.version.has_filters()) return;
   throw DeviceError(one_line(
-      "inverse3: the service's events, which tell of its emergency brake, do not come at " +
+      "inverse3: the service's events, which report its emergency brake, cannot be received at " +
       settings_.host + ':' + std::to_string(settings_.events_port) +
       "; correct inverse3.events_port"));
 }
@@ -368,12 +369,12 @@ void Inverse3Device::exchange_until_stopped() noexcept {
       link_.fail(DeviceFault::driver);
     }
   }
-  say_farewell();
+  send_final_zeros();
   options_.pace->end();
 }
 
 void Inverse3Device::exchange() {
-  // Taken even if it is not sent, so that no old force waits in the link.
+  // Read even if it is not sent, so that no old force remains in the link.
   const Vec3 wanted_n = link_.force_to_send(options_.pace->now());
   const bool may_push = status_.is_usable() && is_finite(wanted_n);
   const Vec3 sent_n = may_push ? within_reach(wanted_n) : Vec3{};
@@ -426,22 +427,22 @@ void Inverse3Device::handle_event(const ServiceEvent& event) noexcept {
   if (event.name == "device-safety-triggered" && stopped) link_.fail(DeviceFault::limit_passed);
 }
 
-void Inverse3Device::say_farewell() noexcept {
+void Inverse3Device::send_final_zeros() noexcept {
   try {
     const std::string no_force = force_message(known_.version, id_, {});
-    // A service that answers has taken it: what is still on its way when it closes may be lost.
+    // Waits for answers, because messages in transit at closing may be lost.
     bool answers = true;
-    for (int i = 0; i < kFarewells; ++i) {
+    for (int i = 0; i < kFinalPackets; ++i) {
       if (answers) {
         answers = service_->exchange(no_force, options_.silence) == LinkOutcome::ok;
       } else {
-        service_->post(no_force, kFarewellPatience);
+        service_->post(no_force, kFinalPatience);
       }
     }
   } catch (const std::exception&) {
-    // Without a message the arm goes idle by itself.
+    // Without messages the arm goes idle by itself.
   }
-  service_->close(kFarewellPatience);
+  service_->close(kFinalPatience);
 }
 
 Vec3 Inverse3Device::within_reach(Vec3 force_n) const noexcept {
@@ -455,7 +456,7 @@ Vec3 Inverse3Device::within_reach(Vec3 force_n) const noexcept {
 
 namespace touchtrial::device {
 
-/// Sources of what is unverified: this driver's page in docs/devices.
+/// Sources of unverified facts: this driver's page in docs/devices.
 DeviceDriver inverse3_driver() {
   return {
       .name = "inverse3",

@@ -21,31 +21,31 @@ struct Inverse3Options {
   /// Of the driver's thread: its priority is a little above that of the servo, which needs its
   /// samples.
   SchedulingRequest scheduling{SchedulingPolicy::fifo, 81, true};
-  /// The longest time for each step of opening.
+  /// Timeout of each step of opening.
   std::chrono::nanoseconds patience = std::chrono::seconds(2);
-  /// The longest time for the answer to a force; then the link counts as lost. The safety chain's
-  /// own limit on the age of a reading (10 ms) ends a run long before.
+  /// Timeout of the answer to a force, after which the link counts as lost. The safety chain's
+  /// limit on the age of a reading (10 ms) ends a run long before.
   std::chrono::nanoseconds silence = std::chrono::milliseconds(100);
 };
 
 /// A service that answered over HTTP.
 struct KnownService {
   ServiceVersion version;
-  ServiceAddress http;  ///< where it did: not always the port of its simulation channel
+  ServiceAddress http;  ///< may differ from the port of its simulation channel
 };
 
-/// Sends one force and takes one state at up to 2 kHz on a thread of its own. Sends no force before
-/// the arm is calibrated and powered. A fault latches: open the device anew.
+/// Exchanges forces and states at up to 2 kHz on a separate thread. Sends no force before the arm
+/// is calibrated and powered. A fault latches: reopen the device.
 class Inverse3Device final : public LinkedDevice {
  public:
   /// The shortest time from one exchange to the next.
   static constexpr std::chrono::nanoseconds kPeriod = std::chrono::microseconds(500);
   /// Messages without force before the connection is closed.
-  static constexpr int kFarewells = 5;
+  static constexpr int kFinalPackets = 5;
 
   /// Connects, sets the frame, switches the service's filters off and reads them back.
   /// \throws DeviceError with the remedy: no service or one of an unknown version, no such device,
-  ///   no power, another session, or a filter that stays on
+  ///   no power, another session, or a filter that cannot be switched off
   explicit Inverse3Device(const Inverse3Settings& settings, Inverse3Options options = {});
   ~Inverse3Device() override;
 
@@ -71,7 +71,7 @@ class Inverse3Device final : public LinkedDevice {
   void take(const DeviceReport& report, std::uint32_t buttons) noexcept;
   void note_status(const ArmStatus& status) noexcept;
   void handle_event(const ServiceEvent& event) noexcept;
-  void say_farewell() noexcept;
+  void send_final_zeros() noexcept;
   [[nodiscard]] Vec3 within_reach(Vec3 force_n) const noexcept;
 
   Inverse3Settings settings_;

@@ -35,8 +35,8 @@ Clock::time_point deadline_in(std::chrono::nanoseconds patience) {
                            "haply-inverse-service), or correct inverse3.host and inverse3.port"));
 }
 
-/// Runs what the context has to do until the condition holds.
-/// \return whether it holds, false if the time was over first
+/// Runs the context until a condition holds.
+/// \return false at the time limit
 template <typename Holds>
 bool run_until(asio::io_context& context, Clock::time_point deadline, Holds holds) {
   context.restart();
@@ -47,8 +47,8 @@ bool run_until(asio::io_context& context, Clock::time_point deadline, Holds hold
 }
 
 /// Waits for one operation.
-/// \param start  starts it with the handler that it is given
-/// \param give_up  makes it end at once
+/// \param start  starts it with the given handler
+/// \param give_up  cancels it
 template <typename Start, typename GiveUp>
 error_code await(asio::io_context& context, Clock::time_point deadline, Start start,
                  GiveUp give_up) {
@@ -62,7 +62,7 @@ error_code await(asio::io_context& context, Clock::time_point deadline, Start st
   return asio::error::timed_out;
 }
 
-/// \throws DeviceError if nobody listens there
+/// \throws DeviceError if no service listens there
 void connect(asio::io_context& context, Tcp::socket& socket, const ServiceAddress& where,
              Clock::time_point deadline) {
   error_code error;
@@ -76,11 +76,11 @@ void connect(asio::io_context& context, Tcp::socket& socket, const ServiceAddres
         socket.close(ignored);
       });
   if (error) refuse(where, error.message());
-  // A message is small and must not wait for a second one.
+  // Small messages must not be delayed (Nagle).
   socket.set_option(Tcp::no_delay(true), error);
 }
 
-/// One WebSocket that is always being read.
+/// One WebSocket with a continuous read.
 class Channel {
  public:
   Channel(asio::io_context& context, const ServiceAddress& where, Clock::time_point deadline)
@@ -109,7 +109,7 @@ class Channel {
   [[nodiscard]] std::uint64_t received() const noexcept { return received_; }
   [[nodiscard]] const error_code& ended() const noexcept { return ended_; }
   [[nodiscard]] const std::string& newest() const noexcept { return newest_; }
-  /// Keeps messages until they are taken, the newest of them.
+  /// Buffers messages until they are taken, up to a number of newest ones.
   void keep_messages() { keeps_ = true; }
   [[nodiscard]] std::vector<std::string> take() { return std::exchange(kept_, {}); }
 
@@ -200,14 +200,15 @@ struct ServiceLink::Channels {
   asio::io_context context;
   Channel simulation;
   std::optional<Channel> events;
-  /// Messages that are to be answered; the inventory counts as the answer to having connected.
+  /// Messages that require an answer; the inventory counts as the answer to the connection.
   std::uint64_t sent = 1;
 };
 
 ServiceLink::ServiceLink(const ServiceAddress& service, std::chrono::nanoseconds patience)
     : channels_(std::make_unique<Channels>(service, deadline_in(patience))) {
   const LinkOutcome outcome = channels_->wait_for_answer(deadline_in(patience));
-  if (outcome == LinkOutcome::silent) refuse(service, "it accepts, but says nothing");
+  if (outcome == LinkOutcome::silent)
+    refuse(service, "it accepts connections, but does not answer");
   if (outcome != LinkOutcome::ok) refuse(service, "it ends the connection");
 }
 
@@ -223,7 +224,7 @@ LinkOutcome ServiceLink::exchange(const std::string& message,
   try {
     Channels& channels = *channels_;
     const Clock::time_point deadline = deadline_in(patience);
-    // Whatever came in since the last exchange was not asked for.
+    // Messages since the last exchange were not requested.
     channels.context.restart();
     channels.context.poll();
     if (channels.simulation.ended()) return outcome_of(channels.simulation.ended());
@@ -241,7 +242,7 @@ void ServiceLink::post(const std::string& message, std::chrono::nanoseconds pati
     ++channels_->sent;
     (void)channels_->simulation.write(message, deadline_in(patience));
   } catch (const std::exception&) {
-    // The connection is gone, and with it the force.
+    // The connection is gone, so there is no force.
   }
 }
 
@@ -251,7 +252,7 @@ void ServiceLink::close(std::chrono::nanoseconds patience) noexcept {
     channels_->simulation.close(deadline);
     if (channels_->events) channels_->events->close(deadline);
   } catch (const std::exception&) {
-    // It is being given up anyway.
+    // Errors do not matter, because the connection is being closed.
   }
 }
 

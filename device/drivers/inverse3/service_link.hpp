@@ -1,5 +1,5 @@
-/// \file The way to Haply's Inverse service: HTTP questions, and the WebSockets of the simulation
-/// channel and the events channel, with time limits. Only its source knows Boost.Beast.
+/// \file Connection to Haply's Inverse service: HTTP queries, and the WebSockets of the simulation
+///   and events channels, with timeouts. Only its source uses Boost.Beast.
 #pragma once
 
 #include "core/errors.hpp"
@@ -11,10 +11,11 @@
 
 namespace touchtrial::device::inverse3 {
 
-/// The longest answer that is read, bytes; a service with many devices says some tens of thousands.
+/// The maximum length of an answer, bytes; a service with many devices sends some tens of
+/// thousands.
 inline constexpr std::size_t kMaxMessage = 1U << 20U;
 
-/// Where a service listens.
+/// The address of a service.
 struct ServiceAddress {
   std::string host;
   int port = 0;
@@ -22,44 +23,44 @@ struct ServiceAddress {
   [[nodiscard]] std::string text() const { return host + ':' + std::to_string(port); }
 };
 
-/// Nothing answers where a service should.
+/// There is no service at the address.
 class NoService : public DeviceError {
  public:
   using DeviceError::DeviceError;
 };
 
-/// The answer to an HTTP question.
+/// The answer to an HTTP query.
 struct HttpAnswer {
   unsigned status = 0;  ///< 200: as asked
   std::string body;
 };
 
-/// Asks GET `path`. Blocks for `patience` at the most, and for the system's search for the host.
-/// \throws NoService with the remedy if nothing answers
+/// Sends GET `path`. Blocks for `patience` at most, plus name resolution.
+/// \throws NoService with the remedy if there is no answer
 [[nodiscard]] HttpAnswer ask_service(const ServiceAddress& service, const std::string& path,
                                      std::chrono::nanoseconds patience);
 
-/// How an exchange ended.
+/// The result of an exchange.
 enum class LinkOutcome {
   ok,
-  silent,   ///< no answer in time; this link is of no further use
+  silent,   ///< no answer in time; the link is unusable
   closed,   ///< the service has ended the connection
-  nonsense  ///< too large, no text, or more answers than questions
+  nonsense  ///< too large, not text, or more answers than messages
 };
 
-/// The simulation channel and, beside it, the events channel. The service answers each message with
-/// exactly one; the link keeps count, so that an answer never passes for that to a later message.
-/// Belongs to one thread.
+/// The simulation channel and, beside it, the events channel. The service sends exactly one answer
+/// for each message; the link counts them, so that an answer is not mistaken for that to a later
+/// message. Belongs to one thread.
 class ServiceLink {
  public:
-  /// Connects, and waits for the inventory with which the service begins.
+  /// Connects, and waits for the inventory, which the service sends first.
   /// \throws DeviceError with the remedy
   ServiceLink(const ServiceAddress& service, std::chrono::nanoseconds patience);
   ~ServiceLink();
   ServiceLink(const ServiceLink&) = delete;
   ServiceLink& operator=(const ServiceLink&) = delete;
 
-  /// Listens to events too.
+  /// Also connects to the events channel.
   /// \throws DeviceError with the remedy
   void listen_to(const ServiceAddress& events, std::chrono::nanoseconds patience);
 
@@ -68,12 +69,12 @@ class ServiceLink {
                                      std::chrono::nanoseconds patience) noexcept;
   /// Sends a message and does not wait for the answer, before `close`.
   void post(const std::string& message, std::chrono::nanoseconds patience) noexcept;
-  /// Says goodbye.
+  /// Closes the connection properly.
   void close(std::chrono::nanoseconds patience) noexcept;
 
   /// The newest answer, at first the inventory.
   [[nodiscard]] const std::string& answer() const noexcept;
-  /// \return events that came in since the last call, at most some hundreds, oldest first
+  /// \return events since the last call, at most some hundreds, oldest first
   [[nodiscard]] std::vector<std::string> take_events();
   /// \return whether the events channel was opened and has ended
   [[nodiscard]] bool events_ended() const noexcept;

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The profile under which Haply Hub shows this program, and keeps what people set for it there.
+/// The profile name of this program in Haply Hub, which stores settings for it.
 constexpr const char* kProfile = "touchtrial";
 
 json parsed_object(std::string_view text) {
@@ -21,12 +21,12 @@ json parsed_object(std::string_view text) {
   return value;
 }
 
-/// Some answers lie in an envelope {"ok": true, "data": ...}.
+/// Some answers are wrapped as {"ok": true, "data": ...}.
 json content_of(std::string_view text) {
   json value = parsed_object(text);
   const auto data = value.find("data");
   if (!value.contains("ok") || data == value.end() || !data->is_object()) return value;
-  // Moved, as copies of what is nested deeply would exhaust the stack.
+  // Moved, because copying deeply nested values could exhaust the stack.
   json content = std::move(*data);
   return content;
 }
@@ -48,7 +48,7 @@ std::string text_in(const json& object, const char* key) {
   return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-bool truth_in(const json& object, const char* key) {
+bool bool_in(const json& object, const char* key) {
   const json& value = member_of(object, key);
   if (!value.is_boolean()) throw BadMessage(std::string(key) + " is not true or false");
   return value.get<bool>();
@@ -74,8 +74,8 @@ Vec3 vec3_in(const json& object, const char* key) {
 }
 
 ArmStatus status_of(const json& status) {
-  return {truth_in(status, "calibrated"), truth_in(status, "in_use"),
-          truth_in(status, "power_supply"), truth_in(status, "ready"), truth_in(status, "started")};
+  return {bool_in(status, "calibrated"), bool_in(status, "in_use"), bool_in(status, "power_supply"),
+          bool_in(status, "ready"), bool_in(status, "started")};
 }
 
 /// \return the largest magnitude of a damping's numbers: a scalar, and a vector that may be missing
@@ -100,10 +100,10 @@ std::string firmware_of(const json& config) {
   return major && minor ? std::to_string(*major) + '.' + std::to_string(*minor) : "";
 }
 
-/// A truth, or an object that says whether it is enabled.
+/// A boolean, or an object with the member "enabled".
 bool is_enabled(const json& setting) {
   if (setting.is_boolean()) return setting.get<bool>();
-  return truth_in(setting, "enabled");
+  return bool_in(setting, "enabled");
 }
 
 DeviceConfig config_of(const json& config) {
@@ -116,11 +116,11 @@ DeviceConfig config_of(const json& config) {
     read.damping = damping_of(member_of(*filters, "damping"));
   }
   if (const json* const torque = object_in(config, "torque_scaling")) {
-    read.torque_scaling = truth_in(*torque, "enabled");
+    read.torque_scaling = bool_in(*torque, "enabled");
   }
   if (const json* const gravity = object_in(config, "gravity_compensation")) {
     read.gravity_compensation =
-        truth_in(*gravity, "enabled") ? number_in(*gravity, "scaling_factor") : 0.0;
+        bool_in(*gravity, "enabled") ? number_in(*gravity, "scaling_factor") : 0.0;
   }
   read.handedness = text_in(config, "handedness");
   if (config.contains("home_return")) read.home_return = is_enabled(config.at("home_return"));
@@ -164,7 +164,7 @@ std::uint32_t pressed_in(const json& state) {
   return only != state.end() && *only == true ? 1U : 0U;
 }
 
-/// Grips are no concern of ours but for their buttons: what is odd about them is passed over.
+/// Only buttons of grips are used, so malformed grips are ignored.
 std::uint32_t buttons_of(const json& report) {
   for (const char* const family : {"wireless_verse_grip", "verse_grip"}) {
     const auto grips = report.find(family);
@@ -176,7 +176,7 @@ std::uint32_t buttons_of(const json& report) {
 }
 
 json command(const ServiceVersion& version, const std::string& device, Vec3 force_n) {
-  // Up to 3.4 the force's coordinates are called its values.
+  // Up to 3.4 a force's coordinates are named "values".
   const char* const key = version.has_filters() ? "vector" : "values";
   return {
       {"device_id", device},

@@ -1,4 +1,4 @@
-/// \file What Haply's Inverse service says and is told: JSON, without sockets, threads or clocks.
+/// \file Messages from and to Haply's Inverse service: JSON, without sockets, threads or clocks.
 /// Source: the service's public documentation, versions 3.1 and 3.5 (docs/devices/inverse3.md).
 #pragma once
 
@@ -13,10 +13,10 @@
 
 namespace touchtrial::device::inverse3 {
 
-/// The frame that we ask for: its origin is the middle of the workspace.
+/// The requested frame: its origin is the middle of the workspace.
 inline constexpr const char* kCentredPreset = "arm_front_centered";
 
-/// A message that is not what the documentation says. `what()` says in some words what is wrong.
+/// A message that violates the documentation. `what()` describes how.
 class BadMessage : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -34,7 +34,7 @@ struct ServiceVersion {
   }
 };
 
-/// What a device needs before it can be used.
+/// The conditions for using a device.
 struct ArmStatus {
   bool calibrated = false;
   bool in_use = false;
@@ -47,7 +47,7 @@ struct ArmStatus {
   }
 };
 
-/// How the service treats a device's forces and positions.
+/// The service's processing of a device's forces and positions.
 struct DeviceConfig {
   std::string type = "inverse3";     ///< or inverse3x, minverse
   std::string firmware;              ///< "7.4"; may be empty
@@ -58,7 +58,7 @@ struct DeviceConfig {
   std::optional<double> gravity_compensation;  ///< factor; 0 is off
   std::string handedness;                      ///< of the arm, "right" or "left"; may be empty
   std::optional<bool> home_return;             ///< whether the arm moves home by itself
-  /// Positions are in metres and in the axes of the device: nobody has turned or scaled them.
+  /// Positions are in metres along the device's axes, without rotation or scaling.
   bool plain_frame = true;
 };
 
@@ -92,13 +92,13 @@ struct ServiceEvent {
 ///@{
 /// \throws BadMessage
 [[nodiscard]] ServiceVersion version_in(std::string_view text);
-/// An inventory, or a state: the two have one form.
+/// An inventory or a state, which have the same format.
 /// \throws BadMessage
 [[nodiscard]] ServiceReport report_in(std::string_view text);
 /// The answer about the device's home return.
 /// \throws BadMessage
 [[nodiscard]] bool home_return_in(std::string_view text);
-/// \return how many sessions the service has, and their profiles' names as far as it tells them
+/// \return the number of sessions of the service, and their profile names if it reports them
 /// \throws BadMessage
 [[nodiscard]] std::vector<std::string> sessions_in(std::string_view text);
 /// \throws BadMessage
@@ -106,13 +106,12 @@ struct ServiceEvent {
 ///@}
 
 /// \name Messages to the service
-///@{
-/// The first one: who we are, the frame, filters off, no force.
+/// @{ The first message: our profile, the frame, filters off, no force.
 [[nodiscard]] std::string first_message(const ServiceVersion& version, const std::string& device);
 /// Asks for the device's configuration; no force.
 [[nodiscard]] std::string inventory_request(const ServiceVersion& version,
                                             const std::string& device);
-/// \param force_n  on the hand, in the service's frame; holds for this message alone
+/// \param force_n  on the hand, in the service's frame; applies to this message only
 [[nodiscard]] std::string force_message(const ServiceVersion& version, const std::string& device,
                                         Vec3 force_n);
 ///@}

@@ -16,17 +16,17 @@ namespace {
 constexpr double kMass = 1e-4;
 constexpr double kDamping_n_s_per_mm = 0.012;
 constexpr double kHoverStiffness_n_per_mm = 0.4;
-/// Prevents a servo that stood still from throwing the hand when it continues.
+/// Prevents a servo that stalled from throwing the hand when it continues.
 constexpr ServoClock::Time kLongestStep = std::chrono::milliseconds(20);
 constexpr double kFinestStepS = 0.001;
-/// Between planes nobody reads the device. Where the hand was then says nothing about the next one.
+/// The device is not read between planes, so an old position of the hand is discarded.
 constexpr ServoClock::Time kUnread = std::chrono::milliseconds(200);
 
 double seconds(ServoClock::Time time) noexcept {
   return std::chrono::duration<double>(time).count();
 }
 
-/// \return the vector, shortened to the greatest length
+/// \return the vector, shortened to a maximum length
 Vec2 limited(Vec2 vector, double greatest) noexcept {
   const double length = norm(vector);
   return length > greatest ? (greatest / length) * vector : vector;
@@ -124,7 +124,7 @@ DeviceStatus MouseDevice::write(Vec3 force_n) noexcept {
 void MouseDevice::look_at(const PointerState& pointer, ServoClock::Time now) noexcept {
   if (pointer.sequence != seen_.sequence) news_at_ = now;
   if (seen_.sequence == 0) {
-    // The hand begins where the pointer is first seen.
+    // The hand starts at the first position of the pointer.
     hand_mm_ = pointer.position_mm;
     followed_.reset(hand_mm_);
   }

@@ -1,7 +1,7 @@
-/// \file Texture without a haptic device: forces displace and slow the pointer on a screen. Visual,
-/// hence not blind: for demonstrations and pilot sessions. Sources: Lecuyer, Burkhardt and
-/// Etienne, "Feeling bumps and holes without a haptic interface: the perception of pseudo-haptic
-/// textures", CHI 2004; docs/devices/mouse.md.
+/// \file Pseudo-haptics with a mouse: forces displace and slow the pointer on a screen. Visual,
+/// hence not blind: for demonstrations and pilot sessions. Sources: Lecuyer, Burkhardt and Etienne,
+/// "Feeling bumps and holes without a haptic interface: the perception of pseudo-haptic textures",
+/// CHI 2004; docs/devices/mouse.md.
 #pragma once
 
 #include "device/drivers/mouse/pointer_exchange.hpp"
@@ -15,9 +15,9 @@ namespace touchtrial::device {
 /// The name of the driver.
 inline constexpr const char* kMouseDriver = "mouse";
 
-/// A critically damped mass on a spring whose far end moves: two first-order lags in a row, each by
-/// the implicit Euler rule. At any step its value is a weighted mean of its targets, so it stays
-/// within their bounds and never passes a target that rests.
+/// A critically damped mass on a spring whose far end moves: two first-order lags in series, by the
+/// implicit Euler method. Its value is always a weighted mean of its targets, so it stays within
+/// their bounds and never overshoots a target at rest.
 class SmoothPull {
  public:
   /// \param time_constant_s  of either lag, > 0; the spring's natural frequency is
@@ -33,7 +33,7 @@ class SmoothPull {
     if (step_s > 0.0) rate_ = (1.0 / step_s) * change;
   }
 
-  /// Rests at this place from now on.
+  /// Places it here, at rest.
   void reset(Vec2 value) noexcept {
     between_ = value;
     value_ = value;
@@ -50,34 +50,34 @@ class SmoothPull {
   Vec2 rate_;
 };
 
-/// How the stylus yields. With the defaults coarse textures can be told apart:
+/// The compliance of the stylus. With the defaults coarse textures are distinguishable:
 /// docs/devices/mouse.md.
 struct MouseOptions {
   double pull_n_per_mm = 0.025;   ///< of the spring back to the pointer: 0.1 N shows as 4 mm; > 0
-  double greatest_pull_n = 0.3;   ///< a greater tangential force displaces no further, > 0
+  double greatest_pull_n = 0.3;   ///< greater tangential forces displace no further, > 0
   double pull_time_s = 0.010;     ///< of the stylus on that spring: 16 Hz, > 0
   double pointer_time_s = 0.006;  ///< smooths the pointer's steps, > 0
-  double greatest_speed_mm_s = 800.0;  ///< at which the stylus follows the pointer, > 0
+  double greatest_speed_mm_s = 800.0;  ///< limit of the stylus following the pointer, > 0
   double push_n = 0.7;                 ///< on the plane while the button is held, > 0
-  double push_time_s = 0.1;            ///< in which the push rises and falls, > 0
-  /// Above the plane while the button is not held, > 0: higher than where a stylus counts as
-  /// landed.
+  double push_time_s = 0.1;            ///< rise and fall time of the push, > 0
+  /// Above the plane while the button is not held, > 0: above the height at which a stylus counts
+  /// as landed.
   double hover_mm = 3.5;
 };
 
 /// The driver "mouse", in the plane frame. The hand is where the pointer is. A critically damped
 /// spring ties the stylus to it, and every tangential force displaces the stylus: it lags uphill,
-/// slows against a force, jumps ahead downhill, and returns when the force is gone. While the
-/// button is held, a hand of 0.1 kg comes down and pushes; it sinks into the wall until the wall's
-/// force carries `push_n`. Stable at 1 to 10 kHz with any wall or texture of up to 10 N/mm. With
-/// the defaults no motion is faster than 1,700 mm/s, whatever the pointer and the force do.
+/// slows against a force, jumps ahead downhill, and returns without force. While the button is
+/// held, a hand of 0.1 kg descends and pushes; it sinks into the wall until the wall's force
+/// carries `push_n`. Stable at 1 to 10 kHz with any wall or texture of up to 10 N/mm. With the
+/// defaults no motion is faster than 1,700 mm/s, for any pointer motion and force.
 ///
 /// The device never waits for a window. If the window hangs for kPatience, the hand lets go; if it
 /// closes, the link is lost.
 class MouseDevice final : public HapticDevice {
  public:
   static constexpr ServoClock::Time kPatience = std::chrono::milliseconds(500);
-  /// The hand goes no deeper than this where there is no wall, and rises no higher, mm.
+  /// The limit of the hand's depth without a wall, and of its height, mm.
   static constexpr double kReachMm = 10.0;
 
   /// \param pointer,clock  must outlive this; the device only reads the clock
@@ -85,18 +85,18 @@ class MouseDevice final : public HapticDevice {
   MouseDevice(PointerSource& pointer, ServoClock& clock, const MouseOptions& options = {});
 
   [[nodiscard]] DeviceInfo info() const override;
-  /// Moves the stylus by the time since the last reading. Samples are not ready until the window
-  /// has begun.
+  /// Moves the stylus by the time since the last reading. Samples are not ready before the window's
+  /// first state.
   [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override;
   [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override;
-  /// The hand lets go as well.
+  /// Also lifts the hand.
   void halt() noexcept override { halted_.store(true, std::memory_order_release); }
   void rearm() noexcept override { halted_.store(false, std::memory_order_release); }
   [[nodiscard]] DeviceFault fault() const noexcept override;
 
  private:
   void look_at(const PointerState& pointer, ServoClock::Time now) noexcept;
-  /// The hand leaves the plane at once.
+  /// Lifts the hand off the plane at once.
   void lift() noexcept;
   void move(double step_s) noexcept;
   void move_across(double step_s, double normal_force_n) noexcept;
@@ -105,10 +105,10 @@ class MouseDevice final : public HapticDevice {
   ServoClock& clock_;
   MouseOptions options_;
   ServoClock::Time last_read_{};
-  ServoClock::Time news_at_{};  ///< when the window last gave a new state
+  ServoClock::Time news_at_{};  ///< time of the window's last new state
   PointerState seen_;
   bool pressed_ = false;
-  Vec2 hand_mm_;         ///< follows the pointer at the greatest speed or less
+  Vec2 hand_mm_;         ///< follows the pointer up to the greatest speed
   SmoothPull followed_;  ///< the hand, without the pointer's steps
   SmoothPull displaced_;
   double push_share_ = 0.0;  ///< of push_time_s, 0 to 1

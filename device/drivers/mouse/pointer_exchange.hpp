@@ -9,20 +9,20 @@
 
 namespace touchtrial::device {
 
-/// The person's own pointer, as its window saw it last.
+/// The last state of the user's pointer in the window.
 struct PointerState {
   Vec2 position_mm;      ///< on the plane, from its top-left corner
   bool pressed = false;  ///< the button is held
   bool closed = false;   ///< the window is gone for good
-  /// Counts the window's rounds, whether or not the pointer has moved; 0: none has begun. A number
-  /// that stands still means a window that hangs.
+  /// Counts the window's iterations, whether or not the pointer has moved; 0: none yet. A constant
+  /// number means that the window hangs.
   std::uint64_t sequence = 0;
 };
 
-/// What the window draws in the pointer's place.
+/// The state that the window draws instead of the pointer.
 struct StylusState {
   Vec2 position_mm;
-  std::uint64_t sequence = 0;  ///< counts the device's readings; 0: there is none yet
+  std::uint64_t sequence = 0;  ///< counts the device's readings; 0: none yet
 };
 
 /// The servo's side of a pointer. Both functions belong to the servo thread and never wait for the
@@ -34,7 +34,7 @@ class PointerSource {
   virtual void show(const StylusState& stylus) noexcept = 0;
 };
 
-/// The PointerSource of every window: neither thread ever waits for the other.
+/// The PointerSource of all windows: neither thread ever blocks the other.
 class PointerExchange final : public PointerSource {
  public:
   /// \name Servo thread
@@ -44,8 +44,8 @@ class PointerExchange final : public PointerSource {
   ///@}
 
   /// \name Window's thread
-  ///@{
-  /// Call it once a round, whether or not the pointer has moved; it numbers the state itself.
+  /// @{ Call it once per iteration, whether or not the pointer has moved; it numbers the states
+  /// itself.
   void publish(PointerState pointer) noexcept {
     pointer.sequence = ++published_;
     pointers_.set(pointer);

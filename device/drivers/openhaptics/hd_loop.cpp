@@ -10,7 +10,7 @@
 namespace touchtrial::device::hd {
 namespace {
 
-/// More errors than any stack holds, so that a library that never runs out of them cannot hang us.
+/// More errors than any stack holds, to terminate even if the library never runs out of errors.
 constexpr int kMaxErrors = 256;
 
 DeviceFault fault_of(std::uint32_t code) noexcept {
@@ -31,10 +31,10 @@ DeviceFault fault_of(std::uint32_t code) noexcept {
 }
 
 constexpr std::int64_t kTicksBetweenTemperatures = 100;
-/// The library takes a moment for a calibration; a new request during it would begin it anew.
+/// Calibration takes a moment; a new request during it would restart it.
 constexpr std::int64_t kTicksBetweenCalibrations = 100;
 
-/// What a person has to do for a calibration of this style.
+/// The action that a calibration style requires of a person.
 DeviceReadiness need_of(int style) noexcept {
   switch (style) {
     case kStyleEncoderReset:
@@ -123,14 +123,14 @@ void Loop::tick() noexcept {
   ++tick_;
 }
 
-/// A device that was calibrated once keeps a valid position while it has news for its calibration.
+/// A calibrated device keeps a valid position while a calibration update is pending.
 void Loop::check_calibration() noexcept {
   const Enum state = api_.check_calibration();
   if (state == kCalibrationOk) is_calibrated_ = true;
   if (state != kCalibrationOk && state != kCalibrationNeedsUpdate) is_calibrated_ = false;
   if (is_update_due(state)) {
     api_.update_calibration(static_cast<Enum>(options_.calibration_style));
-    // A calibration that fails is tried again.
+    // A failed calibration is retried.
     const DeviceFault fault = drain_errors(api_).fault;
     if (fault != DeviceFault::none && fault != DeviceFault::driver) link_.fail(fault);
   }
@@ -138,8 +138,8 @@ void Loop::check_calibration() noexcept {
                    std::memory_order_release);
 }
 
-/// An update moves the origin. A reset makes the arm's place the reset position wherever it is, so
-/// only a person decides it; all other updates wait until no servo renders forces.
+/// An update moves the origin. A reset defines the arm's current position as the reset position, so
+/// a person must request it; other updates wait until no servo renders forces.
 bool Loop::is_update_due(Enum state) noexcept {
   const bool is_asked = reset_asked_.exchange(false, std::memory_order_acq_rel);
   if (options_.calibration_style == kStyleEncoderReset) return is_asked && !is_calibrated_;

@@ -1,6 +1,6 @@
 /// \file The part of the OpenHaptics device API (HDAPI) that the driver uses, declared from its
-/// public documentation: nothing of the vendor's kit is needed to build. And the callback that the
-/// vendor's scheduler thread runs once a tick.
+///   public documentation, so that the vendor's kit is not needed to build; and the callback that
+///   the vendor's scheduler thread runs once a tick.
 #pragma once
 
 #include "device/drivers/device_link.hpp"
@@ -58,9 +58,10 @@ constexpr Enum kForceRamping = 0x4002;
 /// States of calibration, and bits of its styles.
 constexpr Enum kCalibrationOk = 0x5000;
 constexpr Enum kCalibrationNeedsUpdate = 0x5001;
-constexpr int kStyleEncoderReset = 1;  ///< a person puts the arm at a known place and says so
-constexpr int kStyleAuto = 2;          ///< the device learns while it is moved
-constexpr int kStyleInkwell = 4;       ///< the stylus lies in its inkwell
+constexpr int kStyleEncoderReset =
+    1;                            ///< a person puts the arm at a known position and confirms it
+constexpr int kStyleAuto = 2;     ///< the device calibrates itself while it is moved
+constexpr int kStyleInkwell = 4;  ///< the stylus lies in its inkwell
 
 /// Errors with a DeviceFault of their own; all others are DeviceFault::driver.
 constexpr std::uint32_t kWarmMotors = 0x200;
@@ -96,24 +97,24 @@ struct Api {
 /// \throws DeviceError if a function is missing
 [[nodiscard]] Api load_api(const DynamicLibrary& library);
 
-/// The sum of a drained stack of errors.
+/// The summary of a drained error stack.
 struct Errors {
   std::uint32_t oldest = 0;  ///< code; 0: there was none
-  /// The most specific one: a warm motor rather than the frame that failed because of it.
+  /// The most specific error: a warm motor rather than the frame that failed because of it.
   DeviceFault fault = DeviceFault::none;
 };
 
-/// Takes all errors off the stack. No heap, lock or I/O on our side.
+/// Pops all errors. No heap, lock or I/O on our side.
 [[nodiscard]] Errors drain_errors(const Api& api) noexcept;
 
-/// What the device offers, as found when it was opened.
+/// The device's capabilities, queried when it was opened.
 struct LoopOptions {
   bool has_motor_temperature = false;
   int calibration_style = kStyleInkwell;  ///< one of the styles, or 0: none is known
 };
 
-/// The callback's data, and all that it touches. The thread that opens the device makes and
-/// destroys it.
+/// The callback and all data that it uses. Created and destroyed on the thread that opens the
+/// device.
 class Loop {
  public:
   /// On the vendor's scale from 0 (cold) to 1 (as warm as a motor may get). The library raises an
@@ -123,7 +124,7 @@ class Loop {
   Loop(const Api& api, Handle device, const LoopOptions& options) noexcept
       : api_(api), device_(device), options_(options) {}
 
-  /// For the scheduler, with the loop as data.
+  /// The scheduler's callback, with the loop as data.
   static std::uint32_t callback(void* loop) noexcept;
 
   [[nodiscard]] DeviceLink& link() noexcept { return link_; }
@@ -133,13 +134,13 @@ class Loop {
   }
   /// As HapticDevice::calibrate. Any thread.
   void calibrate() noexcept { reset_asked_.store(true, std::memory_order_release); }
-  /// \return the number of frames in a row, up to now, that sent zero
+  /// \return the number of latest frames in a row that sent zero
   [[nodiscard]] int zeros_sent() const noexcept {
     return zeros_sent_.load(std::memory_order_acquire);
   }
 
-  /// Makes all further callbacks return at once and end themselves.
-  /// \return false if one is still inside the vendor's library after the patience: this object must
+  /// Makes all further callbacks return at once and unschedule themselves.
+  /// \return false if one is still inside the vendor's library after the timeout: this object must
   ///   then never be destroyed
   [[nodiscard]] bool close(std::chrono::milliseconds patience) noexcept;
 
@@ -159,7 +160,7 @@ class Loop {
   DeviceLink link_;
   std::int64_t tick_ = 0;
   bool is_calibrated_ = false;   ///< the position is valid
-  std::int64_t idle_ticks_ = 0;  ///< in a row, up to now, without a force from a servo
+  std::int64_t idle_ticks_ = 0;  ///< latest in a row without a force from a servo
   std::atomic<bool> reset_asked_{false};
   std::atomic<DeviceReadiness> readiness_{DeviceReadiness::needs_calibration};
   std::atomic<int> zeros_sent_{0};

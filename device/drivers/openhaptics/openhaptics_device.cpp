@@ -48,7 +48,7 @@ std::string words_for(const Api& api, std::uint32_t code) {
   return text.str();
 }
 
-/// Null stands for the default device; some versions know that only by one of its names.
+/// Null means the default device; some versions require one of its names.
 std::vector<const char*> names_to_try(const std::string& wanted) {
   if (!wanted.empty()) return {wanted.c_str()};
   return {nullptr, "Default Device", "Default PHANToM"};
@@ -101,7 +101,7 @@ double positive_or(const Api& api, Enum what, double otherwise) {
   return value && (*value)[0] > 0.0 ? (*value)[0] : otherwise;
 }
 
-/// Some versions of the library give a text, others a number.
+/// Some versions of the library return text, others a number.
 std::string firmware_of(const Api& api) {
   const std::string text = text_of(api, kFirmware);
   if (!text.empty()) return text;
@@ -141,8 +141,8 @@ std::string joined(const std::string& vendor, const std::string& model) {
   return vendor.empty() || model.empty() ? vendor + model : vendor + ' ' + model;
 }
 
-/// The library keeps a "current device" and breaks when it is loaded twice, so that a process may
-/// use it once at a time.
+/// The library has a global "current device" and breaks when loaded twice, so a process may use it
+/// once at a time.
 std::atomic<bool> library_in_use{false};
 constexpr const char* kInUse =
     "openhaptics: this program has a device open already, and the vendor's library serves one at a "
@@ -196,7 +196,7 @@ class Session {
     return options;
   }
 
-  /// \throws DeviceError naming what failed, with the library's own words, if it left an error
+  /// \throws DeviceError naming what failed, with the library's message, if there is an error
   void expect_no_error(const std::string& what) const {
     const Errors errors = drain_errors(api_);
     if (errors.oldest == 0) return;
@@ -224,7 +224,7 @@ std::vector<DeviceListing> list_openhaptics(const DeviceSettings& settings) {
   listing.driver = "openhaptics";
   listing.where = settings.openhaptics.library.string();
   try {
-    expect_loading_survived(settings.openhaptics.library, kRemedy, Binding::as_needed);
+    check_loads(settings.openhaptics.library, kRemedy, Binding::as_needed);
     const DeviceInfo info = Session(settings.openhaptics).info();
     listing.model = info.model;
     listing.serial = info.serial;
@@ -239,7 +239,7 @@ std::vector<DeviceListing> list_openhaptics(const DeviceSettings& settings) {
 }
 
 std::unique_ptr<HapticDevice> open_openhaptics(const DeviceSettings& settings) {
-  expect_loading_survived(settings.openhaptics.library, kRemedy, Binding::as_needed);
+  check_loads(settings.openhaptics.library, kRemedy, Binding::as_needed);
   return std::make_unique<OpenHapticsDevice>(settings.openhaptics);
 }
 
@@ -293,8 +293,7 @@ class OpenHapticsDevice::Running {
   void stop() noexcept {
     const hd::Api& api = session_.api();
     api.stop_scheduler();
-    // A callback that never returns still uses the loop: leak it rather than free it under the
-    // call.
+    // A callback that never returns still uses the loop, so leak it instead of freeing it.
     if (!loop_->close(hd::kPatienceWithCallback)) (void)loop_.release();
     if (scheduled_) api.unschedule(callback_);
     api.make_current_device(session_.device());
@@ -328,7 +327,7 @@ void OpenHapticsDevice::calibrate() noexcept {
   running_->loop().calibrate();
 }
 
-/// Sources of what is unverified: this driver's page in docs/devices.
+/// Sources of unverified facts: this driver's page in docs/devices.
 DeviceDriver openhaptics_driver() {
   return {
       .name = "openhaptics",

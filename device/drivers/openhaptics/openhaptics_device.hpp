@@ -10,15 +10,15 @@ namespace touchtrial::device {
 
 /// The driver "openhaptics". The library's frame is the device frame: x to the right, y up, z
 /// towards the person, mm. The library's own scheduler thread sends the forces; its clamping and
-/// ramping stay on beneath our safety chain. Not verified on hardware.
+/// ramping stay active below our safety chain. Not verified on hardware.
 ///
 /// The driver sends no force before the device reports that it is calibrated. It updates the
 /// calibration when the device requests it and no servo writes forces (the device was moved, or the
-/// stylus lies in the inkwell), or when `calibrate` says that the arm is at its reset position. A
-/// fault latches: open the device anew.
+/// stylus lies in the inkwell), or when `calibrate` confirms the arm's reset position. A fault
+/// latches: reopen the device.
 class OpenHapticsDevice final : public LinkedDevice {
  public:
-  /// Starts the scheduler, from which samples come. A process may have one device at a time.
+  /// Starts the scheduler, which delivers samples. A process may have one device at a time.
   /// \throws DeviceError with the remedy if there is no library, a function of it is missing, there
   ///   is no device, one is open already, or the scheduler refuses the rate
   explicit OpenHapticsDevice(const OpenHapticsSettings& settings);

@@ -13,16 +13,16 @@ namespace touchtrial::device {
 namespace {
 
 constexpr int kZerosAtTheEnd = 5;
-/// How long a call may hold up the closing.
+/// How long a call may delay closing.
 constexpr std::chrono::seconds kPatienceWithPlugin{2};
 
-/// \throws DeviceError if no plug-in is named, or its library kills the process that loads it
+/// \throws DeviceError if no plug-in is named, or loading its library crashes
 const std::filesystem::path& expect_loadable(const std::filesystem::path& library) {
   if (library.empty()) {
     throw DeviceError(
         "plugin: no plug-in is named; name its library in the device settings at plugin.library");
   }
-  expect_loading_survived(library, plugin::kRemedy);
+  check_loads(library, plugin::kRemedy);
   return library;
 }
 
@@ -59,7 +59,7 @@ struct PluginDevice::Running {
         scheduling(options.scheduling),
         period(static_cast<std::int64_t>(1e9 / info.max_rate_hz)) {}
 
-  /// The whole life of the device's thread.
+  /// The main function of the device's thread.
   void run() noexcept {
     (void)request_scheduling(scheduling);
     LinkPace::Time next = pace->now();
@@ -109,7 +109,7 @@ struct PluginDevice::Running {
   SchedulingRequest scheduling;
   LinkPace::Time period;
   DeviceLink link;
-  bool enabled = false;  ///< device's thread alone
+  bool enabled = false;  ///< used only by the device's thread
   std::atomic<DeviceReadiness> readiness{DeviceReadiness::needs_calibration};
   std::atomic<plugin::PluginFault> trouble{plugin::PluginFault::none};
   std::atomic<bool> closing{false};

@@ -21,24 +21,24 @@ struct PluginOptions {
   SchedulingRequest scheduling{};  ///< of the device's thread
 };
 
-/// The driver "plugin". A thread of its own samples the device and sends the force, as often as the
-/// plug-in says. It believes nothing that a plug-in says without judging it, and sends zero before
-/// the device is ready, after `halt` and every fault, and 10 ms after the servo's last `write`; the
-/// plug-in's motors are enabled only in between. A fault latches: open the device anew.
+/// The driver "plugin". A separate thread samples the device and sends the force at the plug-in's
+/// rate. Everything from a plug-in is validated. Zero is sent before the device is ready, after
+/// `halt` and every fault, and 10 ms after the servo's last `write`; only otherwise are the
+/// plug-in's motors enabled. A fault latches: reopen the device.
 ///
-/// A call that blocks lets the samples grow old, which ends a run. If it never returns, the device
-/// and its thread are left behind: nothing waits for it.
+/// A blocking call makes the samples stale, which ends a run. If it never returns, device and
+/// thread are leaked, and nothing waits for them.
 class PluginDevice final : public LinkedDevice {
  public:
-  /// \throws DeviceError with the remedy if the library cannot be used, the device does not open, or
-  ///   describes itself as no device can be
+  /// \throws DeviceError with the remedy if the library cannot be used, the device does not open,
+  ///   or its description is impossible
   explicit PluginDevice(const PluginSettings& settings, PluginOptions options = {});
   /// Sends zeros, disables the motors and closes the device.
   ~PluginDevice() override;
 
   [[nodiscard]] DeviceInfo info() const override;
   [[nodiscard]] DeviceReadiness readiness() const noexcept override;
-  /// What led to the first fault. Any thread.
+  /// The cause of the first fault. Any thread.
   [[nodiscard]] plugin::PluginFault trouble() const noexcept;
 
  private:
@@ -46,7 +46,7 @@ class PluginDevice final : public LinkedDevice {
   [[nodiscard]] DeviceLink::Time link_time() const noexcept override;
 
   struct Running;
-  std::shared_ptr<Running> running_;  ///< a thread that never ends keeps it
+  std::shared_ptr<Running> running_;  ///< shared with a thread that may never end
   std::future<void> ended_;
   std::thread thread_;
 };

@@ -21,11 +21,11 @@ constexpr double kSlowestRateHz = 500.0;
 constexpr double kFastestRateHz = 10'000.0;
 constexpr double kMinSideMm = 1.0;
 constexpr double kMaxSideMm = 2000.0;
-/// No desk holds a device that reaches so far, and no hand is so fast.
+/// No desktop device reaches so far, and no hand is so fast.
 constexpr double kAbsurdMm = 10'000.0;
 constexpr double kAbsurdMmS = 1e6;
 
-/// A structure for a plug-in to fill, and room behind it that it must leave alone.
+/// A structure for a plug-in to fill, followed by guard bytes.
 template <typename Structure>
 class Guarded {
  public:
@@ -94,10 +94,10 @@ std::string sound_name(const std::string& file, const char* name) {
   return {name, length};
 }
 
-/// Tells what a description cannot be.
-class DescriptionJudge {
+/// Validates a description.
+class DescriptionCheck {
  public:
-  explicit DescriptionJudge(std::string who) : who_(std::move(who)) {}
+  explicit DescriptionCheck(std::string who) : origin_(std::move(who)) {}
 
   /// \return the value, if low < value <= high, or value == low where that belongs to the range
   double in_range(const char* field, double value, double low, double high, bool has_low) const {
@@ -107,14 +107,14 @@ class DescriptionJudge {
            number_text(high));
   }
   [[noreturn]] void refuse(const std::string& what) const {
-    refuse_plugin(who_, "describe: " + what);
+    refuse_plugin(origin_, "describe: " + what);
   }
 
  private:
-  std::string who_;
+  std::string origin_;
 };
 
-Workspace workspace_in(const touchtrial_device_description& told, const DescriptionJudge& judge) {
+Workspace workspace_in(const touchtrial_device_description& told, const DescriptionCheck& judge) {
   const auto& least = told.workspace_least_mm;
   const auto& greatest = told.workspace_greatest_mm;
   for (int axis = 0; axis < 3; ++axis) {
@@ -166,7 +166,7 @@ bool is_absurd(Vec3 v, double limit) noexcept {
   return std::abs(v.x) > limit || std::abs(v.y) > limit || std::abs(v.z) > limit;
 }
 
-PluginFault trouble_with_motion(const DeviceSample& sample) noexcept {
+PluginFault motion_fault(const DeviceSample& sample) noexcept {
   if (!is_finite(sample.position_mm) || !is_finite(sample.velocity_mm_s)) {
     return PluginFault::not_finite;
   }
@@ -223,7 +223,7 @@ const char* words_for(PluginFault trouble) noexcept {
        {"returned FAILED or an unknown number", failed},
        {"gave a position or velocity that is not a number", not_finite},
        {"gave a position beyond 10 m or a velocity beyond 1 km/s", absurd},
-       {"gave a reading with a smaller number than the one before", sequence_fell},
+       {"gave a reading with a smaller number than the one before", sequence_decreased},
        {"gave a readiness that the interface does not have", unknown_readiness},
        {"wrote beyond the size of a structure", wrote_past}});
   return name_in(kNames, trouble).data();
@@ -236,7 +236,7 @@ OpenDevice::OpenDevice(const Library& library, const std::string& settings) : li
   const std::string words(error.data(), length_of(error.data(), error.size() - 1));
   throw DeviceError(
       one_line("plugin " + library.name() + ": does not open: " +
-               (words.empty() ? "it says nothing more; see its own documentation" : words)));
+               (words.empty() ? "it gives no reason; see its own documentation" : words)));
 }
 
 OpenDevice::~OpenDevice() {
@@ -244,7 +244,7 @@ OpenDevice::~OpenDevice() {
 }
 
 DeviceInfo OpenDevice::info() const {
-  const DescriptionJudge judge("plugin " + library_.name());
+  const DescriptionCheck judge("plugin " + library_.name());
   Guarded<touchtrial_device_description> guarded;
   const std::int32_t code = library_.api().describe(device_, &guarded.value);
   const touchtrial_device_description& told = guarded.value;
@@ -288,7 +288,7 @@ Reading OpenDevice::sample() noexcept {
   sample.buttons = told.buttons;
   sample.ready = *readiness == DeviceReadiness::ready;
   reading.trouble =
-      told.sequence < last_sequence_ ? PluginFault::sequence_fell : trouble_with_motion(sample);
+      told.sequence < last_sequence_ ? PluginFault::sequence_decreased : motion_fault(sample);
   reading.is_new = told.sequence > last_sequence_;
   last_sequence_ = told.sequence;
   return reading;

@@ -1,5 +1,5 @@
-/// \file A plug-in as the host sees it: its library, one open device of it, and everything that it
-/// says, judged before anybody believes it. It shows the C interface, which stays within device/.
+/// \file The host's side of a plug-in: its library, one open device, and validation of everything
+///   it returns. It exposes the C interface, which stays within device/.
 #pragma once
 
 #include "device/drivers/plugin/touchtrial_device.h"
@@ -13,20 +13,20 @@
 
 namespace touchtrial::device::plugin {
 
-/// The loaded library, whose interface is complete. It is never unloaded, as threads of its own may
+/// The loaded library with a complete interface. It is never unloaded, because its own threads may
 /// still run.
 class Library {
  public:
   /// \throws DeviceError naming library and remedy if it is not named or cannot be loaded, or its
-  ///   interface has another version, no room for a function, a null function, or no sound name
+  ///   interface has another version or size, a null function, or an invalid name
   explicit Library(const std::filesystem::path& file);
 
   /// Of the driver: letters, digits, - and _.
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] const std::string& file() const noexcept { return file_; }
   [[nodiscard]] const touchtrial_device_api& api() const noexcept { return *api_; }
-  /// \return the force that the motors of the device opened last are told, N, device frame; nothing
-  ///   if the plug-in does not tell, or tells no finite number. Any thread.
+  /// \return the force command of the motors of the last opened device, N, device frame; nothing if
+  ///   the plug-in does not report a finite one. Any thread.
   [[nodiscard]] std::optional<Vec3> observed_force_n() const noexcept;
 
  private:
@@ -37,7 +37,7 @@ class Library {
   std::string name_;
 };
 
-/// What the host found wrong in a call.
+/// A fault that the host found in a call.
 enum class PluginFault : std::uint8_t {
   none,
   lost,
@@ -45,11 +45,11 @@ enum class PluginFault : std::uint8_t {
   warm_motors,
   limit_passed,
   failed,
-  not_finite,         ///< a position or velocity
-  absurd,             ///< a position or velocity that no device has
-  sequence_fell,      ///< a reading with a smaller number than the one before
-  unknown_readiness,  ///< a number that the interface does not have
-  wrote_past,         ///< wrote beyond the size of a structure
+  not_finite,          ///< a position or velocity
+  absurd,              ///< a position or velocity that no device has
+  sequence_decreased,  ///< a reading with a smaller number than the one before
+  unknown_readiness,   ///< a number that the interface does not have
+  wrote_past,          ///< wrote beyond the size of a structure
 };
 [[nodiscard]] DeviceFault fault_of(PluginFault trouble) noexcept;
 /// For a person: "gave a position or velocity that is not a number".
@@ -58,7 +58,7 @@ enum class PluginFault : std::uint8_t {
 struct Reading {
   PluginFault trouble = PluginFault::none;
   bool is_new = false;  ///< since the last one
-  DeviceSample sample;  ///< without a sequence of ours
+  DeviceSample sample;  ///< without our sequence number
   DeviceReadiness readiness = DeviceReadiness::needs_calibration;
 };
 
@@ -67,13 +67,13 @@ class OpenDevice {
  public:
   /// \param library  must outlive this
   /// \param settings  a JSON object
-  /// \throws DeviceError in the plug-in's words if it does not open
+  /// \throws DeviceError with the plug-in's message if it does not open
   OpenDevice(const Library& library, const std::string& settings);
   ~OpenDevice();
   OpenDevice(const OpenDevice&) = delete;
   OpenDevice& operator=(const OpenDevice&) = delete;
 
-  /// \throws DeviceError naming what it cannot be
+  /// \throws DeviceError naming the impossible member
   [[nodiscard]] DeviceInfo info() const;
 
   /// \name For the device's thread: no heap, lock or exception on our side

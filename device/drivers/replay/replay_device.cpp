@@ -32,7 +32,7 @@ struct CsvRow {
 }
 
 /// Rows of a CSV file: commas separate fields, LF or CRLF rows. Quotation marks around a field and
-/// a byte order mark in front are left out.
+/// a leading byte order mark are removed.
 class CsvRows {
  public:
   /// \param text  must outlive this
@@ -58,8 +58,7 @@ class CsvRows {
   }
 
  private:
-  /// Takes what stands before the mark off the text, and the mark; all that is left if there is
-  /// none, whereupon nothing is.
+  /// Removes and returns the text before the first separator, or the whole text without one.
   static std::string_view taken(std::string_view& text, char mark) {
     const std::size_t end = text.find(mark);
     const std::string_view before = text.substr(0, end);
@@ -141,7 +140,7 @@ double usual_step_s(const std::vector<TimedPosition>& rows) {
   return *middle;
 }
 
-/// \return the position at every tick, on straight lines where rows are missing
+/// \return the position at every tick, with linear interpolation of missing rows
 std::vector<Vec3> fill_ticks(const std::vector<TimedPosition>& rows, double step_s,
                              const std::string& name) {
   std::vector<Vec3> positions = {rows.front().position_mm};
@@ -159,8 +158,7 @@ std::vector<Vec3> fill_ticks(const std::vector<TimedPosition>& rows, double step
   return positions;
 }
 
-/// \return the mean rate of the whole recording, in which rounded times do not add up; to the
-///   millihertz
+/// \return the mean rate of the whole recording, to the millihertz, unaffected by rounded times
 double rate_over(double duration_s, std::size_t ticks, const std::string& name) {
   const double rate_hz = std::round(static_cast<double>(ticks - 1) / duration_s * 1000.0) / 1000.0;
   if (rate_hz >= kSlowestHz && rate_hz <= kFastestHz) return rate_hz;

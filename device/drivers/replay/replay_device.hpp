@@ -1,5 +1,5 @@
-/// \file The recorded motion of a hand, tick by tick, its CSV file, and a hand that repeats it,
-/// whatever it feels.
+/// \file The recorded motion of a hand, tick by tick, its CSV file, and a device that replays it
+///   regardless of forces.
 #pragma once
 
 #include "core/vec.hpp"
@@ -47,7 +47,7 @@ class RecordedMotion {
 
 /// The driver "replay". Each `write` is one tick, so it works in virtual time as in real time; run
 /// the servo at the motion's rate. Positions are the recorded ones, in the plane frame; the
-/// velocity is that of the last step. Forces move nothing. Not thread-safe.
+/// velocity is that of the last step. Forces have no effect. Not thread-safe.
 class ReplayDevice final : public HapticDevice {
  public:
   explicit ReplayDevice(RecordedMotion motion) : motion_(std::move(motion)) {}

@@ -58,8 +58,8 @@ HandOnTip::HandOnTip(const HandOptions& options, const DeviceModel& device, doub
 }
 
 /// The trapezium rule for springs and dampers. A device that does not hold its force has velocities
-/// in the middle of ticks, so the spring's mean over three positions takes the place of that over
-/// two; neither damps nor excites, however stiff the spring is.
+/// at mid-tick, so the spring uses the mean of three positions instead of two; neither damps nor
+/// excites, at any stiffness.
 HandOnTip::Axis HandOnTip::grip_axis(std::size_t axis) const noexcept {
   const PublishedGrip& grip = kPublishedGrip[axis];
   const HandFactors& factors = options_.factors;

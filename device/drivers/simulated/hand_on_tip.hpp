@@ -1,5 +1,5 @@
-/// \file What a hand does to the tip that it holds and pushes: as a point mass, or by the published
-/// stylus grip. Source of the equations: docs/devices/hands.md.
+/// \file The action of a hand on the tip that it holds and pushes: as a point mass, or by the
+///   published stylus grip. Source of the equations: docs/devices/hands.md.
 #pragma once
 
 #include "core/vec.hpp"
@@ -21,21 +21,21 @@ enum class HandKind {
 /// \return as files have it: "point_mass" or "stylus_grip"
 [[nodiscard]] std::string_view name_of(HandKind model) noexcept;
 
-/// By how much one person's hand differs from the model's, on all axes.
+/// Factors of one person's hand relative to the model, on all axes.
 struct HandFactors {
   double stiffness = 1.0;  ///< >= 0
   double damping = 1.0;    ///< >= 0
   double mass = 1.0;       ///< > 0
 };
 
-/// Place and speed of the path at one time.
+/// Position and velocity of the path at one time.
 struct PathPoint {
   Vec2 position_mm;
   Vec2 velocity_mm_s;
 };
 
-/// A hand on a stylus. The point mass alone has a mass, arm and damping of its own; the grip's are
-/// the published ones.
+/// A hand on a stylus. Mass, arm and damping apply only to the point mass; the grip has the
+/// published ones.
 struct HandOptions {
   double mass_kg = 0.1;                    ///< of hand and stylus as felt at the tip, > 0
   double arm_stiffness_n_per_mm = 0.2;     ///< spring towards the path, along the plane, >= 0
@@ -43,7 +43,7 @@ struct HandOptions {
   double push_n = 0.7;                     ///< steady push on the plane, >= 0
   double push_damping_n_s_per_mm = 0.008;  ///< of motion across the plane, >= 0
   double start_height_mm = 15.0;           ///< above the plane, >= 0
-  double explore_s = 10.0;                 ///< after which the hand stops, > 0
+  double explore_s = 10.0;                 ///< duration of exploration, > 0
   double max_force_n = 3.3;                ///< of the device that it holds, > 0; a model's too
   HandKind model = HandKind::point_mass;
   HandFactors factors{};
@@ -54,18 +54,18 @@ struct HandOptions {
 class HandOnTip {
  public:
   /// At rest in the origin.
-  /// \param device  that it holds. The grip has no mass at the tip, so a device of less than
-  ///   DeviceDynamics::kMinMassKg is given the rest of that.
+  /// \param device  the held device. The grip has no mass at the tip, so a device of less than
+  ///   DeviceDynamics::kMinMassKg is raised to that.
   /// \param tick_s  as of DeviceDynamics
   /// \throws std::invalid_argument if an option is out of range
   HandOnTip(const HandOptions& options, const DeviceModel& device, double tick_s);
 
-  /// Puts the hand on a tip that rests there.
+  /// Places the hand on a tip at rest there.
   void place(Vec3 tip_mm) noexcept;
 
-  /// What the hand does to the tip in the tick that begins.
+  /// The hand's action on the tip in the coming tick.
   /// \param tip_mm, tip_mm_s  of the tip, true, in the plane frame
-  /// \param intention  where the arm wants to be, along the plane
+  /// \param intention  the arm's target, along the plane
   /// \param push_n  towards the plane
   [[nodiscard]] DeviceDynamics::Outside hold(const Vec3& tip_mm, const Vec3& tip_mm_s,
                                              const PathPoint& intention, double push_n) noexcept {
@@ -90,14 +90,14 @@ class HandOnTip {
     if (is_grip_) follow_grip(tip_mm_s);
   }
 
-  /// \return of the hand's own mass behind the grip; the point mass has none
+  /// \return the position of the hand's mass behind the grip; the point mass has none
   [[nodiscard]] Vec3 position_mm() const noexcept;
   [[nodiscard]] Vec3 velocity_mm_s() const noexcept;
 
   /// \param axis  0 .. 2: x, y, z of the plane frame
   /// \param s  complex frequency, 1/s
-  /// \return force on the tip per way of the tip while the intention rests, N/mm, with the mass
-  ///   that the hand has at the tip
+  /// \return force on the tip per displacement of the tip with a constant intention, N/mm,
+  ///   including the hand's mass at the tip
   [[nodiscard]] std::complex<double> dynamic_stiffness(std::size_t axis,
                                                        std::complex<double> s) const noexcept;
 
@@ -108,7 +108,7 @@ class HandOnTip {
     /// N s/mm: spring and damper by the velocities before a tick and after it.
     double finger_before, finger_after, arm_before, arm_after;
     double inertia;  ///< N s/mm: mass over a tick
-    double share;    ///< of the tip's velocity that the mass takes within a tick
+    double share;    ///< of the tip's velocity that the mass adopts within a tick
     double carried_mm_s = 0.0;
     double position_mm = 0.0;
     double velocity_mm_s = 0.0;
@@ -140,15 +140,15 @@ struct HeldDevice {
   HeldDevice(const HandOptions& options, const DeviceModel& model, double tick_s = 0.001)
       : device(model, tick_s), hand(options, model, tick_s) {}
 
-  /// Puts tip and hand there, at rest.
+  /// Places tip and hand there, at rest.
   void place(Vec3 tip_mm) noexcept {
     device.place(tip_mm);
     hand.place(tip_mm);
   }
-  /// \return what the hand did to the tip
+  /// \return the hand's action on the tip
   DeviceDynamics::Outside tick(Vec3 commanded_n, const PathPoint& intention,
                                double push_n) noexcept {
-    // The usual case, told apart once a tick so that it stays in registers.
+    // The usual case, branched once per tick so that it stays in registers.
     if (device.is_plain() && hand.is_point()) {
       const DeviceDynamics::Outside outside =
           hand.hold_as_point(device.true_position_mm(), intention, push_n);

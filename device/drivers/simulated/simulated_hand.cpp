@@ -59,7 +59,7 @@ double ramp_distance(double u) noexcept {
   return u * u * u * (1.0 - u / 2.0);
 }
 
-/// The plane and the time of a hand that is opened by name; nobody watches it for longer.
+/// The plane and duration of a hand that is opened by name.
 constexpr PlaneGeometry kNamedPlane{0.2, 500, 500};
 constexpr double kNamedExploreS = 8.0 * 3600.0;
 
@@ -136,7 +136,7 @@ SimulatedHand::SimulatedHand(const HandOptions& options, ExplorationPath path,
 }
 
 HeldDevice SimulatedHand::unforced() const {
-  // No force goes through its motors, and nobody reads it.
+  // No force passes its motors, and it is not read.
   DeviceModel model = device_;
   model.delay_ticks = 0;
   model.lowpass_hz = model.force_step_n = model.max_force_n = 0.0;
@@ -149,23 +149,23 @@ HeldDevice SimulatedHand::unforced() const {
 }
 
 void SimulatedHand::feel_by(TipSense& sense) {
-  if (foreseen_ == nullptr) unforced_.emplace(unforced());
+  if (precomputed_ == nullptr) unforced_.emplace(unforced());
   sense_ = &sense;
 }
 
-void SimulatedHand::foresee() {
+void SimulatedHand::precompute() {
   auto way = std::make_shared<std::vector<FreeTick>>();
   way->reserve(static_cast<std::size_t>(last_tick_) + 1);
   HeldDevice free = unforced();
   std::size_t stroke = 0;
-  // A hand that has stopped is told of one more force: none.
+  // A stopped hand receives one final force of zero.
   for (std::int64_t tick = 0; tick <= last_tick_; ++tick) {
     const Intention intention = intention_at(tick, stroke);
     static_cast<void>(free.tick({}, intention.target, intention.push_n));
     const Vec3& tip_mm_s = free.device.true_velocity_mm_s();
     way->push_back({intention, {tip_mm_s.x, tip_mm_s.y}});
   }
-  foreseen_ = std::move(way);
+  precomputed_ = std::move(way);
 }
 
 DeviceInfo SimulatedHand::info() const {

@@ -24,7 +24,7 @@ namespace touchtrial::device {
 struct ExplorationOptions {
   double slowest_mm_s = 50.0;   ///< of a stroke's steady part, > 0
   double fastest_mm_s = 150.0;  ///< >= slowest
-  double margin_mm = 8.0;       ///< kept from the plane's edge, >= 0; at most a fifth of a side
+  double margin_mm = 8.0;       ///< distance from the plane's edge, >= 0; at most a fifth of a side
   double duration_s = 10.0;     ///< > 0
 };
 
@@ -34,16 +34,16 @@ struct ExplorationOptions {
 /// are uniform in the range. Strokes are slower on a plane too short for the speed.
 class ExplorationPath {
  public:
-  /// The time in which a stroke reaches its speed, and that in which it comes to rest.
+  /// The duration of speeding up, and of slowing down.
   static constexpr double kRampS = 0.08;
 
   /// \throws std::invalid_argument if the plane has no area or an option is out of range
   ExplorationPath(const PlaneGeometry& plane, const ExplorationOptions& options,
                   RandomStream& random);
 
-  /// \param time_s  >= 0, never earlier than in the last call; after the last stroke the path rests
-  ///   at its end
-  /// \param stroke  the place of the search, which the caller keeps from call to call; 0 at first
+  /// \param time_s  >= 0, not decreasing between calls; after the last stroke the path stays at its
+  ///   end
+  /// \param stroke  the state of the search, which the caller passes from call to call; 0 at first
   [[nodiscard]] PathPoint at(double time_s, std::size_t& stroke) const noexcept;
 
  private:
@@ -55,12 +55,12 @@ class ExplorationPath {
     Vec2 direction;  ///< of length 1
     [[nodiscard]] double end_s() const noexcept { return start_s + steady_s + kRampS; }
   };
-  /// What speeding up and slowing down make of a stroke.
+  /// The effect of speeding up and slowing down on a stroke.
   struct Ramps {
     double way_s;  ///< covered on ramps, in seconds of the stroke's speed
     double speed;  ///< share of the stroke's speed
   };
-  /// \param gone_s, left_s  since the stroke's beginning and until its end
+  /// \param gone_s, left_s  since the stroke's start and until its end
   [[nodiscard]] static Ramps ramps_at(double gone_s, double left_s) noexcept;
   [[nodiscard]] static Stroke stroke_between(Vec2 from_mm, Vec2 to_mm, double start_s,
                                              double speed_mm_s) noexcept;
@@ -68,17 +68,17 @@ class ExplorationPath {
   std::vector<Stroke> strokes_;
 };
 
-/// \return how records name a simulated hand's device: "simulated", with a model's name unless it is
-///   ideal
+/// \return the name of a simulated hand's device in records: "simulated", with the model's name
+///   unless ideal
 [[nodiscard]] std::string words_of_simulated(const DeviceModel& held);
 
-/// What a simulated hand notices of its own tip.
+/// Receives what a simulated hand feels at its tip.
 class TipSense {
  public:
   virtual ~TipSense() = default;
   /// One tick, on the thread of the servo. Must not block, allocate or throw.
   /// \param force_n  commanded for the tick
-  /// \param acceleration_m_s2  of the tip, less what the hand does by itself
+  /// \param acceleration_m_s2  of the tip, minus the hand's own
   virtual void feel(const Vec3& position_mm, const Vec3& force_n,
                     const Vec3& acceleration_m_s2) noexcept = 0;
 };
@@ -93,8 +93,8 @@ class SimulatedHand final : public HapticDevice {
   /// The time in which the push builds up, s.
   static constexpr double kPushBuildUpS = 0.3;
 
-  /// The hand begins above the path's first point.
-  /// \param device  whose mass adds to the hand's; in the plane frame, its workspace is not in use
+  /// The hand starts above the path's first point.
+  /// \param device  its mass adds to the hand's; in the plane frame, its workspace is ignored
   /// \throws std::invalid_argument if an option or a parameter of the device is out of range
   SimulatedHand(const HandOptions& options, ExplorationPath path, const DeviceModel& device = {});
 
@@ -109,21 +109,21 @@ class SimulatedHand final : public HapticDevice {
   [[nodiscard]] std::chrono::nanoseconds now() const noexcept;
 
   /// Before the first tick.
-  /// \param sense  told of every tick; must outlive the hand
+  /// \param sense  called at every tick; must outlive the hand
   void feel_by(TipSense& sense);
 
-  /// Works out, before the first tick, the hand's whole way without forces. Copies made from then
-  /// on share it, so that many explorations along one path cost half as much; nothing else changes.
-  void foresee();
+  /// Precomputes, before the first tick, the hand's whole motion without forces. Later copies share
+  /// it, which halves the cost of many explorations along one path; results are unchanged.
+  void precompute();
 
-  /// How forces move the tip off the way that the same hand would take with the same device and no
-  /// forces: people know how a device feels in the air. Across the plane, its velocity itself. At
-  /// the end of the last tick.
+  /// The tip's velocity relative to the motion of the same hand and device without forces, because
+  /// people know how a device feels in the air. Across the plane, the velocity itself. At the end
+  /// of the last tick.
   /// \pre feel_by
   [[nodiscard]] Vec3 yielding_velocity_mm_s() const noexcept { return yielding_mm_s_; }
 
  private:
-  /// What the arm intends in a tick.
+  /// The arm's intention in a tick.
   struct Intention {
     PathPoint target;
     double push_n = 0.0;
@@ -135,8 +135,8 @@ class SimulatedHand final : public HapticDevice {
   };
   [[nodiscard]] Intention intention_at(std::int64_t tick, std::size_t& stroke) const noexcept;
   [[nodiscard]] HeldDevice unforced() const;
-  void tell(TipSense& sense, Vec3 tip_mm, Vec3 force_n, const Intention& intention,
-            const FreeTick* foreseen) noexcept;
+  void update_sense(TipSense& sense, Vec3 tip_mm, Vec3 force_n, const Intention& intention,
+                    const FreeTick* foreseen) noexcept;
 
   HandOptions options_;
   ExplorationPath path_;
@@ -145,14 +145,15 @@ class SimulatedHand final : public HapticDevice {
   DeviceModel device_;
   TipSense* sense_ = nullptr;
   Vec3 yielding_mm_s_;
-  std::optional<HeldDevice> unforced_;  ///< where somebody feels: moves as if nothing pushed
-  std::shared_ptr<const std::vector<FreeTick>> foreseen_;  ///< in place of it; null: not foreseen
+  std::optional<HeldDevice> unforced_;  ///< with a TipSense: the motion without forces
+  std::shared_ptr<const std::vector<FreeTick>>
+      precomputed_;  ///< instead of `unforced_`; null: not precomputed
   std::size_t stroke_ = 0;
   std::int64_t tick_ = 0;
   std::int64_t last_tick_;
 };
 
-// Every simulated tick takes these steps, so they are compiled into the servo's loop.
+// Inlined into the servo's loop, because every simulated tick uses them.
 
 inline PathPoint ExplorationPath::at(double time_s, std::size_t& stroke) const noexcept {
   while (stroke + 1 < strokes_.size() && time_s >= strokes_[stroke].end_s()) ++stroke;
@@ -187,18 +188,19 @@ inline DeviceStatus SimulatedHand::read(DeviceSample& sample) noexcept {
 
 inline DeviceStatus SimulatedHand::write(Vec3 force_n) noexcept {
   const FreeTick* foreseen = nullptr;
-  if (foreseen_ != nullptr) foreseen = &(*foreseen_)[std::min(tick_, last_tick_)];
+  if (precomputed_ != nullptr) foreseen = &(*precomputed_)[std::min(tick_, last_tick_)];
   const Intention intention =
       foreseen != nullptr ? foreseen->intention : intention_at(tick_, stroke_);
   const Vec3 tip_mm = by_number(held_.device.true_position_mm());
   held_.tick(force_n, intention.target, intention.push_n);
   ++tick_;
-  if (sense_ != nullptr) tell(*sense_, tip_mm, force_n, intention, foreseen);
+  if (sense_ != nullptr) update_sense(*sense_, tip_mm, force_n, intention, foreseen);
   return DeviceStatus::ok;
 }
 
-inline void SimulatedHand::tell(TipSense& sense, Vec3 tip_mm, Vec3 force_n,
-                                const Intention& intention, const FreeTick* foreseen) noexcept {
+inline void SimulatedHand::update_sense(TipSense& sense, Vec3 tip_mm, Vec3 force_n,
+                                        const Intention& intention,
+                                        const FreeTick* foreseen) noexcept {
   Vec2 own_mm_s;
   if (foreseen != nullptr) {
     own_mm_s = foreseen->tip_mm_s;

@@ -71,8 +71,8 @@ void hwy::FreeAlignedBytes(const void* aligned_pointer, FreePtr free_ptr, void* 
   found(aligned_pointer, free_ptr, opaque_ptr);
 }
 
-/// The checks in Highway's headers call this function in builds that do not optimise. It looks
-/// nothing up: a fault of the program itself must be reported whatever else is wrong.
+/// The checks in Highway's headers call this function in builds that do not optimise. It looks up
+/// no symbol, because a bug of the program must be reported in any case.
 void hwy::Abort(const char* file, int line, const char* format, ...) {
   std::fprintf(stderr, "Abort at %s:%d: ", file, line);
   std::va_list values;

@@ -4,6 +4,7 @@
 #include "protocols/identification/analysis/cues/cue_report.hpp"
 #include "protocols/identification/analysis/cues/exploration_path.hpp"
 #include "protocols/identification/analysis/figures/figures.hpp"
+#include "protocols/identification/analysis/methods.hpp"
 #include "protocols/identification/analysis/mixed_model.hpp"
 #include "protocols/identification/analysis/page/sections.hpp"
 #include "protocols/identification/analysis/report.hpp"
@@ -58,15 +59,15 @@ class IdentificationResults final : public Results {
   bool paper_values_;
 };
 
-bool reads_traces(const ReportWishes& wishes, const Outcomes& outcomes) {
+bool reads_traces(const ReportOptions& wishes, const Outcomes& outcomes) {
   if (wishes.source == nullptr) return false;
-  if (wishes.traces != ReportWishes::Traces::if_few) {
-    return wishes.traces == ReportWishes::Traces::yes;
+  if (wishes.traces != ReportOptions::Traces::if_few) {
+    return wishes.traces == ReportOptions::Traces::yes;
   }
   return wishes.page && traces_to_read(outcomes) <= kTracesUnasked;
 }
 
-std::vector<ExplorationPath> explorations(const Outcomes& outcomes, const ReportWishes& wishes) {
+std::vector<ExplorationPath> explorations(const Outcomes& outcomes, const ReportOptions& wishes) {
   if (wishes.source == nullptr) return {};
   const auto& [store, key] = *wishes.source;
   if (!wishes.trial.empty()) {
@@ -79,7 +80,7 @@ std::vector<ExplorationPath> explorations(const Outcomes& outcomes, const Report
 class IdentificationAnalysis final : public ProtocolAnalysis {
  public:
   std::unique_ptr<const Results> results(const Outcomes& outcomes,
-                                         const ReportWishes& wishes) const override {
+                                         const ReportOptions& wishes) const override {
     // Paths are read first, because the request for them may be refused.
     std::vector<ExplorationPath> paths = explorations(outcomes, wishes);
     StudyReport report = make_report(outcomes);
@@ -87,8 +88,10 @@ class IdentificationAnalysis final : public ProtocolAnalysis {
       report.cues = make_cues(wishes.source->store, wishes.source->key, outcomes,
                               {.progress = wishes.progress});
     }
-    return std::make_unique<IdentificationResults>(std::move(report), std::move(paths),
-                                                   wishes.published_values);
+    const ProtocolMethods methods = protocol_methods(report, outcomes);
+    return with_methods(std::make_unique<IdentificationResults>(std::move(report), std::move(paths),
+                                                                wishes.published_values),
+                        outcomes, wishes, methods);
   }
   std::vector<ResultTable> tables(const Outcomes& outcomes) const override {
     std::vector<ResultTable> tables;

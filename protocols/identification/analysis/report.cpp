@@ -192,6 +192,7 @@ MethodReport method_report(const Outcomes& outcomes, int method,
                    add_unbiased_hits(classes, people, report);
                    report.reaction = choices::reaction_times(outcomes, method);
                    report.breakdowns = choices::breakdowns(outcomes, method);
+                   report.over_trials = accuracy_over_trials(people);
                    report.confidence = choices::confidence_of(outcomes, method);
                    report.robustness = choices::robustness(outcomes, method);
                  }});

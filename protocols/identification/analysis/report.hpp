@@ -17,6 +17,7 @@
 #include "analysis/statistics/prevalence.hpp"
 #include "analysis/statistics/proportion.hpp"
 #include "analysis/statistics/spread.hpp"
+#include "protocols/identification/analysis/accuracy_over_trials.hpp"
 #include "protocols/identification/analysis/cues/cue_report.hpp"
 
 #include <optional>
@@ -84,6 +85,7 @@ struct MethodReport {
   std::vector<ReactionTimes> reaction;  ///< by class, then of all classes together
   std::vector<UnbiasedHits> unbiased;   ///< by class, then of participants' means over classes
   std::vector<Breakdown> breakdowns;
+  AccuracyOverTrials over_trials{};
   std::optional<OrderEffects> order{};
   std::optional<ConfidenceReport> confidence{};
   std::vector<SubsetAccuracy> robustness;

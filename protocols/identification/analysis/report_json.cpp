@@ -2,6 +2,7 @@
 #include "analysis/report/bibliography.hpp"
 #include "analysis/report/json_figures.hpp"
 #include "protocols/identification/analysis/cues/cues_json.hpp"
+#include "protocols/identification/analysis/measures.hpp"
 #include "protocols/identification/analysis/report.hpp"
 
 #include <numeric>
@@ -13,63 +14,19 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json proportion_json(const Proportion& proportion) {
-  Json object;
-  put_proportion(object, proportion);
-  return object;
-}
-
-void put_comparison(Json& object, const MethodComparison& comparison) {
-  object["participants"] = comparison.participants;
-  object["difference"] = figure_json(comparison.difference);
-  object["interval"] = interval_json(comparison.known_interval());
-  object["bootstrap"] = interval_json(comparison.bootstrap);
-  object["p"] = figure_json(comparison.p);
-  object["db"] = figure_json(comparison.db);
-}
-
-Json class_json(const ClassComparison& one, const std::string& label) {
-  Json object{{"class", label},
-              {"first", proportion_json(one.first)},
-              {"second", proportion_json(one.second)}};
-  put_comparison(object, one.paired);
-  object["mcnemar_mid_p"] = figure_json(one.mcnemar_mid_p);
-  return object;
-}
-
-Json odds_ratio_json(const std::optional<OddsRatio>& ratio) {
-  if (!ratio) return nullptr;
-  return with_method(
-      {{"estimate", figure_json(ratio->estimate)},
-       {"interval", interval_json(ratio->bootstrap)},
-       {"interval_of_trials", interval_json(ratio->interval)}},
-      "Mantel and Haenszel's common odds ratio, participants as strata; interval: expanded "
-      "percentiles of 9,999 draws of participants; interval_of_trials: of Robins, Breslow "
-      "and Greenland, which takes trials as independent",
-      {"mantel1959", "robins1986", "davison1997", "hesterberg2015"});
-}
-
 Json pair_json(const MethodPair& pair, const StudyReport& report) {
-  Json object{{"first", report.methods[pair.first].method},
-              {"second", report.methods[pair.second].method}};
-  put_comparison(object, pair.overall);
-  object["p_holm"] = figure_json(pair.p_holm);
-  object["odds_ratio"] = odds_ratio_json(pair.odds_ratio);
-  object["mcnemar_mid_p"] = figure_json(pair.mcnemar_mid_p);
-  object["classes"] = Json::array();
-  for (std::size_t i = 0; i < pair.classes.size(); ++i) {
-    object["classes"].push_back(class_json(pair.classes[i], report.classes[i]));
-  }
-  put_method(
-      object,
+  return with_method(
+      object_of(pair, pair_measures(report)),
       "differences of participants' accuracies, first minus second: t interval, bootstrap "
       "(expanded percentiles of 9,999 draws of participants), p of the two-sided sign-flip "
-      "test (exact up to 32 participants, then 99,999 random patterns); db: 10 log10 of the ratio "
+      "test (exact up to 32 participants, then 99,999 random patterns); statistic: Student's t, "
+      "and "
+      "d_z with the interval by noncentral t; db: 10 log10 of the ratio of means; p_holm: adjusted "
+      "over all pairs, with three methods or more; mcnemar_mid_p: with one pair a participant; p "
       "of "
-      "means; p_holm: adjusted over all pairs, with three methods or more; mcnemar_mid_p: "
-      "with one pair a participant; p of classes are not adjusted",
-      {"student1908", "davison1997", "hesterberg2015", "phipson2010", "holm1979", "fagerland2013"});
-  return object;
+      "classes are not adjusted",
+      {"student1908", "davison1997", "hesterberg2015", "phipson2010", "holm1979", "fagerland2013",
+       "cumming2001"});
 }
 
 Json comparison_json(const MethodComparison& comparison) {

@@ -40,8 +40,7 @@ void warn_of_small_classes(const MethodReport& method, const std::vector<std::st
   }
   if (small.empty()) return;
   warnings.push_back(
-      fmt::format("{}: the interval of {} rests on {} trials or fewer and is nearly uninformative: "
-                  "even 5 of 5 has 56.6 to 100 % (Wilson).",
+      fmt::format("{}: accuracy with {} rests on {} trials or fewer, which say next to nothing.",
                   method.method, few(small), kSmallCell));
 }
 
@@ -201,10 +200,10 @@ void warn_of_images(const Outcomes& outcomes, const StudyReport& report, Warning
 
 void warn_of_few_participants(const StudyReport& report, Warnings& warnings) {
   if (report.participants < 2 || report.participants >= kFewParticipants) return;
-  warnings.push_back(
-      fmt::format("{} participants are few: the design can show large effects alone, how people "
-                  "differ hardly at all, and the t interval leans on normality.",
-                  report.participants));
+  warnings.push_back(fmt::format(
+      "{} participants are few: only large effects can show, and the t interval leans on "
+      "normality.",
+      report.participants));
 }
 
 template <typename Which>
@@ -293,11 +292,6 @@ void warn_of_participants(const StudyReport& report, Warnings& warnings) {
     warnings.emplace_back(
         "One participant: intervals over participants do not exist, and those of a class say "
         "next to nothing.");
-  } else {
-    warnings.emplace_back(
-        "Wilson, Clopper-Pearson and Jeffreys intervals pool all participants' trials as if they "
-        "were independent, so they are too narrow; the intervals to quote are those over "
-        "participants.");
   }
   for (const MethodReport& method : report.methods) {
     if (method.mean.participants > 1 && !method.mean.known_interval()) {
@@ -345,7 +339,6 @@ std::vector<std::string> report_warnings(const Outcomes& outcomes, const StudyRe
   warn_of_trials(outcomes, warnings);
   warn_of_time_outs(report, warnings);
   warn_of_participants(report, warnings);
-  warn_of_information(report, warnings);
   for (const MethodReport& method : report.methods) {
     warn_of_validity(method, warnings);
     warn_of_swapped_labels(method, warnings);
@@ -362,6 +355,7 @@ std::vector<std::string> report_warnings(const Outcomes& outcomes, const StudyRe
   warn_of_sign_flips(report, warnings);
   warn_of_periods(outcomes, report, warnings);
   warn_of_images(outcomes, report, warnings);
+  warn_of_information(report, warnings);
   return warnings;
 }
 

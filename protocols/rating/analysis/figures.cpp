@@ -1,11 +1,12 @@
 #include "protocols/rating/analysis/figures.hpp"
 
-#include "analysis/report/figures/gnuplot.hpp"
+#include "analysis/report/figures/layout.hpp"
 #include "analysis/report/figures/study_figures.hpp"
 #include "analysis/report/figures/style.hpp"
 #include "protocols/rating/analysis/page.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,32 +14,29 @@
 namespace touchtrial::analysis::rating {
 namespace {
 
-using Rows = std::vector<std::vector<double>>;
-
-/// Dots and means of one method.
-struct MethodRows {
-  Rows dots;
-  Rows means;  ///< place, mean, low, high
-};
-
 /// The room of a texture's methods along the axis.
 constexpr double kTextureRoom = 0.8;
+/// More means than these need the page's whole width.
+constexpr std::size_t kMeansOfColumn = 8;
+constexpr double kLargestPicture_cm = 1.5;
+constexpr double kPictureOfSlot = 0.86;
 
-MethodRows rows_of(const RatingReport& report, const ScaleReport& scale, int method) {
-  MethodRows rows;
+void add_rows(const RatingReport& report, const ScaleReport& scale, std::size_t method, Layer& dots,
+              Layer& means) {
+  constexpr double kNear = 0.012;  ///< of the scale
   const double room = kTextureRoom / static_cast<double>(report.methods.size());
+  const double near = kNear * (scale.scale.max() - scale.scale.min());
   for (std::size_t i = 0; i < scale.means.items.size(); ++i) {
     const ItemMean& one = scale.means.items[i];
-    if (one.item.method != method || !one.mean.mean) continue;
-    const double x = one.item.texture_class + 1.0 - 0.5 * kTextureRoom + room * (method + 0.5);
-    std::vector<double> sorted = scale.own_means[i];
-    std::ranges::sort(sorted);
-    add_dots(rows.dots, x, 0.5 * room, sorted);
-    const double mean = *one.mean.mean;
-    const Interval bar = one.mean.known_interval().value_or(Interval{mean, mean});
-    rows.means.push_back({x, mean, bar.low, bar.high});
+    if (static_cast<std::size_t>(one.item.method) != method || !one.mean.mean) continue;
+    const double x = one.item.texture_class + 1.0 - 0.5 * kTextureRoom +
+                     room * (static_cast<double>(method) + 0.5);
+    std::vector<OwnValue> own;
+    for (const double value : scale.own_means[i]) own.push_back({value});
+    swarm(dots.rows, x - 0.1 * room, 0.6 * room, near, std::move(own));
+    means.rows.push_back(bar(x + 0.3 * room, *one.mean.mean, one.mean.known_interval()));
+    means.rows.back().text = report.classes[static_cast<std::size_t>(one.item.texture_class)];
   }
-  return rows;
 }
 
 std::string mean_with_interval(const MeanEstimate& mean) {
@@ -58,68 +56,93 @@ std::string alt_of(const RatingReport& report, const ScaleReport& scale) {
   return alt;
 }
 
-std::vector<LegendEntry> legend_of(const RatingReport& report) {
-  std::vector<LegendEntry> legend;
-  for (std::size_t i = 0; i < report.methods.size(); ++i) {
-    legend.push_back(mark_entry(series_mark(i), series_colour(i), report.methods[i]));
-  }
-  return legend;
+/// The whole scale, with room for marks at its ends.
+Axis rating_axis(const study::Scale& scale) {
+  const double room = 0.04 * (scale.max() - scale.min());
+  return {.label = "rating, " + scale.id,
+          .low = scale.min() - room,
+          .high = scale.max() + room,
+          .step = scale.points == 0 ? 0.2 : 1.0,
+          .first = scale.min()};
 }
 
-/// The whole scale, with room for marks at its ends.
-std::string rating_axis(const study::Scale& scale) {
-  const double room = 0.04 * (scale.max() - scale.min());
-  return fmt::format("set yrange [{:.6g}:{:.6g}]\nset ytics {:.6g}, {} format '%g'\n",
-                     scale.min() - room, scale.max() + room, scale.min(),
-                     scale.points == 0 ? 0.2 : 1.0) +
-         fmt::format("set ylabel {} noenhanced\n", gnuplot_string("rating, " + scale.id));
+/// The items' pictures, each below its name.
+/// \param slot_cm  the room of an item along the axis
+Panel pictures_panel(const ItemPictures& pictures, double slot_cm) {
+  const double side_cm = std::min(kLargestPicture_cm, kPictureOfSlot * slot_cm);
+  Panel panel;
+  panel.height_cm = side_cm;
+  panel.x = {.low = 0.5, .high = static_cast<double>(pictures.size()) + 0.5, .hidden = true};
+  panel.y = {.low = 0.0, .high = 1.0, .hidden = true};
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const GreyImage& grey = pictures[i];
+    if (grey.empty()) continue;
+    const double longer = std::max(grey.width(), grey.height());
+    const double half = 0.5 * side_cm / slot_cm * grey.width() / longer;
+    const auto x = static_cast<double>(i + 1);
+    panel.layers.push_back(
+        {.kind = LayerKind::picture,
+         .name = "the item's picture",
+         .rows = {{.x = x - half, .y = 1.0, .low = x + half, .high = 1.0 - grey.height() / longer}},
+         .grey = grey});
+  }
+  return panel;
 }
 
 }  // namespace
 
-std::optional<Figure> ratings_figure(const RatingReport& report, const ScaleReport& scale) {
-  std::string data;
-  std::string dots;
-  std::string means;
+std::optional<Figure> ratings_figure(const RatingReport& report, const ScaleReport& scale,
+                                     const ItemPictures& pictures) {
+  const std::size_t count = report.classes.size() * report.methods.size();
+  Figure figure = figure_named(id_of(report, scale, "ratings-by-item"), "result", report.simulated,
+                               count > kMeansOfColumn ? kPage_cm : kColumn_cm);
+  Panel panel;
+  panel.x = names_axis(report.classes);
+  panel.y = rating_axis(scale.scale);
+  std::vector<Layer> means;
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
-    const MethodRows rows = rows_of(report, scale, static_cast<int>(i));
-    if (rows.means.empty()) continue;
-    data += data_block(fmt::format("dots{}", i), rows.dots) +
-            data_block(fmt::format("means{}", i), rows.means);
-    dots += fmt::format("{}$dots{} using 1:2 with points pt 7 ps 0.25 lc rgb '{}' notitle",
-                        dots.empty() ? "plot " : ", ", i, kFaint);
-    means += fmt::format(
-        ", $means{} using 1:2:3:4 with yerrorbars pt {} ps 0.8 lw 1.6 lc rgb '{}' notitle", i,
-        series_mark(i), series_colour(i));
+    Layer dots{
+        .name = report.methods[i] + ", participants", .colour = std::string(kPale), .size = 0.7};
+    Layer mean{.kind = LayerKind::interval,
+               .name = report.methods[i],
+               .colour = series_colour(i),
+               .size = 1.1,
+               .glyph = series_glyph(i),
+               .in_key = report.methods.size() > 1};
+    add_rows(report, scale, i, dots, mean);
+    if (mean.rows.empty()) continue;
+    panel.layers.push_back(std::move(dots));
+    means.push_back(std::move(mean));
   }
-  if (data.empty()) return {};
-  Sheet sheet{16.0, 8.0, report.simulated};
-  Margins margins;
-  const NamesBelow below(report.classes, sheet.width_cm - margins.left_cm - margins.right_cm);
-  margins.bottom_cm = below.room_cm() + 0.3;
-  sheet.height_cm = 6.5 + margins.bottom_cm;
-  const Legend legend(sheet, margins.left_cm, legend_of(report));
-  margins.top_cm = legend.room_cm() + 0.2;
-  Figure figure = figure_on(sheet, id_of(report, scale, "ratings"), alt_of(report, scale));
-  figure.section = "ratings";
+  if (means.empty()) return {};
+  std::ranges::move(means, std::back_inserter(panel.layers));
+  figure.panels = {std::move(panel)};
+  const bool shows =
+      std::ranges::any_of(pictures, [](const GreyImage& grey) { return !grey.empty(); });
+  if (shows) {
+    const PlacedPanel placed = layout_of(figure).panels.front();
+    figure.panels.push_back(pictures_panel(
+        pictures, (placed.right_cm - placed.left_cm) /
+                      static_cast<double>(std::max<std::size_t>(pictures.size(), 1))));
+  }
+  figure.alt = alt_of(report, scale);
   figure.caption = stamped(
       report.simulated,
       caption_of(report, scale,
                  "ratings by texture and method: participants' means as dots, the mean over "
                  "participants and its 95 % t interval") +
-          ".");
-  figure.script = data + sheet_head(sheet) + panel_at(sheet, margins) + below.script() +
-                  rating_axis(scale.scale) + legend.script() + dots + means + "\n";
+          (shows ? "; below, the items' pictures." : "."));
   return figure;
 }
 
-std::vector<Figure> report_figures(const RatingReport& report, const std::string& stamp) {
+std::vector<Figure> report_figures(const RatingReport& report, const ItemPictures& pictures,
+                                   const std::string& stamp) {
   std::vector<Figure> figures;
   const auto add = [&figures](std::optional<Figure> figure) {
     if (figure) figures.push_back(*std::move(figure));
   };
+  for (const ScaleReport& scale : report.scales) add(ratings_figure(report, scale, pictures));
   add(flow_figure(report));
-  for (const ScaleReport& scale : report.scales) add(ratings_figure(report, scale));
   add(servo_figure(report, "analysis"));
   stamp_figures(stamp, figures);
   return figures;

@@ -10,15 +10,23 @@
 
 namespace touchtrial::analysis::rating {
 
-/// The figures that have something to show, in the order of a results section. Their scripts
-/// contain all data, and no figure is drawn yet.
+/// Of each class, at most kPictureSide_px long; empty where there is none.
+using ItemPictures = std::vector<GreyImage>;
+inline constexpr int kPictureSide_px = 110;
+
+/// The figures that have something to show, in the order of a results section. No figure is drawn
+/// yet.
+/// \param pictures  may be empty
 /// \param stamp  on every figure besides SIMULATED; may be empty
 [[nodiscard]] std::vector<Figure> report_figures(const RatingReport& report,
+                                                 const ItemPictures& pictures,
                                                  const std::string& stamp);
 
-/// Ratings by texture and method: participants' means, their mean and its interval.
+/// Ratings by texture and method: participants' means, their mean and its interval, above the
+/// textures' pictures.
 /// \return nothing without a rating
 [[nodiscard]] std::optional<Figure> ratings_figure(const RatingReport& report,
-                                                   const ScaleReport& scale);
+                                                   const ScaleReport& scale,
+                                                   const ItemPictures& pictures);
 
 }  // namespace touchtrial::analysis::rating

@@ -2,6 +2,7 @@
 
 #include "analysis/report/page/wording.hpp"
 #include "core/text.hpp"
+#include "protocols/rating/analysis/measures.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -16,7 +17,7 @@ std::string question_sentence(const RatingReport& report, const ScaleReport& sca
                                ? "a line from 0 to 1"
                                : fmt::format("points from 1 to {}", scale.scale.points);
   return caption_of(report, scale,
-                    fmt::format("Participants rated: {} From \"{}\" to \"{}\", {}",
+                    fmt::format("Participants rated: {} (from \"{}\" to \"{}\", {})",
                                 scale.scale.text, scale.scale.low, scale.scale.high, kind)) +
          ".";
 }
@@ -46,6 +47,9 @@ std::string result_sentence(const RatingReport& report, const ScaleReport& scale
   std::string text =
       fmt::format("{}: {}, {}", names, signed_plain_figure(pair.difference.mean, kRatingDecimals),
                   mean_words(pair.difference));
+  if (const auto statistic = statistic_of(pair)) {
+    text += fmt::format("; {}, d_z = {}", t_phrase(*statistic), effect_figure(statistic));
+  }
   if (pair.sign_flip) {
     text += fmt::format("; {} by sign flips", p_phrase(pair.sign_flip->p));
     if (scale.differences.size() > 1) {
@@ -56,28 +60,30 @@ std::string result_sentence(const RatingReport& report, const ScaleReport& scale
   return text + ".";
 }
 
-void add_headline(const RatingReport& report, Section& section) {
+Section result_section(const RatingReport& report) {
+  Section section{"result", "Result", {}};
   const auto say = [&](std::string text) {
     if (!text.empty()) section.blocks.emplace_back(Cited{std::move(text)});
   };
   for (const ScaleReport& scale : report.scales) {
-    say(question_sentence(report, scale));
     if (report.trials > 0) say(result_sentence(report, scale));
+    say(question_sentence(report, scale));
   }
   if (report.trials == 0) say("No trial counts, so there is no result.");
+  return section;
 }
 
 Section methods_section(const RatingReport& report) {
-  Section section{"analysis", "Analysis", {}, true};
-  section.blocks.emplace_back(
-      Cited{"The unit is the participant: repeats of a texture by a method are averaged first, and "
-            "a participant enters a mean, a difference or the agreement only with all that it is "
-            "over."});
+  Section section{"analysis", "Analysis", {}};
+  std::string text =
+      "The unit is the participant: repeats of a texture by a method are averaged first, and a "
+      "participant enters a mean, a difference or the agreement only with all that it is over.";
   if (report.without_answer > 0) {
-    section.blocks.emplace_back(Cited{fmt::format("{} without an answer {} no rating.",
-                                                  counted(report.without_answer, "trial"),
-                                                  report.without_answer == 1 ? "has" : "have")});
+    text +=
+        fmt::format(" {} without an answer {} no rating.", counted(report.without_answer, "trial"),
+                    report.without_answer == 1 ? "has" : "have");
   }
+  section.more.emplace_back(Cited{std::move(text)});
   return section;
 }
 
@@ -96,12 +102,14 @@ std::string id_of(const RatingReport& report, const ScaleReport& scale, const st
 
 Document rating_document(const RatingReport& report, const Provenance& provenance,
                          const Pictures& pictures) {
-  Section result{"result", "Result", {}};
-  add_headline(report, result);
-  std::vector<Section> sections = {means_section(report),       differences_section(report),
-                                   reliability_section(report), use_section(report),
-                                   catches_section(report),     methods_section(report)};
-  return framed_document(report, std::move(result), std::move(sections), provenance, pictures);
+  const bool drawn = std::ranges::any_of(pictures, [](const Picture& one) {
+    return one.id.starts_with("ratings") && !one.svg.empty();
+  });
+  return framed_document(
+      report, result_section(report),
+      {differences_section(report), means_section(report, drawn), reliability_section(report),
+       catches_section(report), use_section(report), methods_section(report)},
+      provenance, pictures);
 }
 
 }  // namespace touchtrial::analysis::rating

@@ -14,8 +14,9 @@ namespace touchtrial::analysis::rating {
 /// \name Sections of the page. Without a rating they have no blocks.
 /// \{
 
-/// Means by item, method and class.
-[[nodiscard]] Section means_section(const RatingReport& report);
+/// Means by method and class, and by item.
+/// \param drawn  whether a figure shows the items, so that their table is folded
+[[nodiscard]] Section means_section(const RatingReport& report, bool drawn);
 /// Differences between methods.
 [[nodiscard]] Section differences_section(const RatingReport& report);
 /// Agreement between participants, and of participants with themselves.
@@ -26,9 +27,6 @@ namespace touchtrial::analysis::rating {
 [[nodiscard]] Section catches_section(const RatingReport& report);
 
 /// \}
-
-/// Decimals of ratings in tables and sentences.
-inline constexpr int kRatingDecimals = 2;
 
 /// "caption", and of several scales which one it is of.
 [[nodiscard]] std::string caption_of(const RatingReport& report, const ScaleReport& scale,

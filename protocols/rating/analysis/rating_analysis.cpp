@@ -1,12 +1,17 @@
 #include "protocols/rating/analysis/rating_analysis.hpp"
 
 #include "core/errors.hpp"
+#include "engine/image_file.hpp"
+#include "engine/pictures/colour_image.hpp"
 #include "protocols/rating/analysis/figures.hpp"
+#include "protocols/rating/analysis/methods.hpp"
 #include "protocols/rating/analysis/page.hpp"
 #include "protocols/rating/analysis/rating_model.hpp"
 #include "protocols/rating/analysis/report.hpp"
 #include "protocols/rating/analysis/tables.hpp"
 
+#include <algorithm>
+#include <filesystem>
 #include <utility>
 
 namespace touchtrial::analysis::rating {
@@ -14,12 +19,13 @@ namespace {
 
 class RatingResults final : public Results {
  public:
-  explicit RatingResults(RatingReport report) : report_(std::move(report)) {}
+  RatingResults(RatingReport report, ItemPictures pictures)
+      : report_(std::move(report)), pictures_(std::move(pictures)) {}
 
   const StudyHead& head() const override { return report_; }
   std::string json() const override { return report_json(report_); }
   std::vector<Figure> figures(const std::string& stamp) const override {
-    return report_figures(report_, stamp);
+    return report_figures(report_, pictures_, stamp);
   }
   Document document(const Provenance& provenance, const Pictures& pictures) const override {
     return rating_document(report_, provenance, pictures);
@@ -27,13 +33,39 @@ class RatingResults final : public Results {
 
  private:
   RatingReport report_;
+  ItemPictures pictures_;
 };
 
-void require_possible_wishes(const ReportWishes& wishes) {
+/// The first picture of a class, made small.
+GreyImage picture_of(const std::filesystem::path& file) {
+  try {
+    const GreyImage grey = engine::read_grey_image(file);
+    const int longer = std::max(grey.height(), grey.width());
+    if (longer <= kPictureSide_px) return grey;
+    const auto side = [&](int length) { return std::max(1, length * kPictureSide_px / longer); };
+    return engine::resized(grey, side(grey.height()), side(grey.width()));
+  } catch (const Error&) {
+    return {};  // the figure does without
+  }
+}
+
+/// Of a report with a page, as far as the study's pictures are in reach.
+ItemPictures item_pictures(const ReportOptions& wishes) {
+  ItemPictures pictures;
+  if (wishes.source == nullptr || !wishes.page) return pictures;
+  const study::Study& study = wishes.source->key.study;
+  for (const study::StudyClass& one : study.classes) {
+    pictures.push_back(one.images.empty() ? GreyImage()
+                                          : picture_of(study.folder / one.images.front()));
+  }
+  return pictures;
+}
+
+void require_possible_wishes(const ReportOptions& wishes) {
   if (!wishes.trial.empty()) {
     throw UsageError("--trial: explorations of ratings are not drawn; leave the option out");
   }
-  if (wishes.traces == ReportWishes::Traces::yes) {
+  if (wishes.traces == ReportOptions::Traces::yes) {
     throw UsageError(
         "--cues yes: ideal observers are of studies whose participants choose between textures; "
         "leave the option out");
@@ -43,9 +75,12 @@ void require_possible_wishes(const ReportWishes& wishes) {
 class RatingAnalysis final : public ProtocolAnalysis {
  public:
   std::unique_ptr<const Results> results(const Outcomes& outcomes,
-                                         const ReportWishes& wishes) const override {
+                                         const ReportOptions& wishes) const override {
     require_possible_wishes(wishes);
-    return std::make_unique<RatingResults>(make_report(outcomes));
+    RatingReport report = make_report(outcomes);
+    const ProtocolMethods methods = protocol_methods(report, outcomes);
+    return with_methods(std::make_unique<RatingResults>(std::move(report), item_pictures(wishes)),
+                        outcomes, wishes, methods);
   }
   std::vector<ResultTable> tables(const Outcomes& outcomes) const override {
     return {{"ratings.csv", ratings_table(outcomes)}};

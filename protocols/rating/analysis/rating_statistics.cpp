@@ -15,8 +15,6 @@
 #include <stdexcept>
 
 #include <boost/math/distributions/fisher_f.hpp>
-#include <boost/math/distributions/non_central_t.hpp>
-#include <boost/math/tools/roots.hpp>
 
 namespace touchtrial::analysis::rating {
 namespace {
@@ -151,44 +149,17 @@ std::optional<double> of_means(double single, double k) {
   return k * single / below;
 }
 
-/// The noncentrality at which a t below `t` has the probability `share`.
-double noncentrality(double t, double degrees, double share) {
-  const auto excess = [&](double delta) {
-    return cdf(boost::math::non_central_t_distribution<>(degrees, delta), t) - share;
-  };
-  const double step = 1.0 + std::abs(t);
-  double low = t - step;
-  while (excess(low) < 0.0) low -= step;
-  double high = t + step;
-  while (excess(high) > 0.0) high += step;
-  std::uintmax_t steps = 200;
-  const auto [a, b] = boost::math::tools::toms748_solve(
-      excess, low, high, boost::math::tools::eps_tolerance<double>(45), steps);
-  return 0.5 * (a + b);
-}
-
-/// Student's t of the mean of differences, if they are not all the same.
-std::optional<double> t_of(std::span<const double> differences) {
-  if (differences.size() < 2) return std::nullopt;
-  const auto n = static_cast<double>(differences.size());
-  if (all_alike(differences)) return std::nullopt;
-  const double mean = without_noise(mean_of(differences));
-  const double sd = standard_deviation(differences, mean, n - 1.0);
-  return mean / sd * std::sqrt(n);
-}
-
 /// Somebody's absence may leave differences that are all the same, which have no d_z.
 std::optional<JackknifeEstimate> jackknifed(double d_z, std::span<const double> differences,
                                             double level) {
   if (differences.size() < 3) return std::nullopt;
-  const double root = std::sqrt(static_cast<double>(differences.size() - 1));
   std::vector<double> without;
   for (std::size_t i = 0; i < differences.size(); ++i) {
     std::vector<double> others(differences.begin(), differences.end());
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    const auto t = t_of(others);
-    if (!t) return std::nullopt;
-    without.push_back(*t / root);
+    const auto other = bare_t_statistic(others);
+    if (!other) return std::nullopt;
+    without.push_back(other->d);
   }
   constexpr double kAny = std::numeric_limits<double>::max();
   return jackknife(d_z, without, {-kAny, kAny}, level);
@@ -233,7 +204,8 @@ MethodDifference difference_of(std::span<const Repeats> participants, const Item
     const auto lower = mean_over(repeats, of_second);
     if (higher && lower) differences.push_back(without_noise(*higher - *lower));
   }
-  const std::optional<double> t = t_of(differences);
+  const auto statistic = bare_t_statistic(differences);
+  const auto t = statistic ? std::optional(statistic->t) : std::nullopt;
   return {first.begin()->method,
           second.begin()->method,
           static_cast<int>(of_first.size()),
@@ -451,16 +423,10 @@ std::optional<StandardisedDifference> standardised_difference(std::span<const do
                                                               double level) {
   require_level(level);
   require_finite(differences, "a standardised difference");
-  const auto t = t_of(differences);
-  if (!t) return std::nullopt;
-  const auto n = static_cast<double>(differences.size());
-  StandardisedDifference result{*t / std::sqrt(n)};
-  result.jackknifed = jackknifed(result.d_z, differences, level);
-  if (std::abs(*t) > kFurthestT) return result;
-  const double tail = 0.5 * (1.0 - level);
-  result.interval = Interval{noncentrality(*t, n - 1.0, 1.0 - tail) / std::sqrt(n),
-                             noncentrality(*t, n - 1.0, tail) / std::sqrt(n)};
-  return result;
+  const auto statistic = t_statistic(differences, 0.0, level);
+  if (!statistic) return std::nullopt;
+  return StandardisedDifference{statistic->d, statistic->interval,
+                                jackknifed(statistic->d, differences, level)};
 }
 
 std::vector<MethodDifference> method_differences(std::span<const RatedParticipant> participants,

@@ -205,16 +205,10 @@ struct FamilyP {
   double holm = 1.0;  ///< holm_adjusted over the pairs that have a p
 };
 
-/// Noncentral t distributions beyond this t are not computed.
-inline constexpr double kFurthestT = 1e4;
-
 /// A mean difference in units of participants' standard deviation of it.
 struct StandardisedDifference {
   double d_z = 0.0;
-  /// The d_z whose noncentral t distributions have the observed t at either tail. Nothing if t is
-  /// beyond kFurthestT. Assumes normal differences: it is too narrow for people whose differences
-  /// scatter by very different amounts.
-  std::optional<Interval> interval{};
+  std::optional<Interval> interval{};  ///< analysis::effect_interval
   /// Without that assumption, and without most of the bias of d_z: jackknife over participants.
   /// Nothing with fewer than three, or if all differences but one are the same.
   std::optional<JackknifeEstimate> jackknifed{};

@@ -23,43 +23,62 @@ namespace {
 
 constexpr const char* kOwnScale = "fit";  ///< whose words the languages have
 
-RatedScale read_scale(const JsonValue& place) {
-  const JsonObject object = place.object({"id", "text", "low", "high", "points"});
-  RatedScale scale{.id = read_plain_name(object.at("id")), .text = {}, .low = {}, .high = {}};
-  const bool may_omit = scale.id == kOwnScale;
-  const auto read = [&](const char* key, Translated& words) {
-    if (const auto member = object.find(key)) {
-      words = read_translated(*member);
-    } else if (!may_omit) {
-      static_cast<void>(object.at(key));
-    }
-  };
-  read("text", scale.text);
-  read("low", scale.low);
-  read("high", scale.high);
-  if (const auto points = object.find("points")) {
-    scale.points = static_cast<int>(points->integer(0, kMaxPoints));
-    if (scale.points == 1) points->refuse("must be 0, a line, or at least 2");
-  }
-  return scale;
+void describe_words(ObjectIo& io, std::string_view key, Translated& words, const About& about) {
+  io.member(key, about, true, [&words](ValueIo& value) { describe_translated(value, words); });
 }
 
-RatingOptions read_options(const JsonValue& section) {
-  const JsonObject object = section.object({"scales", "anchors"});
-  RatingOptions options;
-  if (const auto anchors = object.find("anchors")) options.anchors = anchors->truth();
-  const auto scales = object.find("scales");
-  if (!scales) return options;
-  options.scales.clear();
-  for (const JsonValue& item : scales->items(1, kMaxScales)) {
-    RatedScale scale = read_scale(item);
-    if (std::ranges::count(options.scales, scale.id, &RatedScale::id) > 0) {
-      item.refuse_below("/id",
-                        in_quotes(scale.id) + " is the id of another scale; ids must be unique");
+void describe_scale(ObjectIo& io, RatedScale& scale) {
+  io.text("id", scale.id, kPlainName,
+          {.meaning = "a plain name, unique; it names the scale's column in exports",
+           .required = true});
+  io.rule([&scale](const JsonValue& /*place*/, const JsonObject& object) {
+    if (scale.id == kOwnScale) return;
+    for (const char* key : {"text", "low", "high"}) static_cast<void>(object.at(key));
+  });
+  describe_words(io, "text", scale.text,
+                 {.meaning = "the question, by language, the study's among them; of the scale "
+                             "`fit` this and the words at the ends may be left out: then the "
+                             "languages' own",
+                  .range = "by language"});
+  describe_words(io, "low", scale.low,
+                 {.meaning = "the words at the low end", .range = "by language"});
+  describe_words(io, "high", scale.high,
+                 {.meaning = "the words at the high end", .range = "by language"});
+  io.integer("points", scale.points, 0, kMaxPoints,
+             {.meaning = "2 to 11: numbers from 1; 0: a line from 0 to 1, in steps of .001",
+              .range = "0, 2 to 11"});
+  io.rule([&scale](const JsonValue& place, const JsonObject& /*object*/) {
+    if (scale.points == 1) place.refuse_below("/points", "must be 0, a line, or at least 2");
+  });
+}
+
+void describe(ObjectIo& io, RatingOptions& options) {
+  io.list("scales", options.scales, {.fewest = 1, .most = kMaxScales},
+          {.meaning = "the scales, all asked in each trial",
+           .otherwise = "`fit` alone",
+           .range = "1 to 6 entries"},
+          [](ValueIo& value, RatedScale& scale) { value.part(scale, describe_scale); });
+  io.rule([&options](const JsonValue& place, const JsonObject& /*object*/) {
+    const std::vector<RatedScale>& scales = options.scales;
+    for (std::size_t i = 0; i < scales.size(); ++i) {
+      const auto before = std::span(scales).first(i);
+      if (std::ranges::count(before, scales[i].id, &RatedScale::id) == 0) continue;
+      place.refuse_below(
+          fmt::format("/scales/{}/id", i),
+          in_quotes(scales[i].id) + " is the id of another scale; ids must be unique");
     }
-    options.scales.push_back(std::move(scale));
-  }
-  return options;
+  });
+  io.truth("anchors", options.anchors,
+           {"practice begins with the scale's ends: a plane without texture, then a texture under "
+            "its own picture"});
+}
+
+std::string section_schema() {
+  RatingOptions usual;
+  return annotated_section({.meaning = "the scales of the protocol `rating`: "
+                                       "[rating.md](rating.md)",
+                            .otherwise = "one scale, `fit`"},
+                           [&usual](ObjectIo& io) { describe(io, usual); });
 }
 
 /// Deals a class's images like a shuffled pack of cards: all are used before any repeats.
@@ -257,15 +276,9 @@ void RatingTask::check(const JsonValue& file, const Study& study) const {
 }
 
 std::string RatingTask::in_clear() const {
-  nlohmann::json scales = nlohmann::json::array();
-  for (const RatedScale& scale : options_.scales) {
-    scales.push_back({{"id", scale.id},
-                      {"text", scale.text},
-                      {"low", scale.low},
-                      {"high", scale.high},
-                      {"points", scale.points}});
-  }
-  return nlohmann::json{{"scales", scales}, {"anchors", options_.anchors}}.dump();
+  RatingOptions copy = options_;
+  return written_section([&copy](ObjectIo& io) { describe(io, copy); }, [](ObjectIo& /*io*/) {})
+      .dump();
 }
 
 Practice RatingTask::practice(const Study& study, const ScheduleDraw& draw, int round) const {
@@ -288,7 +301,9 @@ Practice RatingTask::practice(const Study& study, const ScheduleDraw& draw, int 
 }
 
 std::shared_ptr<const Task> read_task(const std::optional<JsonValue>& section) {
-  return std::make_shared<RatingTask>(section ? read_options(*section) : RatingOptions{});
+  RatingOptions options;
+  if (section) read_described(*section, [&](ObjectIo& io) { describe(io, options); });
+  return std::make_shared<RatingTask>(std::move(options));
 }
 
 }  // namespace
@@ -315,8 +330,11 @@ std::vector<Scale> scales_of(const Study& study) {
 }
 
 const Protocol& protocol() {
-  static constexpr Protocol kProtocol{
-      .name = "rating", .section = "rating", .read = read_task, .min_classes = 1};
+  static constexpr Protocol kProtocol{.name = "rating",
+                                      .section = "rating",
+                                      .read = read_task,
+                                      .min_classes = 1,
+                                      .section_schema = section_schema};
   return kProtocol;
 }
 

@@ -223,6 +223,7 @@ void put_registered_choice(const ThresholdReport& report, const Registered& ques
   }
   const std::vector<Bounds> people = people_asked(question, sample);
   result.p = censored_p(people, 0.0, question.sides);
+  result.statistic = known_t_statistic(people);
   if (question.sides == Sides::two || question.level >= 0.5) return;
   const CensoredMean found = censored_mean(people, 1.0 - 2.0 * question.level);
   if (found.interval) result.bound = found.interval->low;

@@ -113,7 +113,8 @@ std::vector<DifferenceReport> difference_reports(std::span<const StandardReport>
   for (std::size_t i = 0; i < standards.size(); ++i) {
     for (std::size_t j = i + 1; j < standards.size(); ++j) {
       const std::vector<Bounds> differences = paired_differences(standards[i], standards[j]);
-      all.push_back({i, j, censored_mean(differences), censored_p(differences, 0.0, Sides::two)});
+      all.push_back({i, j, censored_mean(differences), censored_p(differences, 0.0, Sides::two),
+                     std::nullopt, known_t_statistic(differences)});
       if (all.back().p) p.push_back(*all.back().p);
     }
   }

@@ -9,6 +9,7 @@
 #include "analysis/outcomes/study_head.hpp"
 #include "analysis/statistics/censored_mean.hpp"
 #include "analysis/statistics/descriptive.hpp"
+#include "analysis/statistics/mean_test.hpp"
 #include "analysis/statistics/same_different_d_prime.hpp"
 #include "protocols/procedures/estimates.hpp"
 #include "protocols/threshold/analysis/person_threshold.hpp"
@@ -76,8 +77,9 @@ struct DifferenceReport {
   std::size_t first = 0;  ///< indices into ThresholdReport::standards
   std::size_t second = 1;
   CensoredMean difference;
-  std::optional<double> p{};       ///< censored_p, two-sided
-  std::optional<double> p_holm{};  ///< over all pairs
+  std::optional<double> p{};              ///< censored_p, two-sided
+  std::optional<double> p_holm{};         ///< over all pairs
+  std::optional<TStatistic> statistic{};  ///< if every difference is known
 };
 
 /// d' of "same" or "different" at one level. Hits are of the level, false alarms of all trials of

@@ -107,6 +107,7 @@ Json difference_json(const ThresholdReport& report, const DifferenceReport& one)
   object["known"] = one.difference.exact;
   object["p"] = figure_json(one.p);
   object["p_holm"] = figure_json(one.p_holm);
+  object["statistic"] = statistic_json(one.statistic);
   return object;
 }
 

@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "protocols/threshold/analysis/exports.hpp"
 #include "protocols/threshold/analysis/figures.hpp"
+#include "protocols/threshold/analysis/methods.hpp"
 #include "protocols/threshold/analysis/page/sections.hpp"
 #include "protocols/threshold/analysis/report.hpp"
 
@@ -28,13 +29,13 @@ class ThresholdResults final : public Results {
   ThresholdReport report_;
 };
 
-void require_possible_wishes(const ReportWishes& wishes) {
+void require_possible_wishes(const ReportOptions& wishes) {
   if (!wishes.trial.empty()) {
     throw UsageError(
         "--trial: a trial of a threshold has several planes, and its exploration is not drawn; "
         "leave the option out");
   }
-  if (wishes.traces == ReportWishes::Traces::yes) {
+  if (wishes.traces == ReportOptions::Traces::yes) {
     throw UsageError(
         "--cues yes: ideal observers are of studies whose participants choose between textures; "
         "leave the option out");
@@ -44,9 +45,12 @@ void require_possible_wishes(const ReportWishes& wishes) {
 class ThresholdAnalysis final : public ProtocolAnalysis {
  public:
   std::unique_ptr<const Results> results(const Outcomes& outcomes,
-                                         const ReportWishes& wishes) const override {
+                                         const ReportOptions& wishes) const override {
     require_possible_wishes(wishes);
-    return std::make_unique<ThresholdResults>(make_report(outcomes));
+    ThresholdReport report = make_report(outcomes);
+    const ProtocolMethods methods = protocol_methods(report);
+    return with_methods(std::make_unique<ThresholdResults>(std::move(report)), outcomes, wishes,
+                        methods);
   }
   std::vector<ResultTable> tables(const Outcomes& outcomes) const override {
     return {{"thresholds.csv", thresholds_table(make_report(outcomes), outcomes.simulated)},

@@ -311,6 +311,7 @@ const Protocol& protocol() {
                                       .read = read_task,
                                       .min_classes = 1,
                                       .adaptive = true,
+                                      .section_schema = section_schema,
                                       .estimands = kEstimands};
   return kProtocol;
 }

@@ -1,6 +1,7 @@
 #include "protocols/threshold/study/threshold_section.hpp"
 
 #include "core/text.hpp"
+#include "study/study_sections.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,8 +13,6 @@
 
 namespace touchtrial::study::threshold {
 namespace {
-
-using nlohmann::json;
 
 constexpr auto kTaskNames = std::to_array<Named<Task>>(
     {{"detection", Task::detection}, {"discrimination", Task::discrimination}});
@@ -34,141 +33,162 @@ constexpr std::size_t kMaxValues = 200;
 constexpr NumberRange kLevelRange{-200.0, 40.0};
 constexpr double kMaxTables = 20e6;  ///< numbers of all tracks' posteriors
 
-/// A list, or {"from", "to", "step"}.
-std::vector<double> read_values(const JsonValue& place, const NumberRange& range,
-                                bool may_be_range) {
-  std::vector<double> values;
-  if (may_be_range && place.is_object()) {
-    const JsonObject object = place.object({"from", "to", "step"});
-    const double from = object.at("from").number(range);
-    const double to = object.at("to").number(range);
-    const double step = object.at("step").number({0.0, 1000.0, true});
+/// Values of a list that ascends.
+void describe_list(ValueIo& io, std::vector<double>& values, const NumberRange& range) {
+  io.list(values, {.fewest = 1, .most = kMaxValues},
+          [&range](ValueIo& item, double& value) { item.number(value, range); });
+  io.rule([&values](const JsonValue& place) {
+    if (std::ranges::adjacent_find(values, std::greater_equal<>()) != values.end()) {
+      place.refuse("must ascend, each value once; sort the list");
+    }
+  });
+}
+
+/// The values from, from + step, .. of an object.
+void describe_steps(ObjectIo& io, std::vector<double>& values, const NumberRange& range) {
+  double from = 0.0;
+  double to = 0.0;
+  double step = 0.0;
+  io.number("from", from, range, {.meaning = "first value", .required = true});
+  io.number("to", to, range, {.meaning = "no value is above", .required = true});
+  io.number("step", step, {0.0, 1000.0, true}, {.meaning = "between two values", .required = true});
+  io.rule([&](const JsonValue& place, const JsonObject& /*object*/) {
     const double steps = std::floor((to - from) / step + 1e-9);
     if (to < from) place.refuse("must not end below its beginning; exchange from and to");
     if (steps >= static_cast<double>(kMaxValues)) {
       place.refuse(fmt::format("has more than {} values; give a larger step", kMaxValues));
     }
+    values.clear();
     for (int i = 0; i <= static_cast<int>(steps); ++i) values.push_back(from + i * step);
-    return values;
-  }
-  for (const JsonValue& item : place.items(1, kMaxValues)) values.push_back(item.number(range));
-  if (std::ranges::adjacent_find(values, std::greater_equal<>()) != values.end()) {
-    place.refuse("must ascend, each value once; sort the list");
-  }
-  return values;
+  });
 }
 
-int read_count(const JsonValue& place, std::int64_t low, std::int64_t high) {
-  return static_cast<int>(place.integer(low, high));
+/// A list, or {"from", "to", "step"}.
+void describe_values(ObjectIo& io, std::string_view key, std::vector<double>& values,
+                     const NumberRange& range, const About& about) {
+  io.member(key, about, true, [&](ValueIo& value) {
+    const ValueIo::Form forms[] = {
+        {[](const JsonValue& place) { return place.is_object(); },
+         [&](ValueIo& one) {
+           one.object([&](ObjectIo& keys) { describe_steps(keys, values, range); });
+         }},
+        {{}, [&](ValueIo& one) { describe_list(one, values, range); }}};
+    value.either(1, forms);
+  });
 }
 
-HandRange read_windows(const JsonValue& place) {
-  const JsonObject object =
-      place.object({"slowest_mm_s", "fastest_mm_s", "lightest_n", "strongest_n"});
-  HandRange windows;
-  const auto read = [&](std::string_view key, double& value, double most) {
-    if (const auto member = object.find(key)) value = member->number({0.0, most});
-  };
-  read("slowest_mm_s", windows.slowest_mm_s, 1000.0);
-  read("fastest_mm_s", windows.fastest_mm_s, 1000.0);
-  read("lightest_n", windows.lightest_n, 100.0);
-  read("strongest_n", windows.strongest_n, 100.0);
-  if (windows.slowest_mm_s >= windows.fastest_mm_s) {
-    place.refuse("has no speed between slowest_mm_s and fastest_mm_s; raise the second");
-  }
-  if (windows.lightest_n >= windows.strongest_n) {
-    place.refuse("has no force between lightest_n and strongest_n; raise the second");
-  }
-  return windows;
-}
-
-void read_up_down(const JsonValue& place, procedures::TrackSettings& track) {
-  const JsonObject object = place.object(
-      {"correct_for_down", "wrong_for_up", "steps_down", "up_for_one_down", "first_level"});
-  procedures::UpDown& rule = track.up_down;
-  if (const auto m = object.find("correct_for_down")) rule.correct_for_down = read_count(*m, 1, 20);
-  if (const auto m = object.find("wrong_for_up")) rule.wrong_for_up = read_count(*m, 1, 20);
-  if (const auto m = object.find("up_for_one_down")) rule.up_for_one_down = read_count(*m, 1, 100);
-  if (const auto m = object.find("steps_down")) {
-    rule.steps_down.clear();
-    for (const JsonValue& item : m->items(1, kMaxValues)) {
-      rule.steps_down.push_back(read_count(item, 1, kMaxValues));
+void describe_windows(ObjectIo& io, HandRange& windows) {
+  constexpr NumberRange kSpeed{0.0, 1000.0};
+  constexpr NumberRange kForce{0.0, 100.0};
+  io.number("slowest_mm_s", windows.slowest_mm_s, kSpeed, {"slowest speed along the plane"});
+  io.number("fastest_mm_s", windows.fastest_mm_s, kSpeed, {"fastest speed along the plane"});
+  io.number("lightest_n", windows.lightest_n, kForce, {"smallest force across the plane"});
+  io.number("strongest_n", windows.strongest_n, kForce, {"largest force across the plane"});
+  io.rule([&windows](const JsonValue& place, const JsonObject& /*object*/) {
+    if (windows.slowest_mm_s >= windows.fastest_mm_s) {
+      place.refuse("has no speed between slowest_mm_s and fastest_mm_s; raise the second");
     }
-  }
-  if (const auto m = object.find("first_level")) {
-    const double wanted = m->number(kLevelRange);
+    if (windows.lightest_n >= windows.strongest_n) {
+      place.refuse("has no force between lightest_n and strongest_n; raise the second");
+    }
+  });
+}
+
+/// One of the levels, by its value.
+void describe_first_level(ObjectIo& io, procedures::TrackSettings& track) {
+  std::optional<double> wanted;
+  if (!track.levels.empty()) wanted = track.levels[track.up_down.first_level];
+  io.number("first_level", wanted, kLevelRange,
+            {.meaning = "level of the first trial, one of the levels", .otherwise = "the highest"});
+  io.rule([&](const JsonValue& place, const JsonObject& object) {
+    if (!object.find("first_level")) return;
     const auto found = std::ranges::find_if(
-        track.levels, [&](double level) { return std::abs(level - wanted) < 1e-9; });
-    if (found == track.levels.end()) m->refuse("is none of the levels; give one of them");
-    rule.first_level = static_cast<std::size_t>(found - track.levels.begin());
-  }
+        track.levels, [&](double level) { return std::abs(level - *wanted) < 1e-9; });
+    if (found == track.levels.end()) {
+      place.refuse_below("/first_level", "is none of the levels; give one of them");
+    }
+    track.up_down.first_level = static_cast<std::size_t>(found - track.levels.begin());
+  });
 }
 
-void read_grid(const JsonValue& place, procedures::ParameterGrid& grid) {
-  const JsonObject object = place.object({"shape", "thresholds", "slopes", "lapses"});
-  if (const auto m = object.find("shape")) grid.shape = m->choice(kShapeNames);
-  if (const auto m = object.find("thresholds")) {
-    grid.thresholds = read_values(*m, kLevelRange, true);
-  }
-  if (const auto m = object.find("slopes")) {
-    grid.slopes = read_values(*m, {0.0, 1000.0, true}, true);
-  }
-  if (const auto m = object.find("lapses")) {
-    grid.lapses = read_values(*m, {0.0, 0.5, false, true}, true);
-  }
+void describe_up_down(ObjectIo& io, procedures::TrackSettings& track) {
+  procedures::UpDown& rule = track.up_down;
+  io.integer("correct_for_down", rule.correct_for_down, 1, 20,
+             {"right answers in a row that lower the level"});
+  io.integer("wrong_for_up", rule.wrong_for_up, 1, 20, {"wrong answers in a row that raise it"});
+  io.list("steps_down", rule.steps_down, {.fewest = 1, .most = kMaxValues},
+          {"in places of the list of levels: the next one at each reversal, then the last"},
+          [](ValueIo& item, int& step) { item.integer(step, 1, kMaxValues); });
+  io.integer("up_for_one_down", rule.up_for_one_down, 1, 100, {"a step up in steps down"});
+  describe_first_level(io, track);
 }
 
-void read_practice(const JsonValue& place, ThresholdOptions& options) {
-  const JsonObject object = place.object({"trials", "criterion", "rounds"});
-  options.practice_trials = read_count(object.at("trials"), 0, 100);
-  options.practice_criterion = options.practice_trials;
-  if (const auto m = object.find("criterion")) {
-    options.practice_criterion = read_count(*m, 0, options.practice_trials);
-  }
-  if (const auto m = object.find("rounds")) options.practice_rounds = read_count(*m, 1, 10);
+void describe_grid(ObjectIo& io, procedures::ParameterGrid& grid) {
+  io.choice("shape", grid.shape, kShapeNames, {"of the psychometric function"});
+  describe_values(io, "thresholds", grid.thresholds, kLevelRange,
+                  {.meaning = "thresholds, ascending", .otherwise = "the levels"});
+  describe_values(io, "slopes", grid.slopes, {0.0, 1000.0, true}, {"slopes, ascending"});
+  describe_values(io, "lapses", grid.lapses, {0.0, 0.5, false, true}, {"lapse rates, ascending"});
 }
 
-/// What the task makes of the question, before the other keys.
-void settle_question(const JsonObject& object, ThresholdOptions& options) {
-  const bool needs_three = options.question == Question::odd_one_out;
-  const bool needs_two = options.question == Question::same_different;
-  options.intervals = needs_three ? 3 : 2;
-  if (const auto m = object.find("intervals")) {
-    options.intervals = read_count(*m, 2, 3);
-    if (needs_three && options.intervals != 3) m->refuse("must be 3 to find the odd one; set 3");
-    if (needs_two && options.intervals != 2) m->refuse("must be 2 for same or different; set 2");
-  }
-  const auto along = object.find("along");
-  if (options.task == Task::detection && options.along != Along::gain) {
-    along->refuse(
-        "must be \"gain\" for detection, which asks for the weakest texture that is "
-        "felt; or choose the task discrimination");
-  }
-  const bool has_strength = options.along == Along::gain || options.along == Along::pitch;
-  if (!has_strength && options.question == Question::which_interval) {
-    along->refuse(
-        "has no more or less that a participant could name; ask the question "
-        "odd-one-out or same-different");
-  }
+void describe_practice(ObjectIo& io, ThresholdOptions& options) {
+  io.integer("trials", options.practice_trials, 0, 100,
+             {.meaning = "of a round; 0: no practice", .required = true});
+  io.rule([&options](const JsonValue& /*place*/, const JsonObject& /*object*/) {
+    options.practice_criterion = options.practice_trials;
+  });
+  io.integer(
+      "criterion", options.practice_criterion, 0, 100,
+      {.meaning = "right answers that end the practice, at most `trials`", .otherwise = "all"});
+  io.rule([&options](const JsonValue& place, const JsonObject& /*object*/) {
+    if (options.practice_criterion <= options.practice_trials) return;
+    place.refuse_below("/criterion",
+                       fmt::format("is {}, must be from 0 to {}", options.practice_criterion,
+                                   options.practice_trials));
+  });
+  io.integer("rounds", options.practice_rounds, 1, 10, {"rounds at most"});
 }
 
-void read_tracks(const JsonObject& object, ThresholdOptions& options) {
+/// What the task makes of the question.
+void describe_question(ObjectIo& io, ThresholdOptions& options) {
+  io.choice("task", options.task, kTaskNames,
+            {.meaning = "`detection`: a texture or the same wall without it; `discrimination`: a "
+                        "standard or a comparison",
+             .required = true});
+  io.choice("question", options.question, kQuestionNames,
+            {"which of the planes had the texture, or was stronger or coarser; which is unlike the "
+             "others (three planes; either kind is odd equally often); whether two are alike (half "
+             "of the trials differ; constant stimuli only)"});
+  io.choice("along", options.along, kAlongNames, {"the quantity that differs"});
+  io.rule([&options](const JsonValue& /*place*/, const JsonObject& /*object*/) {
+    options.intervals = options.question == Question::odd_one_out ? 3 : 2;
+  });
+  io.integer("intervals", options.intervals, 2, 3,
+             {.meaning = "planes of a trial", .otherwise = "2 (odd one out: 3)"});
+  io.rule([&options](const JsonValue& place, const JsonObject& /*object*/) {
+    if (options.question == Question::odd_one_out && options.intervals != 3) {
+      place.refuse_below("/intervals", "must be 3 to find the odd one; set 3");
+    }
+    if (options.question == Question::same_different && options.intervals != 2) {
+      place.refuse_below("/intervals", "must be 2 for same or different; set 2");
+    }
+    if (options.task == Task::detection && options.along != Along::gain) {
+      place.refuse_below("/along",
+                         "must be \"gain\" for detection, which asks for the weakest texture that "
+                         "is felt; or choose the task discrimination");
+    }
+    const bool has_strength = options.along == Along::gain || options.along == Along::pitch;
+    if (!has_strength && options.question == Question::which_interval) {
+      place.refuse_below("/along",
+                         "has no more or less that a participant could name; ask the question "
+                         "odd-one-out or same-different");
+    }
+  });
+}
+
+/// What follows from procedure and levels, before a file says otherwise.
+void set_usual_rules(ThresholdOptions& options) {
   procedures::TrackSettings& track = options.track;
-  track.levels = read_values(object.at("levels"), kLevelRange, true);
-  if (const auto m = object.find("procedure")) {
-    std::vector<std::string_view> names;
-    for (const auto& kind : procedures::procedure_kinds()) names.push_back(kind.name);
-    track.procedure = names[m->choice(names)];
-  }
-  const bool is_constant = track.procedure == "constant-stimuli";
-  if (options.question == Question::same_different && !is_constant) {
-    object.at("question")
-        .refuse(
-            "has no fixed guess rate, which procedures that follow answers need; set /threshold/"
-            "procedure to \"constant-stimuli\"");
-  }
-  if (const auto m = object.find("trials")) track.trials = read_count(*m, 1, 2000);
-  if (const auto m = object.find("blocked")) track.blocked = m->truth();
   track.up_down.first_level = track.levels.size() - 1;
   if (track.procedure == "weighted-up-down") {
     track.up_down = {.correct_for_down = 1,
@@ -177,17 +197,89 @@ void read_tracks(const JsonObject& object, ThresholdOptions& options) {
                      .up_for_one_down = 3,
                      .first_level = track.levels.size() - 1};
   }
-  if (const auto m = object.find("up_down")) read_up_down(*m, track);
-  procedures::ParameterGrid& grid = track.grid;
-  grid.thresholds = track.levels;
-  grid.slopes = {1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0};
-  grid.lapses = {0.0, 0.01, 0.02, 0.03, 0.04, 0.05};
-  if (const auto m = object.find("grid")) read_grid(*m, grid);
-  grid.guess = 1.0 / options.intervals;
+  track.grid.thresholds = track.levels;
+  track.grid.guess = 1.0 / options.intervals;
 }
 
-json values_json(const std::vector<double>& values) {
-  return json(values);
+void describe_procedure(ObjectIo& io, ThresholdOptions& options) {
+  procedures::TrackSettings& track = options.track;
+  std::vector<std::string_view> names;
+  for (const auto& kind : procedures::procedure_kinds()) names.push_back(kind.name);
+  auto at = static_cast<std::size_t>(std::ranges::find(names, track.procedure) - names.begin());
+  io.member("procedure", {"what decides which level comes next: the [procedure](#procedures)"},
+            true, [&](ValueIo& value) { value.choice(at, names); });
+  track.procedure = names.at(at);
+  io.rule([&](const JsonValue& place, const JsonObject& /*object*/) {
+    if (options.question == Question::same_different && track.procedure != "constant-stimuli") {
+      place.refuse_below("/question",
+                         "has no fixed guess rate, which procedures that follow answers need; set "
+                         "/threshold/procedure to \"constant-stimuli\"");
+    }
+    set_usual_rules(options);
+  });
+  io.integer("trials", track.trials, 1, 2000, {"of each track"});
+  io.integer("tracks", options.tracks_each, 1, 8,
+             {"of each class and standard, interleaved; at most 8 in all"});
+  io.truth("blocked", track.blocked, {"constant stimuli: all trials of a level together"});
+  io.part("up_down", track, {"for staircases"}, describe_up_down);
+  if (track.grid.slopes.empty()) {
+    track.grid.slopes = {1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0};
+    track.grid.lapses = {0.0, 0.02, 0.05, 0.1, 0.15, 0.2};
+  }
+  io.part("grid", track.grid, {"the observers considered possible, all equally likely at first"},
+          describe_grid);
+}
+
+void describe_standards(ObjectIo& io, ThresholdOptions& options) {
+  const bool is_order = options.along == Along::order;
+  const bool has_standards =
+      options.task == Task::discrimination && (options.along == Along::gain || is_order);
+  NumberRange range{-100.0, 1.0};
+  if (has_standards) {
+    range = is_order ? NumberRange{0.0, 1.0, true, true} : NumberRange{-100.0, 0.0};
+  }
+  io.rule([&](const JsonValue& /*place*/, const JsonObject& object) {
+    if (has_standards) {
+      static_cast<void>(object.at("standards"));
+      return;
+    }
+    options.standards = {0.0};
+    if (const auto standards = object.find("standards")) {
+      standards->refuse("belongs to discrimination along gain or order; remove it");
+    }
+  });
+  io.member("standards",
+            {.meaning = "for discrimination along gain (dB re the pack's gain, at most 0) or order "
+                        "(between 0 and 1), which need it; ascending",
+             .otherwise = "none"},
+            true, [&](ValueIo& value) { describe_list(value, options.standards, range); });
+}
+
+void describe(ObjectIo& io, ThresholdOptions& options) {
+  describe_question(io, options);
+  describe_values(io, "levels", options.track.levels, kLevelRange,
+                  {.meaning = "the only levels ever presented, ascending: [levels](#levels)",
+                   .required = true,
+                   .unit = "dB"});
+  describe_standards(io, options);
+  describe_procedure(io, options);
+  io.number("interval_s", options.interval_s, {0.25, 60.0},
+            {"exploration of each plane: [intervals](#intervals)"});
+  io.part("windows", options.windows, {"what the hand must do for an interval's clock to run"},
+          describe_windows);
+  io.integer("catch", options.catch_trials, 0, 1000,
+             {"trials at the highest level, dealt evenly to the tracks: [catch trials](#tracks)"});
+  io.number("rove_db", options.rove_db, {0.0, 40.0},
+            {"width of the range from which each interval's gain is drawn: about its level along "
+             "gain, else below the ceiling"});
+  io.truth("feedback", options.feedback,
+           {"tell participants after each answer whether it was right"});
+  io.part("practice", options,
+          {.meaning = "rounds at the highest level, with feedback, before the first trial",
+           .otherwise = "none"},
+          describe_practice);
+  io.integer("control", options.control_trials, 0, 500,
+             {"trials at the end with the hand off the device, which is only heard"});
 }
 
 }  // namespace
@@ -206,77 +298,23 @@ std::string_view name_of(procedures::Shape shape) {
 }
 
 ThresholdOptions read_section(const JsonValue& section) {
-  const JsonObject object =
-      section.object({"task", "question", "along", "intervals", "interval_s", "windows",
-                      "procedure", "trials", "tracks", "levels", "standards", "up_down", "blocked",
-                      "grid", "catch", "rove_db", "feedback", "practice", "control"});
   ThresholdOptions options;
-  options.task = object.at("task").choice(kTaskNames);
-  if (const auto m = object.find("question")) options.question = m->choice(kQuestionNames);
-  if (const auto m = object.find("along")) options.along = m->choice(kAlongNames);
-  settle_question(object, options);
-  if (const auto m = object.find("interval_s")) options.interval_s = m->number({0.25, 60.0});
-  if (const auto m = object.find("windows")) options.windows = read_windows(*m);
-  read_tracks(object, options);
-  const bool has_standards = options.task == Task::discrimination &&
-                             (options.along == Along::gain || options.along == Along::order);
-  if (has_standards) {
-    const NumberRange range =
-        options.along == Along::gain ? NumberRange{-100.0, 0.0} : NumberRange{0.0, 1.0, true, true};
-    options.standards = read_values(object.at("standards"), range, false);
-  } else {
-    options.standards = {0.0};
-    if (const auto m = object.find("standards")) {
-      m->refuse("belongs to discrimination along gain or order; remove it");
-    }
-  }
-  if (const auto m = object.find("tracks")) options.tracks_each = read_count(*m, 1, 8);
-  if (const auto m = object.find("catch")) options.catch_trials = read_count(*m, 0, 1000);
-  if (const auto m = object.find("rove_db")) options.rove_db = m->number({0.0, 40.0});
-  if (const auto m = object.find("feedback")) options.feedback = m->truth();
-  if (const auto m = object.find("practice")) read_practice(*m, options);
-  if (const auto m = object.find("control")) options.control_trials = read_count(*m, 0, 500);
+  read_described(section, [&options](ObjectIo& io) { describe(io, options); });
   return options;
 }
 
-std::string section_json(const ThresholdOptions& o) {
-  const procedures::TrackSettings& track = o.track;
-  const json whole = {{"task", name_of(o.task)},
-                      {"question", name_of(o.question)},
-                      {"along", name_of(o.along)},
-                      {"intervals", o.intervals},
-                      {"interval_s", o.interval_s},
-                      {"windows",
-                       {{"slowest_mm_s", o.windows.slowest_mm_s},
-                        {"fastest_mm_s", o.windows.fastest_mm_s},
-                        {"lightest_n", o.windows.lightest_n},
-                        {"strongest_n", o.windows.strongest_n}}},
-                      {"procedure", track.procedure},
-                      {"trials", track.trials},
-                      {"tracks", o.tracks_each},
-                      {"levels", values_json(track.levels)},
-                      {"standards", values_json(o.standards)},
-                      {"up_down",
-                       {{"correct_for_down", track.up_down.correct_for_down},
-                        {"wrong_for_up", track.up_down.wrong_for_up},
-                        {"steps_down", track.up_down.steps_down},
-                        {"up_for_one_down", track.up_down.up_for_one_down},
-                        {"first_level", track.levels[track.up_down.first_level]}}},
-                      {"blocked", track.blocked},
-                      {"grid",
-                       {{"shape", name_in(kShapeNames, track.grid.shape)},
-                        {"thresholds", values_json(track.grid.thresholds)},
-                        {"slopes", values_json(track.grid.slopes)},
-                        {"lapses", values_json(track.grid.lapses)}}},
-                      {"catch", o.catch_trials},
-                      {"rove_db", o.rove_db},
-                      {"feedback", o.feedback},
-                      {"practice",
-                       {{"trials", o.practice_trials},
-                        {"criterion", o.practice_criterion},
-                        {"rounds", o.practice_rounds}}},
-                      {"control", o.control_trials}};
-  return whole.dump();
+std::string section_json(const ThresholdOptions& options) {
+  ThresholdOptions copy = options;
+  return written_section([&copy](ObjectIo& io) { describe(io, copy); }, [](ObjectIo& /*io*/) {})
+      .dump();
+}
+
+std::string section_schema() {
+  ThresholdOptions usual;
+  return annotated_section({.meaning = "what is compared, at which levels, by which procedure: "
+                                       "[thresholds.md](thresholds.md)",
+                            .otherwise = "required by `threshold`"},
+                           [&usual](ObjectIo& io) { describe(io, usual); });
 }
 
 void check_section(const JsonValue& file, const Study& study) {

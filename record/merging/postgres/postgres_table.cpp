@@ -14,8 +14,8 @@
 namespace touchtrial::merging {
 namespace {
 
-// The server itself keeps who sent a row, and refuses one that did not arrive whole. What was
-// packed need not be compressed again. One statement: two stations may begin at once.
+// The server itself records who sent a row, and refuses an incomplete one. Bundles are compressed
+// already. One statement, because two stations may start at once.
 constexpr const char* kMakeTable = R"sql(DO $$ BEGIN
   PERFORM pg_advisory_xact_lock(hashtextextended('touchtrial_bundles', 0));
   CREATE TABLE IF NOT EXISTS touchtrial_bundles(
@@ -63,7 +63,7 @@ class PostgresTable final : public BundleTable {
   }
 
   void add(const BundleRow& row, ByteView chain, ByteView session) override {
-    // A role that may only add rows must not need the right to make tables.
+    // A role that may only add rows does not need the right to create tables.
     if (!exists_) server_.ask(kMakeTable);
     exists_ = true;
     const std::array<Digest, 2> halves = {sha256(chain), sha256(session)};

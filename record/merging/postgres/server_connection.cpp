@@ -16,14 +16,14 @@
 namespace touchtrial::merging {
 namespace {
 
-/// Does not pass on libpq's own complaint, which repeats the address.
+/// Does not pass on libpq's message, which repeats the address.
 ConnectionOptions parsed(const std::string& where) {
   const bool ours = where.starts_with("postgresql://") || where.starts_with("postgres://");
   const std::unique_ptr<PQconninfoOption, decltype(&PQconninfoFree)> all(
       ours ? PQconninfoParse(where.c_str(), nullptr) : nullptr, PQconninfoFree);
   if (!all) {
     throw UsageError(
-        "this is no address of a PostgreSQL database; write postgresql://USER@HOST/DATABASE");
+        "this is not the address of a PostgreSQL database; write postgresql://USER@HOST/DATABASE");
   }
   ConnectionOptions options;
   for (const PQconninfoOption* one = all.get(); one->keyword != nullptr; ++one) {
@@ -32,8 +32,8 @@ ConnectionOptions parsed(const std::string& where) {
   return options;
 }
 
-/// Where a number is given (hostaddr), libpq connects to that, and uses the name for the
-/// certificate alone. A list of servers counts as another machine.
+/// If a number is given (hostaddr), libpq connects to it, and uses the name only for the
+/// certificate. A list of servers counts as another machine.
 bool is_this_machine(const std::string& host, const std::string& number) {
   const std::string& place = number.empty() ? host : number;
   const bool is_socket = place.empty() || place.front() == '/' || place.front() == '@';
@@ -41,7 +41,7 @@ bool is_this_machine(const std::string& host, const std::string& number) {
   return !is_list && (is_socket || place == "localhost" || place == "127.0.0.1" || place == "::1");
 }
 
-/// The kernel counts them for TCP alone; a Unix socket's server is this machine's.
+/// The kernel counts them only for TCP; a Unix socket's server is on this machine.
 std::uint64_t bytes_received(int socket) {
   tcp_info info{};
   socklen_t size = sizeof info;
@@ -57,22 +57,22 @@ ConnectionOptions connection_options(const std::string& where) {
     if (!options.contains(name)) continue;
     throw UsageError(
         "the address holds a password, which every user of this machine can read in the list of "
-        "programs, or names a service; take it out, and lay a new password in ~/.pgpass");
+        "programs, or names a service; remove it, and put a new password into ~/.pgpass");
   }
   for (const char* const name : {"PGHOST", "PGHOSTADDR", "PGSERVICE"}) ::unsetenv(name);
   if (!is_this_machine(options["host"], options["hostaddr"])) {
-    // Said in the address, it comes before the environment; GSSAPI would come in place of TLS.
-    const bool is_proved =
+    // In the address, it takes precedence over the environment; GSSAPI would replace TLS.
+    const bool is_verified =
         options.emplace("sslmode", "verify-full").first->second == "verify-full" &&
         options.emplace("gssencmode", "disable").first->second == "disable";
-    if (!is_proved) {
+    if (!is_verified) {
       throw UsageError(
           "the address asks for less than sslmode=verify-full to another machine, so that others "
           "could read and alter the study; write ?sslmode=verify-full without gssencmode, and "
           "&sslrootcert=FILE with the certificate of the authority that signed the server's");
     }
   }
-  // libpq would wait for ever where this is 0 or no number.
+  // libpq would wait for ever if this is 0 or not a number.
   std::string& timeout = options["connect_timeout"];
   const int seconds = number_in<int>(timeout).value_or(0);
   timeout = std::to_string(seconds < 1 ? 10 : std::min(seconds, 60));
@@ -117,7 +117,7 @@ SqlRows ServerConnection::ask(const std::string& statement, const std::vector<By
     starts.push_back(value.empty() ? "" : reinterpret_cast<const char*>(value.data()));
     lengths.push_back(static_cast<int>(value.size()));
   }
-  const std::jthread guard = break_off_too_large();
+  const std::jthread guard = abort_if_too_large();
   began_ = moved_ = Clock::now();
   PQsendQueryParams(connection_.get(), statement.c_str(), static_cast<int>(values.size()), nullptr,
                     starts.data(), lengths.data(), formats.data(), 1);
@@ -126,29 +126,29 @@ SqlRows ServerConnection::ask(const std::string& statement, const std::vector<By
   if (status != PGRES_TUPLES_OK && status != PGRES_COMMAND_OK) {
     const char* const reason = PQresultErrorField(rows.get(), PG_DIAG_MESSAGE_PRIMARY);
     refuse(
-        "the server did not do it; run the same command again, which goes on from there, or ask "
-        "whoever keeps it for the rights that docs/several-stations.md lists",
+        "the server did not do it; run the same command again, which continues from there, or ask "
+        "its administrator for the rights listed in docs/several-stations.md",
         reason != nullptr ? reason : PQerrorMessage(connection_.get()));
   }
   if (next_result()) refuse("check that the address is the right one", "it answers twice");
   return rows;
 }
 
-/// PQgetResult, which itself waits without limits.
+/// PQgetResult, which has no timeout.
 SqlRows ServerConnection::next_result() {
-  constexpr int kBetweenLooksMs = 100;  // what TLS has read already does not wake the socket
+  constexpr int kPollMs = 100;  // bytes that TLS has buffered do not wake the socket
   while (true) {
     const int unsent = PQflush(connection_.get());
     if (unsent < 0 || PQconsumeInput(connection_.get()) != 1) {
       require_within_limits();
-      refuse("the connection was lost; run the same command again, which goes on from there",
+      refuse("the connection was lost; run the same command again, which continues from there",
              PQerrorMessage(connection_.get()));
     }
     if (unsent == 0 && PQisBusy(connection_.get()) == 0) break;
     require_within_limits();
     pollfd socket{.fd = PQsocket(connection_.get()), .events = POLLIN, .revents = 0};
     if (unsent == 1) socket.events |= POLLOUT;
-    if (::poll(&socket, 1, kBetweenLooksMs) > 0) moved_ = Clock::now();
+    if (::poll(&socket, 1, kPollMs) > 0) moved_ = Clock::now();
   }
   return {PQgetResult(connection_.get()), PQclear};
 }
@@ -163,17 +163,17 @@ void ServerConnection::require_within_limits() const {
   refuse("the server's connection was broken off; check that the address is the right one", reason);
 }
 
-/// On another thread: libpq reads a message that keeps arriving to its end, which may be 2 GB away.
-std::jthread ServerConnection::break_off_too_large() {
+/// On another thread, because libpq reads a message to its end, which may be 2 GB away.
+std::jthread ServerConnection::abort_if_too_large() {
   const int socket = PQsocket(connection_.get());
   const std::uint64_t limit = bytes_received(socket) + limits_.bytes;
   return std::jthread([this, socket, limit](const std::stop_token& is_answered) {
-    constexpr std::chrono::milliseconds kBetweenLooks{5};
+    constexpr std::chrono::milliseconds kPollInterval{5};
     const auto is_over = [&] { return bytes_received(socket) > limit; };
     std::mutex mutex;
     std::unique_lock lock(mutex);
     std::condition_variable_any answered;
-    while (!answered.wait_for(lock, is_answered, kBetweenLooks, is_over)) {
+    while (!answered.wait_for(lock, is_answered, kPollInterval, is_over)) {
       if (is_answered.stop_requested()) return;
     }
     is_too_large_ = true;

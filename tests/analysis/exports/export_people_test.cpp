@@ -94,7 +94,7 @@ TEST_CASE("With the key the safety record has what was typed, also of erased peo
   CHECK(events[1].at("at_s").empty());
 
   constexpr auto kLater = std::chrono::hours(24 * 366 * 11);
-  study.store().withdraw(2, kLater, "", record::Kept::nothing);
+  study.store().withdraw(2, kLater, "", record::Retention::nothing);
   const std::string after =
       all_text(analysis::export_safety(study.store(), &study.key(), study.folder() / "less"));
   CHECK_FALSE(says(after, "30 degrees"));

@@ -250,7 +250,7 @@ TEST_CASE("What participants said and what happened to them comes out with outco
   CHECK(json["incidents"][0]["text"] == "a phone rang");
   CHECK(json["consents"].size() == 2);
   const auto beside =
-      analysis::export_said(study.store(), outcomes, study.folder() / "r", consents);
+      analysis::export_typed_text(study.store(), outcomes, study.folder() / "r", consents);
   REQUIRE(beside.size() == 3);
   CHECK(rows_of(beside[0]) == answers);
 }

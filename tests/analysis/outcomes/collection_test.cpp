@@ -233,7 +233,7 @@ TEST_CASE("Who withdraws and lets the data be used is counted like the others, a
   FakeStudy study(study::identification::classification());
   study.add(session_of("P01", 1));
   study.add(session_of("P02", 2));
-  study.store().withdraw(1, milliseconds(10), "moves away", record::Kept::data);
+  study.store().withdraw(1, milliseconds(10), "moves away", record::Retention::data);
   const analysis::Collection blind = analysis::load_collection(study.store());
   CHECK(blind.flow.analysed == 2);
   CHECK(blind.flow.withdrawn == 1);

@@ -6,6 +6,7 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -22,6 +23,21 @@ TEST_CASE("the t test of a mean has SciPy's p") {
   CHECK(*t_test_p(kShares, 0.2, Sides::one) == Approx(0.015481137992672474).epsilon(1e-9));
   CHECK(*t_test_p(kShares, 0.2, Sides::two) == Approx(0.03096227598534495).epsilon(1e-9));
   CHECK(*t_test_p(kShares, 0.5, Sides::one) > 0.5);
+}
+
+TEST_CASE("t and the effect size with its interval are SciPy's, by stats.nct") {
+  const TStatistic found = t_statistic(kShares, 0.2).value();
+  CHECK(found.t == Approx(2.6927487920984525).epsilon(1e-12));
+  CHECK(found.degrees_of_freedom == 7);
+  CHECK(found.d == Approx(0.9520304654623503).epsilon(1e-12));
+  CHECK(found.interval->low == Approx(0.0821891084103069).epsilon(1e-8));
+  CHECK(found.interval->high == Approx(1.7782941156843195).epsilon(1e-8));
+  CHECK_FALSE(bare_t_statistic(kShares, 0.2)->interval);
+  CHECK_FALSE(t_statistic(std::vector{0.5}));
+  CHECK_FALSE(t_statistic(std::vector{0.5, 0.5, 0.5}));
+  CHECK_FALSE(t_statistic(std::vector{0.5, 0.5 + 1e-6})->interval);
+  CHECK_THROWS_AS(t_statistic(kShares, 0.2, 1.0), std::invalid_argument);
+  CHECK_THROWS_AS(t_statistic(std::vector{0.5, std::nan("")}), std::invalid_argument);
 }
 
 TEST_CASE("two perfect participants among 18 who guess do not raise the mean beyond chance") {

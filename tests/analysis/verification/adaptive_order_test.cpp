@@ -184,7 +184,7 @@ TEST_CASE("a session that ends anywhere is taken up at the same levels") {
       again.restore(std::span(recorded).first(ends[i] + more));
       CHECK(*again.current() == before_each[i]);
       if (more == 0) continue;
-      again.take_up(again.last() + seconds(9), {.after = "end", .away_s = 9.0});
+      again.resume_after_exit(again.last() + seconds(9), {.after = "end", .away_s = 9.0});
       // Another trial number, and the same track, level and target.
       REQUIRE(again.current() != nullptr);
       CHECK(again.current()->level == before_each[i].level);

@@ -113,7 +113,7 @@ class Ordeal {
   void be_killed() {
     session_.emplace(fresh());
     session_->restore(as_recorded(events_.events, SecretKey{}));
-    session_->take_up(now(), {.after = "end", .away_s = 9.0});
+    session_->resume_after_exit(now(), {.after = "end", .away_s = 9.0});
   }
 
   const study::StudyKey& key_;

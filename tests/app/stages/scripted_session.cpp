@@ -183,10 +183,10 @@ class Script final : public session::Participant,
   [[nodiscard]] session::SupplyState make_ready() override {
     if (is_armed_) return session::SupplyState::ready;
     switch (desk_.attend("")) {
-      case session::Attendant::Says::arm:
+      case session::Attendant::Reply::arm:
         is_armed_ = true;
         return session::SupplyState::ready;
-      case session::Attendant::Says::stop:
+      case session::Attendant::Reply::stop:
         return session::SupplyState::stopped;
       default:
         return session::SupplyState::not_yet;

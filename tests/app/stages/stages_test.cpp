@@ -476,26 +476,27 @@ json threshold_of(const json& section) {
 
 }  // namespace
 
-TEST_CASE("classification: the tables say what people did, whatever came between") {
+TEST_CASE(
+    "classification: the tables agree with the participants' actions, despite interruptions") {
   check_protocol({{"trials", {{"repeats", 1}, {"break_every", 2}, {"catch", 1}}},
                   {"session", {{"confidence", 4}}}});
 }
 
-TEST_CASE("comparison whose blocks are restarted: the tables say what people did") {
+TEST_CASE("comparison with restarted blocks: the tables agree with the participants' actions") {
   check_protocol(
       {{"protocol", "comparison"},
        {"trials", {{"repeats", 1}, {"break_every", 2}, {"on_interruption", "restart-block"}}}});
 }
 
-TEST_CASE("thresholds by QUEST+: the tables say what people did") {
+TEST_CASE("thresholds by QUEST+: the tables agree with the participants' actions") {
   check_protocol(threshold_of({{"procedure", "quest-plus"}, {"feedback", true}}));
 }
 
-TEST_CASE("thresholds by a staircase: the tables say what people did") {
+TEST_CASE("thresholds by a staircase: the tables agree with the participants' actions") {
   check_protocol(threshold_of({{"procedure", "up-down"}, {"trials", 4}}));
 }
 
-TEST_CASE("thresholds by constant stimuli: the tables say what people did") {
+TEST_CASE("thresholds by constant stimuli: the tables agree with the participants' actions") {
   check_protocol(threshold_of(
       {{"procedure", "constant-stimuli"}, {"question", "same-different"}, {"trials", 6}}));
 }

@@ -81,7 +81,7 @@ void check_equals_merged(const std::string& url) {
 }  // namespace
 
 TEST_CASE(
-    "what stations, or their merged file, sent merges to the same file, and opens with the key") {
+    "bundles of stations, or of their merged file, merge to the same file, which the key opens") {
   const std::string url = new_database(shared_server());
   send_all(url);
   check_equals_merged(url);
@@ -122,7 +122,7 @@ TEST_CASE("four stations send at once while programs and server are killed, and 
         std::vector<std::string>{"12"});  // each station's two sessions, and the end of its chain
 }
 
-TEST_CASE("sync says what it did, and what it would do") {
+TEST_CASE("sync prints what it did, or would do") {
   const std::string url = new_database(shared_server());
   const json dry = json::parse(sync(stations().file(2), url, {"--dry-run", "--json"}).output);
   CHECK(dry.at("dry_run") == true);
@@ -135,8 +135,7 @@ TEST_CASE("sync says what it did, and what it would do") {
   CHECK(again.output.find("postgres@") == std::string::npos);
 }
 
-TEST_CASE(
-    "a file that was tampered with is not sent, and what was altered on a server not merged") {
+TEST_CASE("a tampered file is not sent, and altered rows on a server are not merged") {
   const std::string url = new_database(shared_server());
   const std::string database = "study" + std::to_string(databases_made());
   TempFolder folder;
@@ -191,7 +190,7 @@ TEST_CASE("an unreachable server is reported in one line") {
                 {"cannot connect"});
 }
 
-TEST_CASE("a program without the module for servers starts, and says what sync lacks") {
+TEST_CASE("a program without the server module starts, and sync names the missing module") {
   TempFolder folder;
   const std::string program = (folder.path() / "touchtrial").string();
   fs::copy_file(TOUCHTRIAL_PROGRAM, program);

@@ -182,7 +182,7 @@ TEST_CASE("an acceptance finds planted parameters through noise, whatever its se
   }
 }
 
-TEST_CASE("an acceptance says what it could not measure, and why") {
+TEST_CASE("an acceptance records what it could not measure, and why") {
   DeviceModel model = device_model("falcon");
   model.position_step_mm = 0.0;
   const Certificate certificate = rehearsed(model, {.skip = {"wall", "shake"}});

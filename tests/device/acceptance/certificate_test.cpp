@@ -195,7 +195,7 @@ TEST_CASE("an acceptance that is half a year old or of another firmware causes a
   CHECK_THAT(check(1, newer), holds_text("firmware"));
 }
 
-TEST_CASE("an acceptance that lies ahead is refused, beyond what clocks differ by") {
+TEST_CASE("a certificate from the future is refused beyond the tolerance of clocks") {
   const Certificate certificate = passed_certificate();
   const auto before = [&](int hours) { return certificate.made - std::chrono::hours(hours); };
   CHECK(device::check_certificate(certificate, the_falcon(), before(23)).empty());

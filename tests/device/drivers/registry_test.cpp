@@ -13,7 +13,7 @@ namespace touchtrial {
 
 using namespace device;
 
-TEST_CASE("every driver has a name of its own and says what it is") {
+TEST_CASE("every driver has a unique name and a description") {
   std::set<std::string> names;
   for (const DeviceDriver& driver : device_drivers()) {
     INFO(driver.name);

@@ -37,7 +37,7 @@ TEST_CASE("markers as text are a line each") {
   CHECK(device::marker_bytes(line, 1, 12345) == "E1 T12345\n");
 }
 
-TEST_CASE("a marker line writes what it is sent, byte by byte, and says how late that was") {
+TEST_CASE("a marker line writes markers byte by byte, and reports their latency") {
   Instrument instrument;
   instrument.settings.width = 1;
   device::MarkerLine line(instrument.settings);
@@ -81,7 +81,7 @@ TEST_CASE("a line that cannot be used is refused with its name and the remedy") 
   CHECK_THROWS_WITH(device::MarkerLine(none),
                     holds_text("ttyNONE") && holds_text("plug the instrument in"));
   device::MarkerLineSettings file{.port = "/dev/null"};
-  CHECK_THROWS_WITH(device::MarkerLine(file), holds_text("is no serial line"));
+  CHECK_THROWS_WITH(device::MarkerLine(file), holds_text("is not a serial line"));
   Instrument instrument;
   instrument.settings.baud = 12'345;
   CHECK_THROWS_WITH(device::MarkerLine(instrument.settings), holds_text("115200"));

@@ -1,9 +1,8 @@
-// Files of device models: the schema against the reader, refusals, and what the program ships.
+// Files of device models: refusals, and what the program ships.
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "device/model/device_model.hpp"
 #include "support/catch.hpp"
-#include "support/schema_against_reader.hpp"
 #include "support/temp_folder.hpp"
 
 #include <filesystem>
@@ -37,33 +36,6 @@ std::string refusal_of(const json& model) {
   return "";
 }
 
-/// What a value needs beside it.
-void complete(const SchemaAgainstReader::Pointer& pointer, json& model) {
-  const std::string place = pointer.to_string();
-  model["name"] = "test";
-  if (place.starts_with("/workspace")) {
-    model["workspace"] = {{"least_mm", {-1000, -1000, -1000}}, {"greatest_mm", {1000, 1000, 1000}}};
-  }
-  if (place == "/stribeck_mm_s") model["static_n"] = 1;
-  if (place == "/structure/stiffness_n_per_mm") {
-    model["mass_kg"] = 0.1;
-    model["structure"]["tip_share"] = 0.5;
-  }
-  if (place.starts_with("/provenance/")) {
-    const std::string key = place.substr(12, place.find('/', 12) - 12);
-    if (!key.starts_with("qqq")) {
-      model["provenance"][key] = {{"source", "test"}, {"confidence", "guess"}};
-    }
-  }
-}
-
-/// A greatest corner at the lowest place is refused beside a least one; one reading has no slope.
-bool is_refused_otherwise(const SchemaAgainstReader::Pointer& place, double number) {
-  return (place.back() == "greatest_mm" && number < 0.0) ||
-         (place.back() == "least_mm" && number > 0.0) ||
-         (place.back() == "velocity_readings" && number == 1.0);
-}
-
 DeviceModel full_model() {
   DeviceModel model = device_model("touch");
   model.viscous_n_s_per_m = 0.5;
@@ -77,25 +49,12 @@ DeviceModel full_model() {
 
 }  // namespace
 
-TEST_CASE("the reader keeps keys, bounds, types, words and defaults of the schema of models") {
-  const SchemaAgainstReader both(
-      json::parse(text_of(read_file(config() / "schema" / "device-model.schema.json"))), refusal_of,
-      complete, is_refused_otherwise);
-  const std::size_t parameters = 11 + 6;
-  CHECK(both.objects().size() == 1 + 4 + parameters);
-  both.check_keys();
-  both.check_values();
-  CHECK(both.check_bounds() == 2 * (11 + 2 + 3 + 2 + 4 + 2));
-  json full = both.defaults();
-  full["name"] = "test";
-  full.erase("workspace");
+TEST_CASE("a model's file has only what differs from the defaults") {
   const DeviceModel bare = parse_device_model(R"({"name": "test"})", "bare");
-  CHECK(device::device_model_json(parse_device_model(full.dump(), "full")) ==
-        device::device_model_json(bare));
   CHECK(device::device_model_json(bare) == "{\n  \"name\": \"test\"\n}\n");
 }
 
-TEST_CASE("a model is written as it is read") {
+TEST_CASE("a model round-trips through its file") {
   std::vector<DeviceModel> models = shipped_device_models();
   models.push_back(full_model());
   for (const DeviceModel& model : models) {
@@ -181,7 +140,8 @@ TEST_CASE("a model that was made in code is checked before it runs") {
   }
 }
 
-TEST_CASE("the shipped models are the files in config, and each says where its numbers come from") {
+TEST_CASE(
+    "the built-in models are the files in config, and each states the sources of its numbers") {
   std::set<std::string> names;
   for (const auto& entry : fs::directory_iterator(config() / "devices")) {
     const json file = json::parse(text_of(read_file(entry.path())));

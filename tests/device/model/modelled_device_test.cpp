@@ -39,7 +39,7 @@ TEST_CASE("a person presses on a wall of every shipped device, and it holds agai
   }
 }
 
-TEST_CASE("a modelled device says what its model knows") {
+TEST_CASE("a modelled device reports its model's parameters") {
   const ModelledDevice touch(device::device_model("touch"));
   CHECK(touch.info().name == "modelled");
   CHECK(touch.info().model == "touch");

@@ -130,7 +130,7 @@ void last_act() noexcept {
   const StopOnSignals stop(device, control);
   pipe_to_tell = pipe;
   device_in_use = &device;
-  StopOnSignals::before_dying(last_act);
+  StopOnSignals::set_crash_cleanup(last_act);
   leave_by(way, control, device);
   ::_exit(99);
 }
@@ -202,7 +202,7 @@ TEST_CASE("without a signal there is no exit code, and only one handler may exis
   CHECK_THROWS_AS(StopOnSignals(device, control), std::logic_error);
 }
 
-TEST_CASE("a program that was asked to end knows by which signal") {
+TEST_CASE("a program that was asked to end reports the signal") {
   RestingDevice device;
   ServoControl control;
   const StopOnSignals stop(device, control);

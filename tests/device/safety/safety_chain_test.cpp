@@ -296,7 +296,7 @@ class LinkByLink {
   Vec3 sent_n_;
 };
 
-TEST_CASE("a chain sends what its links give one after the other, however the force jumps") {
+TEST_CASE("a chain equals its links in series, for any jumps of the force") {
   device::SafetyLimits limits{
       .continuous_force_n = GENERATE(0.0, 1.5), .thermal_budget_s = 1.0, .max_support_n = 0.1};
   const bool supported = GENERATE(false, true);

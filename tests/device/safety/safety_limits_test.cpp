@@ -77,7 +77,7 @@ TEST_CASE("the limit of a support is the device's") {
   CHECK(device::limits_on(info, {}).max_support_n == 1.0);
 }
 
-TEST_CASE("a device that does not know its own force limit gets no force") {
+TEST_CASE("a device without a known force limit gets no force") {
   CHECK_FALSE(device::is_sound(device::limits_on(device_of(kNaN, 0.0), {})));
   CHECK_FALSE(device::is_sound(device::limits_on(device_of(3.3, kNaN), {})));
   CHECK_FALSE(device::is_sound(device::limits_on(device_of(0.0, 0.0), {})));

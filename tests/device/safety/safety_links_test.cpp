@@ -255,7 +255,8 @@ TEST_CASE("without a continuous force, or with one above the peak, there is no b
 }
 
 TEST_CASE(
-    "what the motors carry besides leaves the less, the warmer they are, and a cold one all") {
+    "a carried force reduces the limit the more, the warmer the motors are, and not at all when "
+    "cold") {
   device::ThermalBudget budget(3.0, 1.0, 1.0, 0.001);
   CHECK(budget.limit_n(0.4) == 3.0);
   budget.heat(9.0, 1e9);
@@ -284,7 +285,7 @@ TEST_CASE("a hand that bears less than a newton may stand still") {
   CHECK(frozen_at({0.3, 0.001}, std::numeric_limits<double>::quiet_NaN()) == 0);
 }
 
-TEST_CASE("the least motion of one coordinate, and a moment without force, begin anew") {
+TEST_CASE("the least motion of one coordinate, or a moment without force, restarts the count") {
   device::FrozenEncoders encoders(0.01, 0.001);
   Vec3 position_mm{1.0, 2.0, -1.0};
   const double pressed_n2 = 4.0;

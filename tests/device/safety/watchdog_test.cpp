@@ -103,7 +103,7 @@ TEST_CASE("a watchdog leaves a beating servo alone, even if a beat is late") {
   CHECK_FALSE(watched.watchdog->disarm());
 }
 
-TEST_CASE("a watchdog waits for the first beat, and knows the end of a run") {
+TEST_CASE("a watchdog waits for the first beat, and stops at the end of a run") {
   Watched watched;
   watched.watchdog->arm();
   watched.pass(milliseconds(100), false);

@@ -46,7 +46,7 @@ TEST_CASE(
   CHECK(asked == std::array{300, 300});
 }
 
-TEST_CASE("a sequence of forces reports what the hand met of each") {
+TEST_CASE("a sequence of forces reports the hand's contact with each") {
   ConstantForce first({0.0, 0.0, 0.0});
   ConstantForce second({0.0, 0.0, 2.0});
   device::ForceSequence sequence(first, second, 30, 1);

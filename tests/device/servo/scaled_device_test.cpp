@@ -83,13 +83,13 @@ TEST_CASE("scales correct positions, velocities and delivered forces axis by axi
   CHECK(sample.sequence == 9);
 }
 
-TEST_CASE("a driver is told the force that is then felt as computed") {
+TEST_CASE("a driver gets the command for which the felt force is the computed one") {
   Scaled lab;
   REQUIRE(lab.device->write({1.0, 1.0, 1.0}) == DeviceStatus::ok);
   CHECK(norm(lab.recorder->told_n - Vec3{0.5, 2.0, 0.8}) < 1e-12);
 }
 
-TEST_CASE("a driver is asked for its support in its own millimetres, and its weight is as it is") {
+TEST_CASE("a driver's support is queried in its own millimetres, and its force is not scaled") {
   Scaled lab;
   DeviceSample sample;
   REQUIRE(lab.device->read(sample) == DeviceStatus::ok);
@@ -97,7 +97,7 @@ TEST_CASE("a driver is asked for its support in its own millimetres, and its wei
   CHECK(norm(lab.recorder->asked_mm - Vec3{10.0, 20.0, -5.0}) < 1e-12);
 }
 
-TEST_CASE("limits of a scaled device hold as felt and as told, in every direction") {
+TEST_CASE("limits of a scaled device apply to felt and commanded forces, in every direction") {
   const DeviceInfo own = full_info();
   const DeviceInfo info = scaled(own, kScale);
   CHECK(info.scale == kScale);
@@ -125,7 +125,7 @@ TEST_CASE("everything else of a scaled device is the driver's") {
   CHECK_FALSE(lab.recorder->halted);
 }
 
-TEST_CASE("the safety chain's limits hold in newtons as they are felt") {
+TEST_CASE("the safety chain's limits apply to true newtons") {
   // Twice as strong as its driver believes: of 3 N felt it may be told 1.5.
   auto own = std::make_unique<Recorder>();
   Recorder& recorder = *own;

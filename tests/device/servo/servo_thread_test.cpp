@@ -38,7 +38,7 @@ TEST_CASE("a servo thread works while other threads run, and says when it is don
   CHECK_FALSE(servo.running());
 }
 
-TEST_CASE("wait throws what work on a servo thread threw, and the servo thread goes on") {
+TEST_CASE("wait rethrows an exception of the work, and the servo thread continues") {
   device::ServoThread servo(kOrdinary);
   CHECK_THROWS_AS(servo.run([] { throw std::runtime_error("no field"); }), std::runtime_error);
   bool ran = false;
@@ -139,7 +139,7 @@ TEST_CASE("requests are forgotten before a run, but stops hold until they are re
   control.comfort_stop();
   control.emergency_stop();
   control.stall();
-  control.forget_wishes();
+  control.clear_requests();
   CHECK_FALSE(control.finish_asked());
   CHECK_FALSE(control.comfort_stop_asked());
   CHECK(control.emergency_stop_asked());

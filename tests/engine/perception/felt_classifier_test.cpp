@@ -41,7 +41,7 @@ TEST_CASE("the covariance within classes decides which differences matter") {
 }
 
 TEST_CASE(
-    "two classes at a distance d in units of noise are told apart with probability Phi(d/2)") {
+    "two classes at a distance d in units of noise are distinguished with probability Phi(d/2)") {
   constexpr double kNoise = 0.3;
   const std::vector<engine::FeltExample> examples = {{0, {0.0}}, {1, {2.0 * kNoise}}};
   const engine::FeltClassifier classifier(examples, kNoise);

@@ -250,7 +250,7 @@ TEST_CASE("choose_gains cannot judge fields without interior pixels") {
   CHECK(engine::choose_gains(views_of(both), {}).of_field == std::vector<Gains>{alone, alone});
 }
 
-TEST_CASE("choose_gains takes explicit gains as they are and says when they exceed the budget") {
+TEST_CASE("choose_gains uses explicit gains unchanged and reports when they exceed the budget") {
   const std::vector<TextureField> fields = three_fields();
   const Gains allowed = engine::choose_gains(views_of(fields), {}).of_field[0];
   RenderingOptions options{.gains = allowed};

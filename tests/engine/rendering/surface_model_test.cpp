@@ -241,7 +241,7 @@ TEST_CASE("a bristle holds like a spring and slips at its limit") {
         Approx(0.1).epsilon(1e-9));
 }
 
-TEST_CASE("a bristle lets go when the load goes, and takes hold anew after a release") {
+TEST_CASE("a bristle is released without load, and anchored again after a release") {
   engine::Bristle bristle;
   static_cast<void>(bristle.friction_n({0.0, 0.0}, 1.0, kStiffness));
   CHECK(bristle.friction_n({1.0, 0.0}, 1.0, kStiffness).x == Approx(-0.28));
@@ -253,7 +253,7 @@ TEST_CASE("a bristle lets go when the load goes, and takes hold anew after a rel
   CHECK(bristle.friction_n({5.0, 5.0}, 1.0, kStiffness) == Vec2{});
 }
 
-TEST_CASE("a bristle gives no more energy than it got, whatever the path and the load") {
+TEST_CASE("a bristle is passive for any path and load") {
   RandomStream random(GENERATE(1, 2, 3), "strokes");
   engine::Bristle bristle;
   Vec2 at_mm;
@@ -287,7 +287,7 @@ TEST_CASE("friction depends on the path and not on how it is cut into ticks") {
   CHECK(norm(last_force_n(50) - fine_n) < 1e-6);
 }
 
-TEST_CASE("SurfaceModel without friction is the same to the bit whatever the bristle remembers") {
+TEST_CASE("SurfaceModel without friction does not depend on the bristle's state") {
   const engine::TextureField field = random_surface(20, 20, 1);
   const engine::SurfaceModel model(field.view(), surface_options(), {.height_mm = 0.004});
   engine::Bristle used;

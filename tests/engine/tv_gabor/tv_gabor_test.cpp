@@ -96,8 +96,7 @@ TEST_CASE("tv_gabor in float continues in double where float's digits end") {
                              tv_gabor<double>(noise_image({40, 41}), options).texture) < 1e-4);
 }
 
-TEMPLATE_TEST_CASE("TV-Gabor's digits are the same whatever the number of jobs", "", float,
-                   double) {
+TEMPLATE_TEST_CASE("TV-Gabor's result is the same for any number of jobs", "", float, double) {
   const GreyImage image = cloth_image({180, 70});
   TvGaborOptions options{.gap = 1e-300};
   TvGaborSolver<TestType> alone(image, options, 1), two(image, options, 2), all(image, options, 0);

@@ -153,7 +153,7 @@ class PresenceResults final : public analysis::Results {
 class PresenceAnalysis final : public analysis::ProtocolAnalysis {
  public:
   std::unique_ptr<const analysis::Results> results(const analysis::Outcomes& outcomes,
-                                                   const analysis::ReportWishes&) const override {
+                                                   const analysis::ReportOptions&) const override {
     return std::make_unique<PresenceResults>(outcomes);
   }
 };

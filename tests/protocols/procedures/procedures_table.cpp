@@ -65,16 +65,40 @@ double truth_of(Observer observer) {
   return level_at(observer, std::lerp(observer.guess, 1.0, share_at_threshold(Shape::weibull)));
 }
 
-/// \param by_reversals  a staircase's mean of reversals in place of the estimate
-std::vector<Outcome> outcomes_of(const Kind& kind, const std::string& procedure, int trials,
-                                 int runs, bool by_reversals = false) {
-  TrackSettings settings = usual_track(procedure, trials);
-  if (!kind.levels.empty()) settings.levels = kind.levels;
-  settings.grid.guess = kind.guess;
-  std::vector<Outcome> all(static_cast<std::size_t>(runs));
-  in_parallel(0, all.size(), [&](std::size_t run) {
+/// One observer's answers to a procedure.
+struct AnsweredTrack {
+  Observer observer;
+  std::vector<TrackTrial> trials;
+};
+
+/// Tracks of one procedure, each of another observer.
+struct Tracks {
+  TrackSettings settings;
+  std::vector<AnsweredTrack> each;
+};
+
+Tracks tracks_of(const Kind& kind, const std::string& procedure, int trials, int runs) {
+  Tracks tracks{usual_track(procedure, trials),
+                std::vector<AnsweredTrack>(static_cast<std::size_t>(runs))};
+  if (!kind.levels.empty()) tracks.settings.levels = kind.levels;
+  tracks.settings.grid.guess = kind.guess;
+  in_parallel(0, tracks.each.size(), [&](std::size_t run) {
     const Observer observer = observer_of(kind, run);
-    const std::vector<TrackTrial> answers = answered_track(settings, observer, run, kind.drift_db);
+    tracks.each[run] = {observer, answered_track(tracks.settings, observer, run, kind.drift_db)};
+  });
+  return tracks;
+}
+
+/// \param trials        the first ones of each track; all, if there are not more
+/// \param by_reversals  a staircase's mean of reversals in place of the estimate
+std::vector<Outcome> outcomes_of(const Tracks& tracks, int trials, bool by_reversals = false) {
+  TrackSettings settings = tracks.settings;
+  settings.trials = std::min(settings.trials, trials);
+  std::vector<Outcome> all(tracks.each.size());
+  in_parallel(0, all.size(), [&](std::size_t run) {
+    const auto& [observer, answered] = tracks.each[run];
+    const std::span<const TrackTrial> answers =
+        std::span(answered).first(static_cast<std::size_t>(settings.trials));
     if (by_reversals) {
       all[run] = {reversal_threshold(settings.levels, answers),
                   level_at(observer, convergence_of(settings.up_down))};
@@ -94,9 +118,10 @@ std::string share_text(double count, double of) {
   return of > 0.0 ? fmt::format("{:.3f}", count / of) : "-";
 }
 
-/// quoted | bias | RMSE | coverage | of quoted | width
+/// As kFigures has them.
 std::string figures_of(const std::vector<Outcome>& all, bool has_interval = true) {
-  double quoted = 0.0, sum = 0.0, squares = 0.0, covered = 0.0, quoted_covered = 0.0, width = 0.0;
+  double quoted = 0.0, sum = 0.0, squares = 0.0, covered = 0.0, quoted_covered = 0.0;
+  double closed = 0.0, width = 0.0;
   for (const Outcome& one : all) {
     const bool held = holds(one.threshold, one.truth);
     covered += held ? 1.0 : 0.0;
@@ -107,20 +132,26 @@ std::string figures_of(const std::vector<Outcome>& all, bool has_interval = true
     squares += error * error;
     if (!has_interval) continue;
     quoted_covered += held ? 1.0 : 0.0;
+    if (!one.threshold.low || !one.threshold.high) continue;
+    closed += 1.0;
     width += *one.threshold.high - *one.threshold.low;
   }
   const auto runs = static_cast<double>(all.size());
   const std::string errors = 10.0 * quoted > runs ? fmt::format("{:+.2f} | {:.2f}", sum / quoted,
                                                                 std::sqrt(squares / quoted))
                                                   : "- | -";
-  if (!has_interval) return fmt::format("{} | {} | - | - | -", share_text(quoted, runs), errors);
-  return fmt::format("{} | {} | {} | {} | {}", share_text(quoted, runs), errors,
-                     share_text(covered, runs),
-                     10.0 * quoted > runs ? share_text(quoted_covered, quoted) : "-",
-                     10.0 * quoted > runs ? fmt::format("{:.1f}", width / quoted) : "-");
+  if (!has_interval) {
+    return fmt::format("{} | {} | - | - | - | -", share_text(quoted, runs), errors);
+  }
+  const std::string of_quoted =
+      10.0 * quoted > runs ? fmt::format("{} | {} | {:.1f}", share_text(quoted_covered, quoted),
+                                         share_text(closed, quoted), width / closed)
+                           : "- | - | -";
+  return fmt::format("{} | {} | {} | {}", share_text(quoted, runs), errors,
+                     share_text(covered, runs), of_quoted);
 }
 
-constexpr const char* kFigures = "quoted | bias | RMSE | coverage | of quoted | width";
+constexpr const char* kFigures = "quoted | bias | RMSE | coverage | of quoted | closed | width";
 
 void print_line(const std::string& line) {
   fmt::print("{}\n", line);
@@ -128,15 +159,18 @@ void print_line(const std::string& line) {
 }
 
 void print_procedures(int runs) {
+  constexpr std::array kNames{"up-down",      "weighted-up-down",       "quest-plus",
+                              "psi-marginal", "psi-marginal-threshold", "constant-stimuli"};
   print_line(fmt::format("| procedure | trials | estimate | {} |", kFigures));
-  print_line("| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
+  print_line("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
+  std::vector<Tracks> tracks;
+  for (const char* name : kNames) tracks.push_back(tracks_of({}, name, 120, runs));
   for (const int trials : {30, 60, 120}) {
-    for (const std::string name : {"up-down", "weighted-up-down", "quest-plus", "psi-marginal",
-                                   "psi-marginal-threshold", "constant-stimuli"}) {
+    for (const Tracks& of : tracks) {
+      const std::string& name = of.settings.procedure;
       const auto print = [&](const char* words, bool by_reversals) {
-        print_line(fmt::format(
-            "| {} | {} | {} | {} |", name, trials, words,
-            figures_of(outcomes_of({}, name, trials, runs, by_reversals), !by_reversals)));
+        print_line(fmt::format("| {} | {} | {} | {} |", name, trials, words,
+                               figures_of(outcomes_of(of, trials, by_reversals), !by_reversals)));
       };
       if (name.ends_with("up-down")) print("reversals", true);
       print("threshold", false);
@@ -166,19 +200,38 @@ std::vector<Kind> unassumed_kinds() {
 
 void print_unassumed(int runs) {
   print_line(fmt::format("| observers | procedure | {} |", kFigures));
-  print_line("| --- | --- | --- | --- | --- | --- | --- | --- |");
+  print_line("| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
+  constexpr int kTrials = 60;
   const auto print = [&](const Kind& kind, const char* procedure) {
+    const Tracks tracks = tracks_of(kind, procedure, kTrials, runs);
     print_line(fmt::format("| {} | {} | {} |", kind.words, procedure,
-                           figures_of(outcomes_of(kind, procedure, 60, runs))));
+                           figures_of(outcomes_of(tracks, kTrials))));
   };
   for (const Kind& kind : unassumed_kinds()) {
-    for (const char* procedure : {"quest-plus", "up-down", "constant-stimuli"}) {
+    for (const char* procedure :
+         {"quest-plus", "weighted-up-down", "up-down", "constant-stimuli"}) {
       print(kind, procedure);
     }
   }
   print({.words = "unequal levels", .levels = {-40, -33, -28, -24, -21, -19, -17, -14, -11, -6, 0}},
         "quest-plus");
   print({.words = "levels 5 dB apart", .levels = decibels(-40, 0, 5)}, "quest-plus");
+}
+
+/// QUEST+ with those for whom 60 trials are too few.
+void print_lengths(int runs) {
+  print_line(fmt::format("| observers | trials | {} |", kFigures));
+  print_line("| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
+  const std::vector<Kind> kinds = unassumed_kinds();
+  for (const char* words : {"lapse rate 0.10", "lapse rate 0.15", "lapse rate 0.20", "slope 1.17",
+                            "threshold -40 .. -34 dB"}) {
+    const Kind& kind = *std::ranges::find(kinds, words, &Kind::words);
+    const Tracks tracks = tracks_of(kind, "quest-plus", 120, runs);
+    for (const int trials : {60, 90, 120}) {
+      print_line(
+          fmt::format("| {} | {} | {} |", words, trials, figures_of(outcomes_of(tracks, trials))));
+    }
+  }
 }
 
 void print_without_threshold(int runs) {
@@ -197,21 +250,22 @@ void print_without_threshold(int runs) {
   }
   for (const Kind& kind : kinds) {
     std::string line = "| " + kind.words + " |";
-    for (const auto& [procedure, trials] : {std::pair{"constant-stimuli", 30},
-                                            {"quest-plus", 10},
-                                            {"quest-plus", 30},
-                                            {"quest-plus", 60}}) {
+    const auto add = [&](const Tracks& tracks, int trials) {
       double quoted = 0.0;
-      for (const Outcome& one : outcomes_of(kind, procedure, trials, runs)) {
+      for (const Outcome& one : outcomes_of(tracks, trials)) {
         quoted += one.threshold.level ? 1.0 : 0.0;
       }
       line += fmt::format(" {:.3f} |", quoted / runs);
-    }
+    };
+    add(tracks_of(kind, "constant-stimuli", 30, runs), 30);
+    const Tracks adaptive = tracks_of(kind, "quest-plus", 60, runs);
+    for (const int trials : {10, 30, 60}) add(adaptive, trials);
     print_line(line);
   }
 }
 
 void print_goodness_of_fit(int runs) {
+  runs = std::min(runs, 400);
   const TrackSettings settings = usual_track("constant-stimuli", 120);
   std::vector<double> p(static_cast<std::size_t>(runs));
   in_parallel(0, p.size(), [&](std::size_t run) {
@@ -345,7 +399,8 @@ int main(int argc, char** argv) {
   if (runs < 20) return 2;
   fmt::print(
       "# Parameter recovery of thresholds\n\n"
-      "`scripts/recovery-procedures {0}` prints this page. Each row: {0} observers, each with one "
+      "`scripts/recovery-procedures {0}` prints these tables. Each row: {0} observers, each with "
+      "one "
       "track and a tenth as many\n"
       "trials at the highest level, at least six. Unless a row says otherwise: Weibull functions "
       "in "
@@ -355,13 +410,13 @@ int main(int argc, char** argv) {
       "[thresholds.md](thresholds.md), \"Defaults\"; staircases begin at -10 dB; constant stimuli "
       "are at -30, -25 .. -5 dB,\n"
       "and their highest level is -5 dB.\n\n"
-      "*Quoted*: share of the tracks with a number. *Bias*, *RMSE*, *width* of the 95 % interval: "
-      "of "
-      "these, in dB (left out\n"
-      "where less than a tenth is quoted). *Coverage*: share of all tracks whose interval holds "
-      "the "
-      "truth, open ones too;\n"
-      "*of quoted*: of those with a number (Monte-Carlo error {1:.3f}).\n\n"
+      "*Quoted*: share of the tracks with a number. *Bias*, *RMSE*: of these, in dB. *Coverage*: "
+      "share of all tracks whose\n"
+      "interval holds the truth, open ones too; *of quoted*: of those with a number (Monte-Carlo "
+      "error {1:.3f}); *closed*: of\n"
+      "these, with an interval that is closed on both sides; *width*: its mean width in dB. All "
+      "but the first and the coverage\n"
+      "are left out where less than a tenth is quoted.\n\n"
       "## Procedures\n\n"
       "![Error and coverage of every procedure after 30, 60 and 120 trials]"
       "(images/procedures-recovery.svg)\n\n"
@@ -372,11 +427,13 @@ int main(int argc, char** argv) {
   print_procedures(runs);
   fmt::print(
       "\n## Observers outside the assumptions\n\n"
-      "60 trials. The procedure's own grid has slopes of 1.5 to 8 and lapse rates of 0 to .05. The "
+      "60 trials. The procedure's own grid has slopes of 1 to 8 and lapse rates of 0 to .2. The "
       "truth of a logistic function is\n"
       "its level with as many right as a Weibull function's at its threshold; of a threshold that "
       "moves, the mean over the track.\n\n");
   print_unassumed(runs);
+  fmt::print("\n## How many trials\n\nQUEST+ with those for whom 60 trials are few.\n\n");
+  print_lengths(runs);
   fmt::print(
       "\n## Observers without a threshold\n\n"
       "Share of the tracks with a number, by procedure and trials.\n\n");

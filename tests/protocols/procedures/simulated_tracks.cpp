@@ -24,9 +24,9 @@ TrackSettings usual_track(const std::string& procedure, int trials) {
   }
   settings.grid = {Shape::weibull,
                    decibels(-40, 0),
-                   {1.5, 2, 2.5, 3, 3.5, 4, 5, 6, 8},
+                   {1, 1.5, 2, 3, 4, 6, 8},
                    0.5,
-                   {0.0, 0.01, 0.02, 0.03, 0.04, 0.05}};
+                   {0.0, 0.02, 0.05, 0.1, 0.15, 0.2}};
   return settings;
 }
 

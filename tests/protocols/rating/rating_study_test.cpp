@@ -591,8 +591,8 @@ TEST_CASE("a session that ended during a rating is taken up with that trial at t
 
   Laboratory again(study);
   again.session.restore(as_recorded(lab.sink.events, SecretKey{}));
-  again.session.take_up(again.now = lab.now + seconds(60),
-                        {.after = "program-ended", .away_s = 60.0});
+  again.session.resume_after_exit(again.now = lab.now + seconds(60),
+                                  {.after = "program-ended", .away_s = 60.0});
   CHECK(again.session.current()->place.trial == 3);
   const std::vector<study::Trial> rest = again.rate_the_rest();
   CHECK(rest.size() == kScored + kCatch - 1);

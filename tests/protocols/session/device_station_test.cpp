@@ -8,7 +8,7 @@
 namespace touchtrial {
 namespace {
 
-using Says = session::Attendant::Says;
+using Reply = session::Attendant::Reply;
 
 struct Bench {
   Cable cable;
@@ -117,7 +117,7 @@ TEST_CASE("a device other than the first one is refused") {
   CHECK(bench.station.make_ready() == session::SupplyState::ready);
 }
 
-TEST_CASE("an attendant who gives up ends the wait") {
+TEST_CASE("an attendant who stops ends the wait") {
   Bench bench;
   bench.cable.plugged = false;
   bench.helper.gives_up = true;

@@ -40,19 +40,19 @@ device::DeviceStatus FakeDevice::write(Vec3 force_n) noexcept {
   return lost_ ? device::DeviceStatus::fault : device::DeviceStatus::ok;
 }
 
-session::Attendant::Says Helper::attend(const std::string& need) {
-  if (gives_up && !need.empty()) return Says::stop;
+session::Attendant::Reply Helper::attend(const std::string& need) {
+  if (gives_up && !need.empty()) return Reply::stop;
   if (need.empty()) {
     ++consents;
-    return Says::arm;
+    return Reply::arm;
   }
   needs.push_back(need);
-  if (resets) return Says::at_reset;
+  if (resets) return Reply::at_reset;
   if (plugs_in && needs.size() % 2 == 0) {
     cable_.plugged = true;
     cable_.homed = true;
   }
-  return Says::wait;
+  return Reply::wait;
 }
 
 session::DeviceStation::Open opener(Cable& cable, FakeDevice*& device) {

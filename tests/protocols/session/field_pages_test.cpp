@@ -93,7 +93,7 @@ TEST_CASE("ten seconds on a texture touch no page of its field but those under t
   CHECK(paper < of_paper * 9 / 10);
 }
 
-TEST_CASE("a hand that does not come down touches no page of a field") {
+TEST_CASE("a hand without contact reads no page of a field") {
   const RenderingOptions options = options_of(GENERATE(ModelKind::paper, ModelKind::surface));
   const TextureField field = wavy_field(options);
   FieldView view = field.view();

@@ -45,7 +45,7 @@ std::optional<HandLevels> levels_after(double force_n, double speed_mm_s,
   return meter.levels();
 }
 
-TEST_CASE("a hand is low, right or high beside what participants are told") {
+TEST_CASE("levels of the hand are relative to the instructions") {
   CHECK(levels_after(0.3, 30.0) == HandLevels{HandLevel::low, HandLevel::low});
   CHECK(levels_after(0.65, 100.0) == HandLevels{HandLevel::right, HandLevel::right});
   CHECK(levels_after(1.2, 250.0) == HandLevels{HandLevel::high, HandLevel::high});
@@ -60,7 +60,7 @@ TEST_CASE("a study's own window of force holds where it is narrower, or another 
   CHECK(levels_after(2.0, 100.0, rule)->force == HandLevel::right);
 }
 
-TEST_CASE("nothing is said before the hand has been at the plane for half a second") {
+TEST_CASE("there are no levels before the hand has been at the plane for half a second") {
   HandMeter meter({}, kRateHz);
   EvenHand hand(0.65, 100.0);
   hand.stroke(meter, 1.0, 10.0);
@@ -134,7 +134,7 @@ std::vector<std::optional<HandLevels>> read_over(double budget_n_per_mm, engine:
   return reader.read();
 }
 
-TEST_CASE("what the experimenter reads is the hand's, the same on a blank and on a rough plane") {
+TEST_CASE("the levels are those of the hand, the same on a blank and on a rough plane") {
   const double push_n = GENERATE(0.35, 0.65, 1.1);
   const engine::ModelKind kind = GENERATE(engine::ModelKind::paper, engine::ModelKind::surface);
   const auto blank = read_over(0.0, kind, push_n);

@@ -60,7 +60,7 @@ device::ServoSample at_height(double z_mm, std::int64_t tick) {
 
 }  // namespace
 
-TEST_CASE("instruments are told of events and trials, and of nothing that was presented") {
+TEST_CASE("instruments receive events and trial numbers, but nothing about stimuli") {
   Course course;
   KeptMarks kept;
   session::SessionMarks marks(&kept, course.session, 1000.0);
@@ -98,7 +98,7 @@ TEST_CASE("instruments are told of events and trials, and of nothing that was pr
   CHECK(kept.felt.size() == 3);
 }
 
-TEST_CASE("a session records when instruments were told, by its clock and theirs, sealed") {
+TEST_CASE("a session records the times of marks by both clocks, sealed") {
   Course course;
   KeptMarks kept;
   session::SessionMarks marks(&kept, course.session, 1000.0);

@@ -109,7 +109,7 @@ struct KilledSession {
     if (again) {
       session.restore(as_recorded(store.events(1), lab.participant_key));
       clock = session::VirtualSessionClock(session.last() + std::chrono::seconds(30));
-      session.take_up(clock.now(), {.after = "program-ended", .away_s = 30.0});
+      session.resume_after_exit(clock.now(), {.after = "program-ended", .away_s = 30.0});
     } else {
       session.open({}, opening(), schedule);
     }

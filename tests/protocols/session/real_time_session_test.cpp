@@ -137,8 +137,7 @@ TEST_CASE("a real-time session stores every answer, every sample and the servo's
   CHECK(opening.station->scheduling == "other, memory not locked");
 }
 
-TEST_CASE(
-    "a cable that comes off during a trial interrupts it, and the trial is repeated at the end") {
+TEST_CASE("unplugging the cable interrupts a trial, which is repeated at the end") {
   Laboratory lab;
   lab.cable.pull_at_tick = 200;
   const session::SessionTally tally = lab.run();
@@ -247,7 +246,7 @@ TEST_CASE("a participant who is done ends the exploration before its time is up"
   }
 }
 
-TEST_CASE("a comfort stop interrupts the trial, and force comes back only with consent") {
+TEST_CASE("a comfort stop interrupts the trial, and force requires new consent") {
   std::atomic<bool> gate{false};
   Laboratory lab(gated(gate));
   Acting person(lab, gate, true, [](device::ServoControl& servo) { servo.comfort_stop(); });
@@ -297,7 +296,7 @@ class Pausing final : public session::Experimenter {
   bool has_paused_ = false;
 };
 
-TEST_CASE("a pause while a plane is on presents the trial anew, and counts against nobody") {
+TEST_CASE("a pause while a plane is on repeats the trial, and is not counted as an interruption") {
   std::atomic<bool> gate{false};
   Laboratory lab(gated(gate));
   Waiting person(lab, gate);

@@ -277,7 +277,7 @@ Ran run_diary(Diary& diary, Explorer& explorer, DeviceSupply& devices,
       trials);
 }
 
-TEST_CASE("after a comfort stop a page tells the participant, and the experimenter who stopped") {
+TEST_CASE("after a comfort stop a page informs the participant and the experimenter") {
   const bool needs_consent = GENERATE(false, true);
   Diary diary;
   EndingExplorer explorer(device::ServoEnd::comfort_stop, 2);
@@ -335,7 +335,7 @@ TEST_CASE("the experimenter's status counts trials as the participant's window d
   }
 }
 
-TEST_CASE("the participant is told that practice is over, and in it that the time is up") {
+TEST_CASE("notices announce the end of practice, and during practice that time is up") {
   Diary diary;
   EndingExplorer explorer(device::ServoEnd::time_limit, 1);
   AlwaysReady devices;
@@ -350,7 +350,7 @@ TEST_CASE("the participant is told that practice is over, and in it that the tim
   CHECK_FALSE(answers[1].first.time_is_up);
 }
 
-TEST_CASE("a trial that ends without an answer tells the participant so") {
+TEST_CASE("a notice follows a trial that ends without an answer") {
   Diary diary;
   EndingExplorer explorer(device::ServoEnd::time_limit, 0);
   AlwaysReady devices;

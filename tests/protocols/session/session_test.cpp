@@ -218,7 +218,7 @@ TEST_CASE("an interrupted trial is repeated after all others, under its number")
   CHECK(trials == std::vector<int>{2, 3, 1});
 }
 
-TEST_CASE("a presentation that makes room for a pause is the next one, whatever the policy") {
+TEST_CASE("a presentation interrupted by a pause is the next one under every policy") {
   for (const auto policy : {study::OnInterruption::repeat, study::OnInterruption::leave_out}) {
     Laboratory lab(3, {.on_interruption = policy});
     lab.session.present(lab.now += seconds(1));
@@ -447,7 +447,8 @@ std::vector<int> killed_after(std::size_t kept, const study::TrialOptions& optio
   const std::vector<record::Event> so_far = as_recorded(first.stored.events, SecretKey{});
   again.restore(so_far);
   CHECK(again.last() == so_far.back().at);
-  if (again.phase() != Phase::closed) again.take_up(again.last(), {"program-ended", 1.0, "1"});
+  if (again.phase() != Phase::closed)
+    again.resume_after_exit(again.last(), {"program-ended", 1.0, "1"});
   run(again, second, 1000);
   CHECK(again.phase() == Phase::closed);
 
@@ -496,7 +497,7 @@ TEST_CASE("resuming a session ends its pause, and asks nothing twice") {
   session::Session again(order_of(3), {}, record::SessionRecorder(1, SecretKey{}, sink));
   again.restore(as_recorded(lab.sink.stored.events, SecretKey{}));
   CHECK(again.phase() == Phase::paused);
-  again.take_up(seconds(5), {"program-ended", 1.0, "1"});
+  again.resume_after_exit(seconds(5), {"program-ended", 1.0, "1"});
   CHECK(again.phase() == Phase::ready);
   CHECK(again.remarks().ticked.contains("curtain"));
   CHECK(again.remarks().deviations.contains("no-masking-noise"));
@@ -526,7 +527,7 @@ std::string end_of(int answers, int at_1, bool may_name_one_key) {
   session::Session again(order_of(answers), {}, record::SessionRecorder(1, SecretKey{}, sink));
   again.restore(as_recorded(lab.sink.stored.events, SecretKey{}));
   std::chrono::nanoseconds now = again.last();
-  again.take_up(now, {"program-ended", 1.0, "1"});
+  again.resume_after_exit(now, {"program-ended", 1.0, "1"});
   for (int trial = 6; trial <= answers; ++trial) {
     again.present(now += seconds(1));
     again.end_exploring(now += seconds(1));
@@ -537,7 +538,9 @@ std::string end_of(int answers, int at_1, bool may_name_one_key) {
   return sink.stored.events.back().body;
 }
 
-TEST_CASE("a session's end names somebody who presses one key, and tells nothing else of answers") {
+TEST_CASE(
+    "a session's end flags a participant who presses one key, and reveals nothing else about "
+    "answers") {
   CHECK(end_of(20, 1, true) == R"({"answers":20,"complete":true,"one_key":true})");
   CHECK(end_of(20, 2, true) == R"({"answers":20,"complete":true})");
   CHECK(end_of(19, 0, true) == R"({"answers":19,"complete":true})");

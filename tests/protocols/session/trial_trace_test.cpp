@@ -60,7 +60,7 @@ TEST_CASE("each clause of the validity rule that depends on forces can fail alon
   CHECK(fails_within(saturated));
 }
 
-TEST_CASE("an exploration is long enough from its landing on, whatever is felt") {
+TEST_CASE("the length of an exploration counts from landing, independent of forces") {
   CHECK(session::findings_of(stroke(5.0, {0.0, 0.0, 0.7}), kLimitN).long_enough);
   CHECK_FALSE(session::findings_of(stroke(4.999, {0.0, 0.0, 0.7}), kLimitN).long_enough);
   CHECK(session::findings_of(stroke(5.0, {}), kLimitN).long_enough);

@@ -1,13 +1,10 @@
 // How participants' hands differ, and what that leaves as it was.
-#include "core/files.hpp"
 #include "device/flat_wall.hpp"
 #include "protocols/simulation/felt_exploration.hpp"
 #include "support/catch.hpp"
 
 #include <array>
 #include <cmath>
-
-#include <nlohmann/json.hpp>
 
 namespace touchtrial {
 namespace {
@@ -79,27 +76,6 @@ TEST_CASE("a hand's kind and factors change the motion, and the path stays the s
   const Vec3 apart_mm = grip[2000].position_mm - point_mass[2000].position_mm;
   CHECK(norm(apart_mm) > 0.0);
   CHECK(norm(apart_mm) < 15.0);
-}
-
-TEST_CASE("the schema and the reader know the same keys, kinds and bounds of a hand") {
-  using nlohmann::json;
-  const std::filesystem::path root = TOUCHTRIAL_SOURCE_DIR;
-  const json schema =
-      json::parse(text_of(read_file(root / "config" / "schema" / "subject.schema.json")));
-  const json& hand = schema.at("properties").at("hand").at("properties");
-  CHECK(hand.size() == 2);
-  const auto parsed = [](const json& value) {
-    return simulation::parse_subject_model(json{{"hand", value}}.dump(), "subject.json");
-  };
-  for (const json& kind : hand.at("model").at("enum")) {
-    CHECK(device::name_of(parsed({{"model", kind}}).hand) == kind.get<std::string>());
-  }
-  CHECK(device::name_of(SubjectModel{}.hand) == hand.at("model").at("default").get<std::string>());
-  const double most = hand.at("spread").at("maximum");
-  CHECK(parsed({{"spread", most}}).hand_spread == most);
-  for (const double beyond : {most + 0.001, -0.001}) {
-    CHECK_THROWS_WITH(parsed({{"spread", beyond}}), holds_text("/hand/spread"));
-  }
 }
 
 }  // namespace

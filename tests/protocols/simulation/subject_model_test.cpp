@@ -1,9 +1,7 @@
 #include "protocols/simulation/subject_model.hpp"
 
 #include "core/errors.hpp"
-#include "core/files.hpp"
 #include "support/catch.hpp"
-#include "support/schema_against_reader.hpp"
 
 #include <set>
 
@@ -74,34 +72,6 @@ TEST_CASE("the subject files that come with the program are accepted") {
   CHECK(names.contains("default.json"));
   CHECK(simulation::load_subject_model(folder / "ideal.json").feature_noise == 0.0);
   CHECK(simulation::load_subject_model(folder / "swapped.json").label_swap.size() == 1);
-}
-
-TEST_CASE("the reader keeps keys, bounds, types, words and defaults of the schema of subjects") {
-  const auto complete = [](const SchemaAgainstReader::Pointer& place, json& subject) {
-    const auto put = [&subject](const json& beside) { subject.merge_patch(beside); };
-    put({{"slowest_mm_s", 1}, {"fastest_mm_s", 1000}});
-    if (place.to_string().starts_with("/thought")) {
-      put({{"thought", {{"easy_s", 0.01}, {"hard_s", 60}, {"shift_s", 0}, {"longest_s", 600}}}});
-    }
-    if (place.to_string().starts_with("/given_function")) {
-      put({{"given_function", {{"threshold", 0}, {"slope", 1}}}});
-    }
-  };
-  const SchemaAgainstReader both(
-      json::parse(text_of(read_file(kRoot / "config" / "schema" / "subject.schema.json"))), refusal,
-      complete);
-  CHECK(both.objects().size() == 1 + 7);
-  both.check_keys();
-  both.check_values();
-  CHECK(both.check_bounds() == 2 * (13 + 3 + 1 + 4 + 4 + 3 + 6 + 6));
-  const auto read_again = [](const json& subject) {
-    return simulation::subject_model_json(parsed(subject));
-  };
-  json bare = {{"thought", json::object()}, {"given_function", {{"threshold", 0}, {"slope", 1}}}};
-  json full = both.defaults();
-  full.merge_patch(bare);
-  CHECK(read_again(full) == read_again(bare));
-  CHECK_FALSE(json::parse(read_again(json::object())).contains("thought"));
 }
 
 TEST_CASE("every key of a subject file is read, and written back to the last digit") {

@@ -461,51 +461,6 @@ TEST_CASE("preparing a study says how many catch trials it lacks to tell lapses"
   CHECK(advice(detection_file(), many).empty());
 }
 
-TEST_CASE("the section's schema and its reader have the same keys, words and bounds") {
-  const std::filesystem::path root = TOUCHTRIAL_SOURCE_DIR;
-  const json schema = json::parse(text_of(read_file(root / "config/schema/study.schema.json")))
-                          .at("properties")
-                          .at("threshold");
-  const auto with = [](const json::json_pointer& at, const json& value) {
-    json file = detection_file();
-    // Staircases read every key; the practice needs its number.
-    file["threshold"]["procedure"] = "up-down";
-    file["threshold"]["practice"] = {{"trials", 10}};
-    file[json::json_pointer("/threshold") / at] = value;
-    return refusal_of(file);
-  };
-  const std::function<void(const json&, const json::json_pointer&)> walk =
-      [&](const json& object, const json::json_pointer& at) {
-        std::string known;
-        if (at.empty()) {
-          json file = detection_file();
-          file["threshold"]["zzzzzzzzz"] = 1;
-          known = refusal_of(file);
-        } else {
-          known = with(at, {{"zzzzzzzzz", 1}});
-        }
-        for (const auto& [key, property] : object.at("properties").items()) {
-          INFO((at / key).to_string());
-          CHECK_THAT(known, holds_text(key));
-          if (property.contains("properties")) walk(property, at / key);
-          if (property.contains("enum")) {
-            for (const json& word : property.at("enum")) {
-              CHECK_THAT(with(at / key, "zzzzzzz"), holds_text(word.get<std::string>()));
-            }
-          }
-          if (!property.contains("maximum")) continue;
-          const double step = property.at("type") == "integer" ? 1.0 : 1e-6;
-          const std::string above = with(at / key, property.at("maximum").get<double>() + step);
-          CHECK_THAT(above, holds_text((at / key).to_string() + ": ") && holds_text("must be"));
-          if (property.contains("minimum")) {
-            const std::string below = with(at / key, property.at("minimum").get<double>() - step);
-            CHECK_THAT(below, holds_text((at / key).to_string() + ": ") && holds_text("must be"));
-          }
-        }
-      };
-  walk(schema, json::json_pointer());
-}
-
 TEST_CASE("the studies of thresholds that ship can be read, and say what they present") {
   const std::filesystem::path config = std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) / "config";
   for (const char* name : {"detection", "discrimination", "discrimination-order"}) {

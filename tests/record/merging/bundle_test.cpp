@@ -99,7 +99,7 @@ using Names = std::vector<std::string>;
 
 }  // namespace
 
-TEST_CASE("what two stations sent merges to the same file as theirs, to the byte") {
+TEST_CASE("bundles of two stations merge to the same file as their databases, to the byte") {
   ServedLab lab;
   CHECK(lab.send(lab.a).sent == Names{"P1", "P3"});
   CHECK(lab.send(lab.b).sent == Names{"P2", "P4"});
@@ -108,7 +108,7 @@ TEST_CASE("what two stations sent merges to the same file as theirs, to the byte
   CHECK((lab.fetched() == lab.merged({lab.a, lab.b})));
 }
 
-TEST_CASE("sending again sends what has come since, and a dry run nothing") {
+TEST_CASE("sending again sends only new sessions, and a dry run nothing") {
   ServedLab lab;
   CHECK(lab.send(lab.a, true).sent == Names{"P1", "P3"});
   CHECK(lab.table->kept.empty());
@@ -129,7 +129,7 @@ TEST_CASE("sending again sends what has come since, and a dry run nothing") {
   CHECK((lab.fetched() == lab.merged({lab.a})));
 }
 
-TEST_CASE("a sending that is broken off anywhere goes on from there, and doubles nothing") {
+TEST_CASE("an interrupted transfer continues where it stopped, without duplicates") {
   ServedLab whole;
   whole.send(whole.a);
   for (int rows = 0; rows < static_cast<int>(whole.table->kept.size()); ++rows) {

@@ -151,10 +151,10 @@ TEST_CASE("a collected study takes no sessions and no replacements") {
       [&] {
         visit(store, {{"P7", 7, minutes(70)}});
       },
-      "was collected from several stations and takes no sessions of its own"));
-  CHECK(refuses([&] { begin(store, {"P7", 7, minutes(70)}); }, "takes no sessions"));
+      "was collected from several stations and accepts no sessions of its own"));
+  CHECK(refuses([&] { begin(store, {"P7", 7, minutes(70)}); }, "accepts no sessions"));
   store.exclude(1, kUtc, "fell asleep");
-  CHECK(refuses([&] { store.replace(1, "P7", kUtc, "excluded"); }, "takes no sessions"));
+  CHECK(refuses([&] { store.replace(1, "P7", kUtc, "excluded"); }, "accepts no sessions"));
   CHECK_FALSE(store.first_fault());
 }
 

@@ -108,7 +108,7 @@ TEST_CASE("derived tables of a collected study agree with its events") {
   CHECK_FALSE(store.first_fault());
 }
 
-TEST_CASE("a participant who withdrew at a station stays withdrawn, and no key is collected") {
+TEST_CASE("a participant who withdrew at a station remains withdrawn, and no key is collected") {
   TwoStations lab;
   Lab::at(lab.b, [](StudyStore& store) { store.withdraw(2, kUtc, "asked to"); });
   const StudyStore store = merged(lab, {lab.a, lab.b});
@@ -131,7 +131,7 @@ TEST_CASE("of two copies of a station's file the later one counts, with its with
     const fs::path target = lab.file("C" + files.front().filename().string());
     const CollectReport report = merge(files, target);
     CHECK(report.stations == 2);
-    CHECK(report.superfluous == Names{early.string()});
+    CHECK(report.redundant == Names{early.string()});
     const StudyStore store = StudyStore::open(target, Access::read_only);
     CHECK(participants_in(store) == Names{"P1", "P2", "P3", "P4", "P5"});
     CHECK_FALSE(store.wrapped_key(1));
@@ -143,7 +143,7 @@ TEST_CASE("what stations wrote about people, and looks at them, are collected an
   Lab::at(lab.b, [](StudyStore& store) {
     store.note(2, kUtc + minutes(50), "no-curtain", "in the wash");
     store.look_at("P4", kUtc + minutes(51), "asked for the data");
-    store.withdraw(2, kUtc + minutes(52), "moves away", Kept::data);
+    store.withdraw(2, kUtc + minutes(52), "moves away", Retention::data);
   });
   const StudyStore store = merged(lab, {lab.a, lab.b});
   CHECK(store.sessions().at(3).withdrawn);
@@ -209,11 +209,11 @@ TEST_CASE("sessions that were replaced or withdrawn before they ended are report
 TEST_CASE("files without sessions are reported, and if there are no others nothing is made") {
   TwoStations lab;
   const fs::path empty = lab.station("empty.db", {});
-  CHECK(merge({lab.a, empty, lab.b}, lab.file("C.db")).superfluous == Names{empty.string()});
+  CHECK(merge({lab.a, empty, lab.b}, lab.file("C.db")).redundant == Names{empty.string()});
   CHECK(contains(merge_refusal(lab, {empty}), "none of the databases holds a session"));
 }
 
-TEST_CASE("a place that was taken again at another station is no clash, whatever the clocks say") {
+TEST_CASE("a place that was taken over at another station does not clash, for any clocks") {
   TwoStations lab;
   Lab::at(lab.a, [](StudyStore& store) {
     store.exclude(1, kUtc + minutes(50), "fell asleep");
@@ -228,7 +228,7 @@ TEST_CASE("a place that was taken again at another station is no clash, whatever
   CHECK_FALSE(store.first_fault());
 }
 
-TEST_CASE("two stations that each replaced one of a pair are merged, whoever came first") {
+TEST_CASE("two stations that each replaced one of a pair are merged, in either order") {
   Lab lab;
   const auto merged_replaced = [&](const fs::path& a, const fs::path& b) {
     for (const auto& [path, session, by] : {std::tuple(a, 1, "A03"), {b, 2, "B03"}}) {
@@ -279,7 +279,7 @@ TEST_CASE("the successor of one of a pair collides with the other again") {
   const fs::path b = lab.station("B.db", {{"B01", 1, minutes(20)}});
   const std::string line = merge_refusal(lab, {a, b});
   CHECK(contains(line, "enrolment 1 (participants A01 and B01) is taken twice"));
-  CHECK(contains(line, "run nobody under the successor's id"));
+  CHECK(contains(line, "do not run the successor"));
   Lab::at(a, [](StudyStore& store) {
     store.exclude(1, kUtc + minutes(50), "wrong number");
     store.replace(1, "A03", kUtc + minutes(50), "wrong number");
@@ -311,7 +311,7 @@ TEST_CASE("the collected study is closed, and then unblinded, when every station
   CHECK_FALSE(store.first_fault());
 }
 
-TEST_CASE("interim looks show what the stations' looks show, and nothing that came after them") {
+TEST_CASE("interim looks show the sessions of the stations' looks, and none after them") {
   TwoStations lab;
   Lab::at(lab.a, [](StudyStore& store) {
     store.unblind(kUtc, "a look", true);

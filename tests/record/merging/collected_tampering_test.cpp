@@ -28,7 +28,7 @@ TEST_CASE("every alteration of a collected study is found") {
       {"DELETE FROM events WHERE session = -2", "0/3 is not what the stations' chains come to"},
       {"DELETE FROM events WHERE session = -1", "-1/0 opens no session"},
       {"DELETE FROM events WHERE session = -2 AND sequence > 2",
-       "0/7 stands at no station; a collected study has no sessions of its own"},
+       "0/7 belongs to no station; a collected study has no sessions of its own"},
       {"UPDATE events SET session = -9 WHERE session = -1;"
        "UPDATE events SET session = -1 WHERE session = -2;"
        "UPDATE events SET session = -2 WHERE session = -9",
@@ -40,7 +40,7 @@ TEST_CASE("every alteration of a collected study is found") {
       {"UPDATE events SET session = 99 WHERE session = 1;"
        "UPDATE events SET session = 1 WHERE session = 2;"
        "UPDATE events SET session = 2 WHERE session = 99",
-       "1/0 the event says its own number twice"},
+       "1/0 the event repeats its own number"},
       {"DELETE FROM events WHERE session = 3", "0/5 session 2 has no events"},
       {"DELETE FROM traces WHERE session = 4 AND trial = 2", "4/9 trace of trial 2 is missing"}};
   for (const auto& [sql, fault] : tamperings) {

@@ -74,11 +74,11 @@ TEST_CASE("a seed decides where crops are cut") {
 
 TEST_CASE("photographs share the crops evenly, and separate crops come first") {
   const std::vector<PhotoSize> photos = {{20, 20}, {40, 40}, {30, 60}};
-  CHECK(shared_out(photos, 20, 3) == std::vector<int>{1, 1, 1});
-  CHECK(shared_out(photos, 20, 5) == std::vector<int>{1, 2, 2});
-  CHECK(shared_out(photos, 20, 8) == std::vector<int>{1, 4, 3});
-  CHECK(shared_out(photos, 20, 9) == std::vector<int>{1, 5, 3});
-  CHECK(shared_out(photos, 20, 21).empty());
+  CHECK(crop_shares(photos, 20, 3) == std::vector<int>{1, 1, 1});
+  CHECK(crop_shares(photos, 20, 5) == std::vector<int>{1, 2, 2});
+  CHECK(crop_shares(photos, 20, 8) == std::vector<int>{1, 4, 3});
+  CHECK(crop_shares(photos, 20, 9) == std::vector<int>{1, 5, 3});
+  CHECK(crop_shares(photos, 20, 21).empty());
 }
 
 TEST_CASE(

@@ -354,7 +354,7 @@ TEST_CASE("the files of an album are of the classes in their names") {
   CHECK_THROWS_AS(import_photographs(options), UnusablePhotographs);
 }
 
-TEST_CASE("a photograph is known by its first bytes, whatever its name ends in") {
+TEST_CASE("a photograph is recognised by its first bytes, regardless of its extension") {
   const TwoPhotographs album;
   album.add("E.png", noise(50, 50, 9));
   fs::rename(album.photographs() / "E.png", album.photographs() / "E.picture");

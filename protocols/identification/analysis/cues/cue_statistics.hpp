@@ -1,5 +1,5 @@
 /// \file Answers of participants and observers to one method's trials, and efficiencies and
-/// divergences with intervals over participants. Sources: docs/statistics.md, "Which cue was it?"
+/// divergences with intervals over participants. Sources: docs/statistics.md, "Cues"
 /// and "Participants as clusters"; Lin 1991, IEEE Transactions on Information Theory 37(1)
 /// (divergence).
 #pragma once

@@ -26,27 +26,31 @@ struct FigureOptions {
 };
 
 /// The figures that have something to show, in the order of a results section; a study without
-/// counted trials has hardly any. Their scripts contain all data, and no figure is drawn yet. Cost:
+/// counted trials has hardly any. No figure is drawn yet. Cost:
 /// milliseconds. Thread-safe.
 [[nodiscard]] std::vector<Figure> report_figures(const StudyReport& report,
                                                  const FigureOptions& options = {});
 
 /// The following have nothing to return if they have nothing to show.
 
-/// Accuracy by class (Fig. 6 of the source paper) for a report with one method; methods_figure
-/// shows several.
+/// The answers to each class beside participants' accuracies, for a report with one method.
+[[nodiscard]] std::optional<Figure> confusion_and_accuracy_figure(const StudyReport& report);
+/// Each participant's accuracy from method to method, the mean, and the differences of pairs, for a
+/// report with several methods.
+[[nodiscard]] std::optional<Figure> people_figure(const StudyReport& report);
+/// The answers to each class, for a report with several methods.
+[[nodiscard]] std::optional<Figure> confusions_figure(const StudyReport& report);
+/// Accuracy by class (Fig. 6 of the source paper) for a report with one method.
 [[nodiscard]] std::optional<Figure> accuracy_figure(const StudyReport& report, bool paper_values);
-/// Methods side by side for each class (Fig. 7 of the source paper), and participants' differences.
+/// Methods side by side for each class (Fig. 7 of the source paper).
 [[nodiscard]] std::optional<Figure> methods_figure(const StudyReport& report);
-/// Every participant's accuracy, the mean and its interval.
-[[nodiscard]] std::optional<Figure> participants_figure(const StudyReport& report);
-/// Accuracy by the place of a trial among a participant's trials.
+/// Accuracy over a participant's trials.
 [[nodiscard]] std::optional<Figure> trials_figure(const StudyReport& report);
 /// Reaction times by class.
 [[nodiscard]] std::optional<Figure> reaction_figure(const StudyReport& report);
 /// Accuracies of ideal observers beside those of participants.
 [[nodiscard]] std::optional<Figure> cues_figure(const CueReport& cues);
-/// The path of one trial over its texture, coloured by force.
+/// The path of one trial over its texture, coloured by force, with arrows in the direction of time.
 [[nodiscard]] Figure path_figure(const ExplorationPath& path);
 
 }  // namespace touchtrial::analysis::identification

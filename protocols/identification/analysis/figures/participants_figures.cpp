@@ -1,11 +1,10 @@
 #include "analysis/report/figures/style.hpp"
-#include "analysis/report/text_table.hpp"
 #include "protocols/identification/analysis/figures/figures.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -13,156 +12,142 @@ namespace touchtrial::analysis::identification {
 
 namespace {
 
-/// Taller heaps are drawn as bars, because their dots would be too small to print.
-constexpr int kDotsOfHeap = 24;
-constexpr int kFinestSteps = 50;  ///< the most places on the axis of accuracy
-constexpr double kRow_cm = 3.0;
+/// The most participants whose lines can be told apart; of more, every n-th is drawn.
+constexpr std::size_t kMaxLines = 150;
+constexpr double kDifferenceWidth = 0.7;
 
-/// Accuracies sorted into places, with the number of participants at each place.
-struct Heaps {
-  double step = 4.0;  ///< between places, per cent
-  std::map<int, int> counts;
-  int highest = 1;
-};
+/// A participant's accuracies, per cent, by method; none where nothing was felt.
+using Accuracies = std::map<std::string, std::vector<std::optional<double>>>;
 
-Heaps heaps_of(const MethodReport& method) {
-  int trials = 1;
-  for (const ParticipantAccuracy& one : method.per_participant) {
-    trials = std::max(trials, one.accuracy.n);
-  }
-  Heaps heaps;
-  const int places = std::min(trials, kFinestSteps);
-  heaps.step = 100.0 / places;
-  for (const ParticipantAccuracy& one : method.per_participant) {
-    const std::optional<double> share = one.accuracy.share();
-    if (!share) continue;
-    int& count = heaps.counts[static_cast<int>(std::lround(*share * places))];
-    heaps.highest = std::max(heaps.highest, ++count);
-  }
-  return heaps;
-}
-
-/// Rows of x and y; for bars, also of their lower edge.
-Rows marks_of(const Heaps& heaps, double base, bool bars) {
-  Rows rows;
-  const double height = 0.62 / std::max(heaps.highest, 8);
-  for (const auto& [place, count] : heaps.counts) {
-    const double x = heaps.step * place;
-    if (bars) {
-      rows.push_back({x, base + height * count, base});
-      continue;
+Accuracies accuracies_of(const StudyReport& report) {
+  Accuracies all;
+  for (std::size_t i = 0; i < report.methods.size(); ++i) {
+    for (const ParticipantAccuracy& one : report.methods[i].per_participant) {
+      auto& own = all[one.participant];
+      own.resize(report.methods.size());
+      if (one.accuracy.share()) own[i] = 100.0 * *one.accuracy.share();
     }
-    for (int i = 0; i < count; ++i) rows.push_back({x, base + height * (i + 0.6)});
   }
-  return rows;
+  return all;
 }
 
-std::string dots_plot(std::size_t number, const Heaps& heaps) {
-  const double size = std::clamp(5.0 / std::max(heaps.highest, 8), 0.25, 0.6);
-  return fmt::format("$heap{} using 1:2 with points pt {} ps {:.2f} lc rgb '{}' notitle", number,
-                     series_mark(number), size, series_colour(number));
+Layer lines_of(const Accuracies& all) {
+  Layer lines{.kind = LayerKind::line,
+              .name = "participants",
+              .colour = std::string(kPale),
+              .size = 0.6,
+              .in_key = true};
+  const std::size_t step = (all.size() + kMaxLines - 1) / kMaxLines;
+  std::size_t number = 0;
+  for (const auto& [participant, own] : all) {
+    if (number++ % step != 0) continue;
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      lines.rows.push_back(
+          {.x = static_cast<double>(i + 1), .y = own[i].value_or(kNoNumber), .text = participant});
+    }
+  }
+  return lines;
 }
 
-std::string bars_plot(std::size_t number, const Heaps& heaps) {
-  return fmt::format(
-      "$heap{0} using 1:2:($1 - {1:.4g}):($1 + {1:.4g}):3:2 with boxxyerror fs solid 0.55 noborder "
-      "lc rgb '{2}' notitle",
-      number, 0.42 * heaps.step, series_colour(number));
+/// Names of methods with their means, for the axis below.
+Panel people_panel(const StudyReport& report, const Accuracies& all) {
+  Layer means{.kind = LayerKind::line, .name = "means", .size = 1.8};
+  Layer marks{.kind = LayerKind::interval,
+              .name = "mean, 95 % interval",
+              .size = 1.3,
+              .glyph = Glyph::diamond,
+              .in_key = true};
+  Panel panel;
+  panel.x = names_axis({});
+  for (std::size_t i = 0; i < report.methods.size(); ++i) {
+    const MethodReport& method = report.methods[i];
+    panel.x.names.push_back(method.method);
+    if (!method.mean.mean) continue;
+    marks.rows.push_back(
+        bar(static_cast<double>(i + 1), *method.mean.mean, method.mean.known_interval(), 100.0));
+    means.rows.push_back(marks.rows.back());
+    marks.rows.back().text = method.method;
+  }
+  panel.y = percent_axis("correct, %");
+  panel.height_cm = 5.6;
+  panel.layers = {chance_rule(static_cast<int>(report.classes.size())), lines_of(all),
+                  std::move(means), marks};
+  // Beside the first and the last mark, above those between, where lines would cross it.
+  for (std::size_t i = 0; i < marks.rows.size(); ++i) {
+    const Datum& row = marks.rows[i];
+    const bool between = i > 0 && i + 1 < marks.rows.size();
+    const Anchor anchor = i == 0 ? Anchor::end : between ? Anchor::middle : Anchor::start;
+    panel.layers.push_back(direct_label(row.x, between ? row.high + 4.0 : row.y,
+                                        fmt::format("{:.0f}", row.y), std::string(kInk), anchor));
+  }
+  return panel;
 }
 
-std::string alt_of_participants(const StudyReport& report) {
-  std::string alt = "Each participant's accuracy as a dot, the mean and its 95 % interval.";
+std::string pair_name(const StudyReport& report, const MethodPair& pair) {
+  return report.methods[static_cast<std::size_t>(pair.first)].method + " − " +
+         report.methods[static_cast<std::size_t>(pair.second)].method;
+}
+
+/// The participants who felt both methods, in percentage points.
+std::vector<OwnValue> differences(const Accuracies& all, const MethodPair& pair) {
+  std::vector<OwnValue> differences;
+  for (const auto& [participant, own] : all) {
+    const auto first = own[static_cast<std::size_t>(pair.first)];
+    const auto second = own[static_cast<std::size_t>(pair.second)];
+    if (first && second) differences.push_back({*first - *second, participant});
+  }
+  return differences;
+}
+
+/// \return without names if no pair was felt by anybody
+Panel differences_panel(const StudyReport& report, const Accuracies& all) {
+  Layer dots{.name = "participants' differences", .colour = std::string(kFaint), .size = 0.9};
+  Layer means{
+      .kind = LayerKind::interval, .name = "mean difference", .size = 1.3, .glyph = Glyph::diamond};
+  Panel panel;
+  for (const MethodPair& pair : report.pairs) {
+    if (!pair.overall.difference) continue;
+    panel.x.names.push_back(pair_name(report, pair));
+    const auto at = static_cast<double>(panel.x.names.size());
+    swarm(dots.rows, at - 0.08, kDifferenceWidth, 0.8, differences(all, pair));
+    means.rows.push_back(
+        bar(at + 0.36, *pair.overall.difference, pair.overall.known_interval(), 100.0));
+    means.rows.back().text = panel.x.names.back();
+  }
+  Interval seen{0.0, 0.0};
+  for (const Layer* layer : {&dots, &means}) {
+    for (const Datum& row : layer->rows) {
+      seen.low = std::min({seen.low, row.y, std::isfinite(row.low) ? row.low : row.y});
+      seen.high = std::max({seen.high, row.y, std::isfinite(row.high) ? row.high : row.y});
+    }
+  }
+  const double room = std::max(0.05 * (seen.high - seen.low), 1.0);
+  Layer zero{.kind = LayerKind::rule, .name = "no difference", .rows = {{.y = 0.0}}};
+  panel.y = {
+      .label = "difference, percentage points", .low = seen.low - room, .high = seen.high + room};
+  panel.height_cm = 0.0;
+  panel.share = 0.45 + 0.25 * static_cast<double>(panel.x.names.size());
+  panel.layers = {std::move(zero), std::move(dots), std::move(means)};
+  return panel;
+}
+
+std::string alt_of_people(const StudyReport& report) {
+  std::string alt = "A line for each participant's accuracy from method to method, and the means.";
   for (const MethodReport& method : report.methods) {
     if (!method.mean.mean) continue;
     alt += fmt::format(" {}: {} participants, mean {}.", method.method, method.mean.participants,
                        with_interval(*method.mean.mean, method.mean.known_interval()));
   }
+  for (const MethodPair& pair : report.pairs) {
+    if (!pair.overall.difference) continue;
+    alt += fmt::format(" {}: {:+.1f} percentage points", pair_name(report, pair),
+                       100.0 * *pair.overall.difference);
+    if (const auto interval = pair.overall.known_interval()) {
+      alt += fmt::format(" ({:+.1f} to {:+.1f})", 100.0 * interval->low, 100.0 * interval->high);
+    }
+    alt += fmt::format(", participants: {}.", pair.overall.participants);
+  }
   return alt;
-}
-
-/// The least number of trials of a point. Places with fewer trials are joined, because their
-/// interval would be as wide as the panel.
-constexpr int kTrialsOfPoint = 15;
-/// The most points that readers can tell apart.
-constexpr int kMaxPositions = 60;
-
-struct Point {
-  double first = 0.0;
-  double last = 0.0;
-  Proportion accuracy;
-};
-
-double place_of(const std::string& group) {
-  int place = 0;
-  std::from_chars(group.data(), group.data() + group.size(), place);
-  return place;
-}
-
-const Breakdown* by_trial(const MethodReport& method) {
-  for (const Breakdown& breakdown : method.breakdowns) {
-    if (breakdown.kind == BreakdownKind::trial) return &breakdown;
-  }
-  return nullptr;
-}
-
-/// The number of places that are joined into one point.
-int places_together(const std::vector<GroupAccuracy>& groups) {
-  int trials = 0;
-  for (const GroupAccuracy& group : groups) trials += group.accuracy.n;
-  const auto places = static_cast<int>(groups.size());
-  const double of_place = static_cast<double>(trials) / std::max(places, 1);
-  const int needed = static_cast<int>(std::ceil(kTrialsOfPoint / std::max(of_place, 1.0)));
-  return std::max({1, needed, (places + kMaxPositions - 1) / kMaxPositions});
-}
-
-std::vector<Point> points_of(const std::vector<GroupAccuracy>& groups) {
-  const int together = places_together(groups);
-  std::vector<Point> points;
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    const double place = place_of(groups[i].group);
-    if (i % static_cast<std::size_t>(together) == 0) points.push_back({place, place, {}});
-    points.back().last = place;
-    points.back().accuracy.n += groups[i].accuracy.n;
-    points.back().accuracy.correct += groups[i].accuracy.correct;
-  }
-  return points;
-}
-
-Rows rows_of(const std::vector<Point>& points) {
-  Rows rows;
-  for (const Point& point : points) {
-    const std::optional<double> share = point.accuracy.share();
-    if (!share) continue;
-    const Interval wilson = wilson_interval(point.accuracy);
-    rows.push_back({0.5 * (point.first + point.last), 100.0 * *share, 100.0 * wilson.low,
-                    100.0 * wilson.high});
-  }
-  return rows;
-}
-
-std::string plot_of_trials(std::size_t number) {
-  return fmt::format(
-      "plot $trials{0} using 1:3:4 with filledcurves fs solid 0.2 noborder lc rgb '{1}' notitle, "
-      "$trials{0} using 1:2 with linespoints pt {2} ps 0.5 lw 1.3 lc rgb '{1}' notitle",
-      number, series_colour(number), series_mark(number));
-}
-
-/// Rows of the place of the class and the time in seconds.
-Rows points_of(const std::vector<ReactionTimes>& times, std::size_t classes) {
-  Rows points;
-  for (std::size_t i = 0; i < classes; ++i) {
-    add_dots(points, static_cast<double>(i + 1), 0.56, times[i].seconds);
-  }
-  return points;
-}
-
-Rows boxes_of(const std::vector<ReactionTimes>& times, std::size_t classes) {
-  Rows boxes;
-  for (std::size_t i = 0; i < classes; ++i) {
-    const Quartiles& q = times[i].from_plane_on;
-    if (q.median) boxes.push_back({static_cast<double>(i + 1), *q.lower, *q.median, *q.upper});
-  }
-  return boxes;
 }
 
 bool has_times(const MethodReport& method, std::size_t classes) {
@@ -173,13 +158,50 @@ bool has_times(const MethodReport& method, std::size_t classes) {
              [](const ReactionTimes& times) { return times.from_plane_on.median.has_value(); });
 }
 
-std::string plot_of_reactions(std::size_t number) {
-  return fmt::format(
-      "plot $times{0} using 1:2 with points pt {1} ps 0.22 lc rgb '{3}' notitle, $boxes{0} using "
-      "1:3:($1 - 0.34):($1 + 0.34):2:4 with boxxyerror fs empty border lc rgb '{2}' lw 1.5 lc rgb "
-      "'{2}' notitle, $boxes{0} using ($1 - 0.34):3:(0.68):(0) with vectors nohead lw 3 lc rgb "
-      "'{2}' notitle",
-      number, 7, series_colour(number), kFaint);
+/// Where the times of all methods lie, seconds.
+Interval range_of_times(std::span<const MethodReport* const> methods, std::size_t classes) {
+  Interval range{0.0, 0.0};
+  for (const MethodReport* method : methods) {
+    for (std::size_t i = 0; i < classes; ++i) {
+      const std::vector<double>& times = method->reaction[i].seconds;
+      const auto positive = std::ranges::upper_bound(times, 0.0);
+      if (positive == times.end()) continue;
+      range.low = range.low > 0.0 ? std::min(range.low, *positive) : *positive;
+      range.high = std::max(range.high, times.back());
+    }
+  }
+  return range;
+}
+
+Panel reaction_panel(const StudyReport& report, const MethodReport& method, const Interval& range) {
+  constexpr double kNear = 0.03;      ///< of the range
+  constexpr double kWideRatio = 6.0;  ///< of a range that needs a logarithmic axis
+  Layer dots{.name = "trials", .colour = std::string(kPale), .size = 0.55};
+  Layer boxes{.kind = LayerKind::box, .name = "quartiles and median", .colour = series_colour(0)};
+  for (std::size_t i = 0; i < report.classes.size(); ++i) {
+    const auto at = static_cast<double>(i + 1);
+    std::vector<OwnValue> times;
+    for (const double seconds : method.reaction[i].seconds) times.push_back({seconds});
+    swarm(dots.rows, at, 0.8, kNear * (range.high - range.low), std::move(times));
+    const Quartiles& q = method.reaction[i].from_plane_on;
+    if (!q.median) continue;
+    boxes.rows.push_back({.x = at,
+                          .y = *q.median,
+                          .low = *q.lower,
+                          .high = *q.upper,
+                          .value = 0.62,
+                          .text = report.classes[i]});
+  }
+  Panel panel;
+  panel.x = names_axis(report.classes);
+  panel.y = {.label = "reaction time, s",
+             .logarithmic = range.high > kWideRatio * range.low && range.low > 0.0};
+  if (range.high > 0.0) {
+    panel.y.low = 0.9 * range.low;
+    panel.y.high = 1.1 * range.high;
+  }
+  panel.layers = {std::move(dots), std::move(boxes)};
+  return panel;
 }
 
 std::string alt_of_reactions(const StudyReport& report, const MethodReport& method) {
@@ -195,148 +217,93 @@ std::string alt_of_reactions(const StudyReport& report, const MethodReport& meth
 
 }  // namespace
 
-std::optional<Figure> participants_figure(const StudyReport& report) {
-  const auto rows = static_cast<int>(report.methods.size());
+std::optional<Figure> people_figure(const StudyReport& report) {
   const bool any = std::any_of(report.methods.begin(), report.methods.end(),
                                [](const MethodReport& m) { return m.mean.mean.has_value(); });
-  if (!any) return {};
-  Sheet sheet{16.0, 2.2 + kRow_cm * std::min(rows, 6), report.simulated};
-  Margins margins;
-  margins.left_cm = 3.2;
-  margins.bottom_cm = 1.25;
-  const auto classes = static_cast<int>(report.classes.size());
-  const Legend legend(
-      sheet, margins.left_cm,
-      std::vector<LegendEntry>{mark_entry(series_mark(0), series_colour(0), "participants"),
-                               mark_entry(13, kInk, "mean, with 95 % t interval"),
-                               chance_entry(classes)});
-  margins.top_cm = legend.room_cm() + 0.2;
-  std::string data;
-  std::string names;
-  std::string plot;
-  Rows means;
-  for (int i = 0; i < rows; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const MethodReport& method = report.methods[at];
-    const double base = rows - 1 - i;
-    const Heaps heaps = heaps_of(method);
-    const bool bars = heaps.highest > kDotsOfHeap;
-    names += text_at(fitted(method.method, 16),
-                     fmt::format("graph 0, first {} right offset -1, 0", base + 0.25));
-    if (!method.mean.mean) continue;
-    data += data_block(fmt::format("heap{}", i), marks_of(heaps, base, bars));
-    plot += (plot.empty() ? "plot " : ", ") + (bars ? bars_plot(at, heaps) : dots_plot(at, heaps));
-    const double mean = *method.mean.mean;
-    const Interval bar = method.mean.known_interval().value_or(Interval{mean, mean});
-    means.push_back({100.0 * mean, base - 0.13, 100.0 * bar.low, 100.0 * bar.high});
+  if (report.methods.size() < 2 || !any) return {};
+  const Accuracies all = accuracies_of(report);
+  Figure figure = figure_named("methods-by-person", "result", report.simulated, 13.0);
+  figure.panels = {people_panel(report, all)};
+  Panel differences = differences_panel(report, all);
+  const bool paired = !differences.x.names.empty();
+  if (paired) {
+    figure.across = 2;
+    if (differences.x.names.size() > 1) figure.width_cm = kPage_cm;
+    figure.panels.push_back(std::move(differences));
   }
-
-  Figure figure = figure_on(sheet, "participants", alt_of_participants(report), "accuracy");
-  figure.caption = stamped(report.simulated,
-                           "every participant's accuracy, and the mean over participants. The "
-                           "interval is Student's t, at the level of participants.");
-  figure.script =
-      data + data_block("means", means) + sheet_head(sheet) + panel_at(sheet, margins) + names +
-      fmt::format(
-          "set border 1\nunset ytics\nunset grid\nset grid xtics lc rgb '#e0e0e0' lw 0.7\n"
-          "set xrange [-2:102]\nset xtics 0, 20, 100\nset xlabel 'correct, %' offset 0, "
-          "0.4\nset yrange [-0.3:{}]\n",
-          rows - 0.25) +
-      fmt::format(
-          "set arrow from first {0:.6g}, graph 0 to first {0:.6g}, graph 1 nohead dt (6, "
-          "5) lw 1.2 lc rgb '{1}' back\n",
-          100.0 / std::max(classes, 1), kInk) +
-      legend.script() + plot +
-      fmt::format(", $means using 1:2:3:4 with xerrorbars pt 13 ps 1 lw 1.8 lc rgb '{}' notitle",
-                  kInk) +
-      "\n";
+  figure.alt = alt_of_people(report);
+  figure.caption = stamped(
+      report.simulated,
+      std::string(paired ? "left: each" : "each") +
+          " participant's accuracy with each method, and the means with their 95 % t intervals "
+          "over participants." +
+          (paired ? " Right: each participant's difference, and the mean with its interval." : ""));
   return figure;
 }
 
 std::optional<Figure> trials_figure(const StudyReport& report) {
-  std::vector<std::size_t> shown;
+  Figure figure = figure_named("accuracy-over-trials", "order", report.simulated);
+  Panel panel;
+  panel.x = {.label = "trial of a participant", .low = 0.0};
+  panel.y = percent_axis("correct, %");
+  panel.layers = {chance_rule(static_cast<int>(report.classes.size()))};
+  figure.alt = "Accuracy over a participant's trials.";
+  double width = 0.0;
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
-    const Breakdown* breakdown = by_trial(report.methods[i]);
-    if (breakdown != nullptr && !breakdown->groups.empty()) shown.push_back(i);
+    const AccuracyOverTrials& course = report.methods[i].over_trials;
+    const std::string& name = report.methods[i].method;
+    Layer band{.kind = LayerKind::band, .name = name + ", interval", .colour = series_colour(i)};
+    Layer line{.kind = LayerKind::line,
+               .name = name,
+               .colour = series_colour(i),
+               .size = 1.6,
+               .in_key = report.methods.size() > 1};
+    for (const AccuracyAtPlace& at : course.points) {
+      if (!at.mean.mean) continue;
+      band.rows.push_back(bar(at.place, *at.mean.mean, at.mean.known_interval(), 100.0));
+      line.rows.push_back({.x = at.place, .y = 100.0 * *at.mean.mean});
+    }
+    if (line.rows.empty()) continue;
+    width = std::max(width, course.width);
+    figure.alt += fmt::format(" {}: {:.1f} % at first, {:.1f} % at last.", name,
+                              line.rows.front().y, line.rows.back().y);
+    panel.layers.insert(panel.layers.begin() + 1, std::move(band));
+    panel.layers.push_back(std::move(line));
   }
-  if (shown.empty()) return {};
-  const auto classes = static_cast<int>(report.classes.size());
-  const Panels panels(shown.size(), 2, 6.0, {1.5, 0.4, 0.6, 1.25}, report.simulated);
-  Figure figure = figure_on(panels.sheet(), "accuracy-over-trials",
-                            "Accuracy by place among a participant's trials.", "order");
-  figure.script = sheet_head(panels.sheet()) + "set multiplot\n";
-  const Legend legend(
-      panels.sheet(), 1.5,
-      std::vector<LegendEntry>{{LegendEntry::Kind::field, "#4d4d4d", 7, "95 % Wilson interval"},
-                               chance_entry(classes)});
-  int most = 1;
-  for (std::size_t i = 0; i < shown.size(); ++i) {
-    const MethodReport& method = report.methods[shown[i]];
-    const std::vector<GroupAccuracy>& groups = by_trial(method)->groups;
-    const std::vector<Point> points = points_of(groups);
-    const Rows rows = rows_of(points);
-    most = std::max(most, places_together(groups));
-    if (rows.empty()) continue;
-    figure.script += data_block(fmt::format("trials{}", i), rows) + panels.begin(i, method.method) +
-                     accuracy_axis("correct, %") + "set xlabel 'trial' offset 0, 0.4\n" +
-                     fmt::format("set xrange [{}:{}]\n", place_of(groups.front().group) - 1.0,
-                                 place_of(groups.back().group) + 1.0) +
-                     chance_line(classes);
-    figure.script += (i == 0 ? legend.script() : "") + plot_of_trials(i) + "\n";
-    figure.script += "unset label\nunset arrow\nunset object\n";
-    figure.alt += fmt::format(" {}: {:.1f} % at first, {:.1f} % at last.", method.method,
-                              rows.front()[1], rows.back()[1]);
-  }
-  figure.script += "unset multiplot\n";
+  if (panel.layers.size() < 2) return {};
+  figure.panels = {std::move(panel)};
   figure.caption = stamped(
       report.simulated,
-      "accuracy by place among a participant's trials of the method, all participants pooled" +
-          (most > 1 ? fmt::format(", up to {} places together", most) : std::string()) +
-          ". Bands are 95 % Wilson intervals, as if all trials were independent.");
+      fmt::format("accuracy over a participant's trials of the method: each participant's answers "
+                  "smoothed by a Gaussian kernel (standard deviation {:.2g} trials), the mean over "
+                  "participants and its pointwise 95 % t interval.",
+                  width));
   return figure;
 }
 
 std::optional<Figure> reaction_figure(const StudyReport& report) {
   const std::size_t classes = report.classes.size();
-  std::vector<std::size_t> shown;
-  for (std::size_t i = 0; i < report.methods.size(); ++i) {
-    if (has_times(report.methods[i], classes)) shown.push_back(i);
+  std::vector<const MethodReport*> shown;
+  for (const MethodReport& method : report.methods) {
+    if (has_times(method, classes)) shown.push_back(&method);
   }
   if (shown.empty() || classes == 0) return {};
-  const std::size_t across = classes > 6 ? 1 : 2;
-  Margins around{1.5, 0.4, 0.6, 1.0};
-  around.bottom_cm =
-      NamesBelow(report.classes,
-                 Panels(shown.size(), across, 6.0, around, report.simulated).axis_cm())
-          .room_cm() +
-      0.3;
-  const Panels panels(shown.size(), across, 5.6 + around.bottom_cm, around, report.simulated);
-  const NamesBelow below(report.classes, panels.axis_cm());
-  Figure figure = figure_on(panels.sheet(), "reaction-times",
-                            "Median reaction time and quartiles by class:", "reaction-times");
-  figure.script = sheet_head(panels.sheet()) + "set multiplot\n";
-  const Legend legend(
-      panels.sheet(), 1.5,
-      std::vector<LegendEntry>{mark_entry(7, kFaint, "trials"),
-                               {LegendEntry::Kind::line, std::string(series_colour(0)), 7,
-                                "median, in a box from quartile to quartile"}});
-  for (std::size_t i = 0; i < shown.size(); ++i) {
-    const MethodReport& method = report.methods[shown[i]];
-    figure.script += data_block(fmt::format("times{}", i), points_of(method.reaction, classes)) +
-                     data_block(fmt::format("boxes{}", i), boxes_of(method.reaction, classes)) +
-                     panels.begin(i, method.method) + below.script() +
-                     "set yrange [0:*]\nset ytics auto format '%g'\nset ylabel 'reaction time, "
-                     "s'\n";
-    figure.script += (i == 0 ? legend.script() : "") + plot_of_reactions(i) + "\n";
-    figure.script += "unset label\nunset arrow\n";
-    figure.alt += alt_of_reactions(report, method);
+  const bool wide = shown.size() > 1 || classes > 8;
+  Figure figure = figure_named("reaction-times", "reaction-times", report.simulated,
+                               wide ? kPage_cm : kColumn_cm);
+  figure.across = classes > 8 ? 1 : 2;
+  figure.alt = "Median reaction time and quartiles by class:";
+  const Interval range = range_of_times(shown, classes);
+  for (const MethodReport* method : shown) {
+    figure.panels.push_back(reaction_panel(report, *method, range));
+    if (shown.size() > 1) figure.panels.back().title = method->method;
+    figure.alt += alt_of_reactions(report, *method);
   }
-  figure.script += "unset multiplot\n";
   figure.caption = stamped(
       report.simulated,
-      fmt::format("reaction times by presented class, from plane-on to the answer, all "
-                  "participants' trials with a response. At most {} trials a class are drawn, "
-                  "evenly over their order.",
+      fmt::format("reaction times by presented class, from plane-on to the answer: the trials of "
+                  "all participants with a response (at most {} a class, evenly over their order), "
+                  "their quartiles and median.",
                   kMaxDots));
   return figure;
 }

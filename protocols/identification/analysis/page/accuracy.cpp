@@ -1,10 +1,11 @@
 #include "analysis/report/page/wording.hpp"
 #include "analysis/report/text_figures.hpp"
 #include "core/text.hpp"
+#include "protocols/identification/analysis/measures.hpp"
 #include "protocols/identification/analysis/page/sections.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -12,37 +13,87 @@ namespace touchtrial::analysis::identification {
 
 namespace {
 
-std::vector<Cell> accuracy_row(const std::string& name, const ClassAccuracy& one) {
-  return {name,
-          std::to_string(one.accuracy.n),
-          std::to_string(one.accuracy.correct),
-          share_figure(one.accuracy.share()),
-          one.has_interval_over_participants() ? share_range(one.mean.interval) : kNoFigure,
-          share_range(one.wilson),
-          share_range(one.clopper_pearson),
-          share_range(one.jeffreys)};
+Table ability_table(const StudyReport& report) {
+  Table table{"ability", "Whether at least one participant can, and how many would show it",
+              columns_of({"method", "right", "by chance", "p, at least one", "passed alone",
+                          "by chance alone", "would pass", "95% (%)"})};
+  for (const MethodReport& method : report.methods) {
+    std::vector<Cell> row{method.method, kNoFigure, kNoFigure, kNoFigure,
+                          kNoFigure,     kNoFigure, kNoFigure, kNoFigure};
+    if (method.chance) {
+      row[1] = fmt::format("{}/{}", method.chance->correct, method.chance->trials);
+      row[2] = plain_figure(method.chance->expected, 1);
+      row[3] = p_figure(method.chance->p);
+    }
+    if (method.prevalence) {
+      const Prevalence& found = *method.prevalence;
+      row[4] = fmt::format("{}/{}", found.passed, found.participants);
+      row[5] = share_figure(found.level);
+      row[6] = share_figure(found.estimate);
+      row[7] = share_range(found.interval);
+    }
+    table.rows.push_back(std::move(row));
+  }
+  table.notes = {
+      {"At least one participant: permutation over the orders that the study's design could have "
+       "dealt, one-sided; a small p says nothing about the mean.",
+       {Source::phipson_smyth}},
+      {"Would pass: the share of people who would pass their own test in as many trials, a lower "
+       "bound of those who can; posterior mode and 95% highest posterior density. By chance alone: "
+       "the mean level that participants' tests attain.",
+       {Source::ince}}};
+  return table;
+}
+
+/// "8.2 (6.1, 11.0)": the time until the answer, from the moment the plane can be felt.
+std::string time_figure(const MethodReport& method, std::size_t place) {
+  if (place >= method.reaction.size()) return kNoFigure;
+  const Quartiles& times = method.reaction[place].from_plane_on;
+  if (!times.median) return kNoFigure;
+  return fmt::format("{} ({}, {})", plain_figure(times.median, 1), plain_figure(times.lower, 1),
+                     plain_figure(times.upper, 1));
 }
 
 Table class_table(const StudyReport& report, std::size_t index) {
   const MethodReport& method = report.methods[index];
+  const bool unbiased = !method.unbiased.empty();
   Table table =
-      method_table(report, index, "accuracy-by-class",
-                   "right answers by the texture presented; t over participants, the other "
-                   "intervals as if all trials were independent",
-                   columns_of({"texture", "n", "right", "accuracy", "t 95% (%)", "Wilson 95% (%)",
-                               "Clopper-Pearson 95% (%)", "Jeffreys 95% (%)"}));
-  for (std::size_t i = 0; i < method.accuracy.size(); ++i) {
-    table.rows.push_back(accuracy_row(report.classes[i], method.accuracy[i]));
+      method_table(report, index, "accuracy-by-class", "right answers by the texture presented",
+                   columns_of({"texture", "n", "right", "accuracy", "t 95% (%)"}));
+  if (unbiased) {
+    for (const char* title : {"unbiased hits", "at random"}) table.columns.push_back({title});
   }
-  table.notes = {{"t: Student's interval of the mean of participants' own accuracies with the "
-                  "texture, to quote; – with one participant, or if all have the same.",
-                  {Source::student}},
-                 {"Wilson: score interval.", {Source::wilson}},
-                 {"Clopper-Pearson: exact, never below its level.", {Source::clopper_pearson}},
-                 {"Jeffreys: quantiles of a beta distribution, by convention from 0 where no "
-                  "answer is right and to 1 where all are. The last three treat trials as "
-                  "independent, but those of one participant are not, so they are too narrow.",
-                  {Source::brown_cai_dasgupta}}};
+  table.columns.push_back({"time (s)"});
+  const auto add = [&](const std::string& name, const Proportion& pooled, const MeanEstimate& mean,
+                       std::size_t place) {
+    std::vector<Cell>& row = table.rows.emplace_back(
+        std::vector<Cell>{name, std::to_string(pooled.n), std::to_string(pooled.correct),
+                          share_figure(pooled.share()), share_range(mean.known_interval())});
+    if (unbiased) {
+      const bool known = place < method.unbiased.size();
+      const UnbiasedHits hits = known ? method.unbiased[place] : UnbiasedHits{};
+      row.emplace_back(share_figure(hits.rate.mean));
+      row.emplace_back(share_figure(hits.by_chance));
+    }
+    row.emplace_back(time_figure(method, place));
+  };
+  for (std::size_t i = 0; i < method.accuracy.size(); ++i) {
+    add(report.classes[i], method.accuracy[i].accuracy, method.accuracy[i].mean, i);
+  }
+  add("all", method.overall, method.mean, report.classes.size());
+  table.notes = {
+      {"Counts pool all participants. t: Student's interval of the mean of participants' own "
+       "accuracies; – with one participant, or if all have the same. Time: median and quartiles, "
+       "from the moment the plane can be felt to the answer, right or wrong.",
+       {Source::student, Source::hyndman_fan}}};
+  if (unbiased) {
+    table.notes.push_back(
+        {"Unbiased hits: the share of a texture's presentations that were answered right, times "
+         "the share of its answers that were right, mean over participants, which answering one "
+         "texture often does not raise. At random: the same if answers had nothing to do with "
+         "what was presented.",
+         {Source::wagner}});
+  }
   return table;
 }
 
@@ -58,37 +109,47 @@ std::string exchange_of(const LabelMatching& matching, const std::vector<std::st
   return text.empty() ? "none" : text;
 }
 
-Table participant_table(const StudyReport& report, std::size_t index) {
-  const MethodReport& method = report.methods[index];
-  Table table = method_table(
-      report, index, "accuracy-by-participant", "right answers by participant",
-      columns_of({"participant", "n", "right", "accuracy", "with the best exchange of labels",
-                  "exchange", "p of the exchange", "adjusted", "consistency (bit)"},
-                 {"exchange"}));
-  for (const ParticipantAccuracy& one : method.per_participant) {
-    table.rows.push_back({one.participant, std::to_string(one.accuracy.n),
-                          std::to_string(one.accuracy.correct), share_figure(one.accuracy.share()),
-                          share_figure(one.matching.accuracy.share()),
-                          exchange_of(one.matching, report.classes), p_figure(one.swap_p),
-                          p_figure(one.swap_adjusted), plain_figure(one.consistency, 2)});
+/// Every participant's accuracies, a column for each method.
+Table participant_table(const StudyReport& report) {
+  Table table{"accuracy-by-participant", "Right answers by participant",
+              columns_of({"participant"})};
+  std::map<std::string, std::size_t> row_of;
+  for (std::size_t i = 0; i < report.methods.size(); ++i) {
+    table.columns.push_back({report.methods[i].method});
+    for (const ParticipantAccuracy& one : report.methods[i].per_participant) {
+      const auto [found, is_new] = row_of.emplace(one.participant, table.rows.size());
+      if (is_new) {
+        table.rows.emplace_back(std::vector<Cell>(report.methods.size() + 1, kNoFigure));
+        table.rows.back().front() = one.participant;
+      }
+      table.rows[found->second][i + 1] = count_and_share(one.accuracy);
+    }
   }
-  table.rows.push_back(
-      {"all, pooled", std::to_string(method.overall.n), std::to_string(method.overall.correct),
-       share_figure(method.overall.share()), share_figure(method.matching.accuracy.share()),
-       exchange_of(method.matching, report.classes), kNoFigure, kNoFigure, kNoFigure});
+  return table;
+}
+
+/// Those whose labels may have been swapped.
+std::optional<Table> swaps_table(const StudyReport& report) {
+  Table table{"label-swaps", "Participants who may have swapped labels",
+              columns_of({"participant", "method", "accuracy", "under the exchange", "exchange",
+                          "p", "p, adjusted"},
+                         {"method", "exchange"})};
+  for (const MethodReport& method : report.methods) {
+    for (const ParticipantAccuracy& one : method.per_participant) {
+      if (one.swap_adjusted > kUsualLevel) continue;
+      table.rows.push_back({one.participant, method.method, count_and_share(one.accuracy),
+                            share_figure(one.matching.accuracy.share()),
+                            exchange_of(one.matching, report.classes), p_figure(one.swap_p),
+                            p_figure(one.swap_adjusted)});
+    }
+  }
+  if (table.rows.empty()) return {};
   table.notes = {
-      {"The best exchange of labels is the one-to-one matching of textures and answers with the "
-       "most trials: somebody who swaps two labels tells them apart all the same. It is chosen "
-       "after the fact, and so biased upward.",
-       {Source::kuhn}},
-      {"p of the exchange: sign test of the answers that agree with it against those with the own "
-       "label, times the number of exchanges of as many labels. Adjusted over all participants and "
-       "methods of the study: of the exchanges with 0.05 or less, 5% at most are false on average, "
-       "and if nobody exchanges labels, 5% of studies have one.",
-       {Source::benjamini_hochberg}},
-      {"Consistency is the raw information transfer of one participant's trials, biased upward "
-       "and not to be quoted.",
-       {Source::tan_reed_durlach}}};
+      {"The exchange is the one-to-one matching of textures and answers with the most trials, "
+       "chosen after the fact. p: sign test of the answers that agree with it against those with "
+       "the own label, times the number of exchanges of as many labels; adjusted over all "
+       "participants and methods.",
+       {Source::kuhn, Source::benjamini_hochberg}}};
   return table;
 }
 
@@ -140,26 +201,6 @@ Table confusion_table(const StudyReport& report, std::size_t index) {
   table.notes = {
       {"All participants' trials pooled; right answers are emphasised. The last row counts each "
        "answer, whatever was presented; it shows preferences for answers."}};
-  return table;
-}
-
-Table unbiased_table(const StudyReport& report, std::size_t index) {
-  const MethodReport& method = report.methods[index];
-  Table table = method_table(report, index, "unbiased-hits",
-                             "unbiased hit rates, which answering one texture often does not raise",
-                             columns_of({"texture", "mean", "t 95% (%)", "at random"}));
-  for (std::size_t i = 0; i < method.unbiased.size(); ++i) {
-    const UnbiasedHits& hits = method.unbiased[i];
-    const bool all = i >= report.classes.size();
-    table.rows.push_back({all ? "mean of all" : report.classes[i],
-                          Cell(share_figure(hits.rate.mean), all),
-                          share_range(hits.rate.known_interval()), share_figure(hits.by_chance)});
-  }
-  table.notes = {
-      {"The share of a texture's presentations that were answered right, times the share of its "
-       "answers that were right: mean over participants with Student's t interval. At random: its "
-       "mean if the same answers had nothing to do with the order of presentations.",
-       {Source::wagner, Source::student}}};
   return table;
 }
 
@@ -232,79 +273,30 @@ Table choice_table(const StudyReport& report, std::size_t index) {
   return table;
 }
 
-std::string bound_of(const DPrime& sensitivity) {
-  if (!sensitivity.estimate && !sensitivity.low && !sensitivity.high) return kNoFigure;
-  if (!sensitivity.low) return "up to " + plain_figure(sensitivity.high, 2);
-  if (!sensitivity.high) return "at least " + plain_figure(sensitivity.low, 2);
-  return plain_range(Interval{*sensitivity.low, *sensitivity.high}, 2);
-}
-
-/// The limits of d' over participants, or else those of independent trials, with a mark.
-std::string bound_of(const MethodReport& method) {
-  if (method.d_prime_over_participants) return bound_of(*method.d_prime_over_participants);
-  return bound_of(method.d_prime) + " *";
-}
-
-Table information_table(const StudyReport& report) {
-  Table table{"information",
-              "Information transfer and nominal sensitivity, all participants' trials pooled",
-              columns_of({"method", "n", "raw (bit)", "corrected (bit)", "at random (bit)",
-                          "categories", "d′", "d′ 95%"})};
-  for (const MethodReport& method : report.methods) {
-    const InformationTransfer& information = method.information;
-    const auto categories =
-        information.corrected ? std::optional(std::exp2(*information.corrected)) : std::nullopt;
-    table.rows.push_back({method.method, std::to_string(method.confusion.answered()),
-                          plain_figure(information.raw, 2), plain_figure(information.corrected, 2),
-                          plain_figure(information.null_mean, 2), plain_figure(categories, 1),
-                          plain_figure(method.d_prime.estimate, 2), bound_of(method)});
-  }
-  table.notes = {
-      {"Information transfer over trials with a response: raw (biased upward), minus Miller and "
-       "Madow's bias, and the mean of the raw value when each participant's answers are dealt at "
-       "random; categories are two to the power of the corrected value.",
-       {Source::tan_reed_durlach, Source::miller}},
-      {"d′ is what an unbiased observer of as many equally distant textures would need for this "
-       "accuracy: nominal; a bound in place of infinity. Its interval follows from the share's "
-       "bootstrap interval over participants.",
-       {Source::green_swets, Source::hacker_ratcliff, Source::davison_hinkley}}};
-  const auto of_trials = [](const MethodReport& one) { return !one.d_prime_over_participants; };
-  if (std::ranges::any_of(report.methods, of_trials)) {
-    table.notes.push_back(
-        {"* From Clopper and Pearson's interval, which treats trials as "
-         "independent: there are fewer than six participants, or they do "
-         "not differ."});
-  }
-  return table;
-}
-
 }  // namespace
 
 Section accuracy_section(const StudyReport& report) {
-  Section section{"accuracy", "Accuracy", {}};
-  add_headline(report, section);
+  Section section{"accuracy",
+                  "Accuracy",
+                  {table_of("headline", "Right answers, mean over participants", report.methods,
+                            headline_measures(report))}};
+  const bool is_one = report.methods.size() == 1;
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
-    add_method_heading(report, i, section);
-    section.blocks.emplace_back(class_table(report, i));
-    section.blocks.emplace_back(participant_table(report, i));
+    // Of several methods a table compares them by texture.
+    (is_one ? section.blocks : section.more).emplace_back(class_table(report, i));
   }
+  if (auto swaps = swaps_table(report)) section.blocks.emplace_back(std::move(*swaps));
+  section.more.emplace_back(ability_table(report));
+  section.more.emplace_back(participant_table(report));
   return section;
 }
 
-Section confusions_section(const StudyReport& report) {
+Section confusions_section(const StudyReport& report, bool drawn) {
   Section section{"confusions", "Confusions", {}};
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
-    add_method_heading(report, i, section);
-    section.blocks.emplace_back(confusion_table(report, i));
-    if (!report.methods[i].unbiased.empty()) {
-      section.blocks.emplace_back(unbiased_table(report, i));
-    }
-    if (report.methods[i].choice) section.blocks.emplace_back(choice_table(report, i));
+    (drawn ? section.more : section.blocks).emplace_back(confusion_table(report, i));
+    if (report.methods[i].choice) section.more.emplace_back(choice_table(report, i));
   }
-  if (report.methods.size() > 1) {
-    section.blocks.emplace_back(Subheading{"information-transfer", "Information transfer"});
-  }
-  section.blocks.emplace_back(information_table(report));
   return section;
 }
 

@@ -147,16 +147,16 @@ void add_observers(const StudyReport& report, const CueReport& cues, Section& se
   for (std::size_t i = 0; i < cues.methods.size(); ++i) {
     const MethodCues& method = cues.methods[i];
     if (method.observers.empty()) {
-      section.blocks.emplace_back(Cited{method.method + ": no trial could be judged.", {}});
+      section.more.emplace_back(Cited{method.method + ": no trial could be judged.", {}});
       continue;
     }
-    section.blocks.emplace_back(match_of(method));
-    section.blocks.emplace_back(cue_table(report, method, i));
-    section.blocks.emplace_back(confusing_table(report, method, i));
+    section.more.emplace_back(match_of(method));
+    section.more.emplace_back(cue_table(report, method, i));
+    section.more.emplace_back(confusing_table(report, method, i));
     const std::string left_out = left_out_of(method);
-    if (!left_out.empty()) section.blocks.emplace_back(Cited{left_out, {}});
+    if (!left_out.empty()) section.more.emplace_back(Cited{left_out, {}});
   }
-  if (!cues.warnings.empty()) section.blocks.emplace_back(Warnings{cues.warnings});
+  if (!cues.warnings.empty()) section.more.emplace_back(Warnings{cues.warnings});
 }
 
 }  // namespace
@@ -166,12 +166,12 @@ Section cues_section(const StudyReport& report, bool explores) {
   if (report.cues) {
     add_observers(report, *report.cues, section);
   } else {
-    section.blocks.emplace_back(
+    section.more.emplace_back(
         Cited{"Not examined: ideal observers read every trace of the study. Ask for it with "
               "touchtrial report DB --out DIR --cues yes.",
               {}});
   }
-  if (explores) section.blocks.emplace_back(Subheading{kExplorations, "How a hand explored"});
+  if (explores) section.more.emplace_back(Subheading{kExplorations, "How a hand explored"});
   return section;
 }
 

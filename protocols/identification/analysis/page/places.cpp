@@ -58,9 +58,10 @@ std::string preferences_sentence(const StudyReport& report) {
 Section places_section(const StudyReport& report) {
   Section section{"places", "Answers by place", {}};
   if (!report.places) return section;
-  section.blocks.emplace_back(Cited{preferences_sentence(report), {}});
-  section.blocks.emplace_back(places_table(*report.places));
-  section.blocks.emplace_back(own_preferences_table(report));
+  const bool found = report.places->own.anybody.found() || report.places->p <= kUsualLevel;
+  std::vector<Block>& blocks = found ? section.blocks : section.more;
+  blocks = {Cited{preferences_sentence(report)}, places_table(*report.places),
+            own_preferences_table(report)};
   return section;
 }
 

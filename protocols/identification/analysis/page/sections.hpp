@@ -11,11 +11,12 @@
 
 namespace touchtrial::analysis::identification {
 
-/// Adds each method's mean over participants and what chance would give.
-void add_headline(const StudyReport& report, Section& section);
+/// What stands above the figure that shows the result, besides the verdict.
+[[nodiscard]] Section result_section(const StudyReport& report);
 [[nodiscard]] Section accuracy_section(const StudyReport& report);
-[[nodiscard]] Section confusions_section(const StudyReport& report);
-/// Answers by their places on the screen, and who prefers a picture.
+/// \param drawn  whether a figure shows the confusions, so that their tables are folded
+[[nodiscard]] Section confusions_section(const StudyReport& report, bool drawn);
+/// Answers by their places on the screen, and who prefers a picture: folded unless somebody does.
 /// \return a section without blocks if no answer has a place
 [[nodiscard]] Section places_section(const StudyReport& report);
 /// The comparison of two or more methods.
@@ -29,11 +30,11 @@ void add_headline(const StudyReport& report, Section& section);
 /// \return a section without blocks if they were not asked
 [[nodiscard]] Section confidence_section(const StudyReport& report);
 [[nodiscard]] Section times_section(const StudyReport& report);
+/// Folded.
 /// \param explores  whether there are pictures of explorations, which stand at its end
 [[nodiscard]] Section cues_section(const StudyReport& report, bool explores = false);
 /// The servo and the validity of trials, and the results with and without invalid trials.
 [[nodiscard]] Section robustness_section(const StudyReport& report);
-[[nodiscard]] Section methods_section(const StudyReport& report);
 
 /// Adds a subheading with the method's name if the report has several methods.
 /// \param section  its id begins the id of the heading

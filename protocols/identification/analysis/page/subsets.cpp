@@ -4,6 +4,7 @@
 #include "core/named.hpp"
 #include "protocols/identification/analysis/page/sections.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -157,34 +158,38 @@ Cited area_sentence(const StudyReport& report, std::size_t index,
   return {text, {Source::fleming_lau, Source::student}};
 }
 
-std::vector<Cell> time_row(const std::string& name, const ReactionTimes& times) {
-  return {name,
-          std::to_string(times.from_plane_on.n),
-          plain_figure(times.from_plane_on.lower, 2),
-          plain_figure(times.from_plane_on.median, 2),
-          plain_figure(times.from_plane_on.upper, 2),
-          plain_figure(times.from_contact.lower, 2),
-          plain_figure(times.from_contact.median, 2),
-          plain_figure(times.from_contact.upper, 2)};
-}
-
-Table times_table(const StudyReport& report, std::size_t index) {
-  Table table =
-      method_table(report, index, "reaction-times",
-                   "reaction times in seconds by the texture presented: quartiles and medians",
-                   columns_of({"texture", "n", "plane on, 25%", "plane on, median", "plane on, 75%",
-                               "contact, 25%", "contact, median", "contact, 75%"}));
-  const std::vector<ReactionTimes>& times = report.methods[index].reaction;
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    const bool all = i >= report.classes.size();
-    table.rows.push_back(time_row(all ? "all" : report.classes[i], times[i]));
+Table times_table(const StudyReport& report) {
+  Table table{"reaction-times", "Reaction times in seconds: medians and quartiles",
+              columns_of({"texture"})};
+  for (std::size_t i = 0; i < report.methods.size(); ++i) {
+    for (const char* from : {"plane on", "contact"}) {
+      table.columns.push_back({method_prefix(report, i) + "from " + from});
+    }
+  }
+  const auto cell = [](const Quartiles& of) {
+    return of.median ? fmt::format("{} ({}, {})", plain_figure(of.median, 2),
+                                   plain_figure(of.lower, 2), plain_figure(of.upper, 2))
+                     : kNoFigure;
+  };
+  int paused = 0;
+  for (std::size_t place = 0; place <= report.classes.size(); ++place) {
+    const bool all = place == report.classes.size();
+    std::vector<Cell>& row =
+        table.rows.emplace_back(std::vector<Cell>{all ? "all" : report.classes[place]});
+    for (const MethodReport& method : report.methods) {
+      const ReactionTimes times =
+          place < method.reaction.size() ? method.reaction[place] : ReactionTimes{};
+      row.emplace_back(cell(times.from_plane_on));
+      row.emplace_back(cell(times.from_contact));
+      if (all) paused += times.paused;
+    }
   }
   table.notes = {
-      {"Trials with a response, right or wrong. From the moment the plane can be felt, "
-       "and from first contact, to the answer; one monotonic clock, the servo's. "
-       "Quantiles by interpolation (definition 7).",
+      {"Trials with a response, right or wrong. From the moment the plane can be felt, and from "
+       "first contact, to the answer; one monotonic clock, the servo's. Quantiles by "
+       "interpolation (definition 7).",
        {Source::hyndman_fan}}};
-  if (const int paused = times.empty() ? 0 : times.back().paused; paused > 0) {
+  if (paused > 0) {
     table.notes.push_back({fmt::format("{} waited for the end of a pause and {} left out.",
                                        counted(paused, "response"), paused == 1 ? "is" : "are")});
   }
@@ -218,16 +223,14 @@ Table robustness_table(const StudyReport& report, std::size_t index) {
 }  // namespace
 
 Section order_section(const StudyReport& report) {
-  Section section{"order", "Order and carry-over", {}, true};
+  Section section{"order", "Order and carry-over", {}};
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
     const MethodReport& method = report.methods[i];
-    if (method.breakdowns.empty() && !method.order) continue;
-    add_method_heading(report, i, section);
-    if (method.order) section.blocks.emplace_back(order_table(report, i, *method.order));
+    if (method.order) section.more.emplace_back(order_table(report, i, *method.order));
     for (const Breakdown& one : method.breakdowns) {
       // A figure shows accuracy by trial; the table above tests it.
       if (one.kind == BreakdownKind::trial || is_about_people(one.kind)) continue;
-      section.blocks.emplace_back(breakdown_table(report, i, one));
+      section.more.emplace_back(breakdown_table(report, i, one));
     }
   }
   return section;
@@ -261,9 +264,9 @@ Section confidence_section(const StudyReport& report) {
 
 Section times_section(const StudyReport& report) {
   Section section{"reaction-times", "Reaction times", {}};
-  for (std::size_t i = 0; i < report.methods.size(); ++i) {
-    if (report.methods[i].reaction.empty()) continue;
-    section.blocks.emplace_back(times_table(report, i));
+  const auto has_times = [](const MethodReport& method) { return !method.reaction.empty(); };
+  if (std::ranges::any_of(report.methods, has_times)) {
+    section.more.emplace_back(times_table(report));
   }
   return section;
 }
@@ -271,44 +274,16 @@ Section times_section(const StudyReport& report) {
 Section robustness_section(const StudyReport& report) {
   Section section{"servo-and-validity", "Servo and validity", {}};
   if (const auto servo = servo_table(report.collection)) {
-    section.blocks.emplace_back(*servo);
+    section.more.emplace_back(*servo);
   } else {
-    section.blocks.emplace_back(
-        Cited{"There is no table and no figure of the servo: no trial ran in real time. In "
-              "virtual time every tick is on time by construction, and says nothing about a "
-              "device.",
-              {}});
+    section.more.emplace_back(
+        Cited{"No trial ran in real time. In virtual time every tick is on time by construction, "
+              "and says nothing about a device."});
   }
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
     if (report.methods[i].robustness.empty()) continue;
-    section.blocks.emplace_back(robustness_table(report, i));
+    section.more.emplace_back(robustness_table(report, i));
   }
-  return section;
-}
-
-Section methods_section(const StudyReport& /*report*/) {
-  Section section{"methods", "How these numbers were computed", {}, true};
-  section.blocks.emplace_back(Cited{
-      "Every number is computed by the program named above from the database named above; "
-      "results.json, beside this page, holds the same numbers with all their digits. A note under "
-      "each table says what its numbers are and where the method comes from. Intervals hold 95% "
-      "nominally. Resampling draws from a random stream of fixed seed, so that the same database "
-      "gives the same numbers on every machine.",
-      {}});
-  section.blocks.emplace_back(Definitions{
-      {{"unit of analysis",
-        "The participant. Trials pooled over participants are shown for information; intervals "
-        "and tests that treat them as independent are marked."},
-       {"missing responses",
-        "Wrong in every accuracy; left out of information transfer and of the choice model. The "
-        "tables with and without them show what depends on this."},
-       {"right or wrong",
-        "An answer is right if its picture belongs to the class that was presented, whatever the "
-        "exemplar."},
-       {"blinding",
-        "What was presented was sealed before trial 1 and opened by a recorded event; touchtrial "
-        "verify DB checks every event, the seal and the schedules against each other, and the "
-        "head of the file's chain named above shows whether this report is of the same file."}}});
   return section;
 }
 

@@ -8,39 +8,22 @@
 namespace touchtrial::analysis::threshold {
 namespace {
 
-Table outside_table(const std::string& id, const std::string& caption,
-                    const AgainstGuessing& outside) {
-  Table table{id, caption,
-              columns_of({"participant", "n", "right", "share", "Clopper-Pearson 95% (%)", "p",
-                          "p by Holm"})};
+Table control_table(const AgainstGuessing& control) {
+  Table table{"control-block", "Right answers with the hand off the device",
+              columns_of({"participant", "n", "right", "share", "p", "p by Holm"})};
   const auto add = [&](const std::string& name, const RightAnswers& one) {
     table.rows.push_back({name, std::to_string(one.answers.n), std::to_string(one.answers.correct),
-                          share_figure(one.answers.share()), share_range(one.interval),
-                          p_figure(one.p), p_figure(one.p_holm)});
+                          share_figure(one.answers.share()), p_figure(one.p),
+                          p_figure(one.p_holm)});
   };
-  for (const RightAnswers& one : outside.people) add(one.participant, one);
-  add("all, pooled", outside.pooled);
+  for (const RightAnswers& one : control.people) add(one.participant, one);
+  add("all, pooled", control.pooled);
   table.notes = {
-      {"p: exact binomial probability of as many right answers or more by guessing; by "
-       "Holm: adjusted over participants. Targets are drawn trial by trial, so under "
-       "guessing trials are independent, whoever answers.",
-       {Source::clopper_pearson, Source::holm}}};
+      {"p: exact binomial probability of as many right answers or more by guessing; by Holm: "
+       "adjusted over participants. Targets are drawn trial by trial, so under guessing trials are "
+       "independent, whoever answers.",
+       {Source::holm}}};
   return table;
-}
-
-/// The p that somebody who attends answers so few catch trials right.
-void add_attention(const std::vector<choices::Attention>& attention, Table& table) {
-  for (const char* title : {"p, attending", "by Holm"}) table.columns.push_back({title});
-  for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    const bool is_person = i < attention.size();
-    table.rows[i].emplace_back(is_person ? p_figure(attention[i].p) : kNoFigure);
-    table.rows[i].emplace_back(is_person ? p_figure(attention[i].p_holm) : kNoFigure);
-  }
-  table.notes.push_back({fmt::format(
-      "p, attending: exact binomial probability of as few right answers or fewer of somebody who "
-      "has {} of catch trials right; by Holm: adjusted over participants. Only where that is {} or "
-      "less do a participant's answers say that attention or understanding was missing.",
-      share_figure(choices::kAttentive), kUsualLevel)});
 }
 
 Table without_table(const ThresholdReport& report) {
@@ -188,6 +171,10 @@ std::string learning_sentence(const ThresholdReport& report) {
 
 }  // namespace
 
+bool was_heard(const ThresholdReport& report) {
+  return report.control && report.control->anybody.found();
+}
+
 std::string sound_sentence(const ThresholdReport& report) {
   if (!report.control) {
     return "There was no control block with the hand off the device: whether the textures could be "
@@ -217,18 +204,13 @@ std::string sound_sentence(const ThresholdReport& report) {
 
 Section control_section(const ThresholdReport& report) {
   Section section{"control", "Sound alone, and attention", {}};
+  if (report.tracks.empty()) return section;
+  // What could be heard stands in the result.
+  if (!was_heard(report)) section.blocks.emplace_back(Cited{sound_sentence(report)});
   if (report.control) {
-    section.blocks.emplace_back(Cited{control_meaning(report)});
-    section.blocks.emplace_back(outside_table(
-        "control-block", "Right answers with the hand off the device", *report.control));
+    section.more.emplace_back(Cited{control_meaning(report)});
+    section.more.emplace_back(control_table(*report.control));
     if (!report.control->hearers.empty()) section.blocks.emplace_back(without_table(report));
-  }
-  if (report.catches) {
-    Table table = outside_table("catch-trials",
-                                "Right answers in catch trials, which are at the highest level",
-                                *report.catches);
-    add_attention(report.attention, table);
-    section.blocks.emplace_back(std::move(table));
   }
   return section;
 }
@@ -236,14 +218,15 @@ Section control_section(const ThresholdReport& report) {
 Section habits_section(const ThresholdReport& report) {
   Section section{"habits", "Habits and learning", {}};
   if (report.tracks.empty()) return section;
+  const auto add = [&](Block block) { section.more.emplace_back(std::move(block)); };
   const std::string learning = learning_sentence(report);
-  if (!learning.empty()) section.blocks.emplace_back(Cited{learning});
-  section.blocks.emplace_back(choices_table(report));
+  if (!learning.empty()) add(Cited{learning});
+  add(choices_table(report));
   if (!report.preferences.people.empty()) {
-    section.blocks.emplace_back(Cited{preferences_sentence(report)});
-    section.blocks.emplace_back(own_preferences_table(report));
+    add(Cited{preferences_sentence(report)});
+    add(own_preferences_table(report));
   }
-  section.blocks.emplace_back(repetitions_table(report));
+  add(repetitions_table(report));
   return section;
 }
 

@@ -167,6 +167,14 @@ Cited mean_note() {
       {Source::student, Source::tobin}};
 }
 
+/// "2 below, 1 above"
+std::string beyond_text(int below, int above) {
+  if (below == 0 && above == 0) return "0";
+  if (above == 0) return fmt::format("{} below", below);
+  if (below == 0) return fmt::format("{} above", above);
+  return fmt::format("{} below, {} above", below, above);
+}
+
 Table standards_table(const ThresholdReport& report) {
   const ThresholdOptions& options = report.options();
   const std::string quantity = quantity_name(options);
@@ -174,47 +182,49 @@ Table standards_table(const ThresholdReport& report) {
               fmt::format("Thresholds in {}; means over participants",
                           study::threshold::unit_of_level(options)),
               columns_of({"standard", "n", "mean and 95% (dB)", "SD (dB)", "median (dB)", "known",
-                          "below", "above", "not determined", "tracks"})};
+                          "beyond", "not determined"})};
   if (!quantity.empty()) table.columns.push_back({quantity + " and 95%"});
   for (const StandardReport& one : report.standards) {
     const procedures::Threshold mean = mean_threshold(one.mean);
     std::vector<Cell>& row = table.rows.emplace_back(std::vector<Cell>{
         one.words, std::to_string(one.mean.participants), threshold_text(mean, one.levels),
         plain_figure(one.mean.sd, 1), or_no_figure(median_text(one.mean)),
-        std::to_string(one.number_of(Censored::no)), std::to_string(one.number_of(Censored::below)),
-        std::to_string(one.number_of(Censored::above)),
-        std::to_string(one.number_of(Censored::undetermined)), std::to_string(one.tracks)});
+        std::to_string(one.number_of(Censored::no)),
+        beyond_text(one.number_of(Censored::below), one.number_of(Censored::above)),
+        std::to_string(one.number_of(Censored::undetermined))});
     if (!quantity.empty()) {
       row.emplace_back(quantity_text(quantity_of(options, one.of, mean), options));
     }
   }
   table.notes = {
       {"n: participants with a track, all of whom the mean counts, each with the mean of the own "
-       "tracks. Known: the estimate lies inside the levels. Below, above: it lies beyond the "
-       "lowest or the highest level, and counts as beyond. Not determined: the answers say hardly "
-       "anything, or own tracks differ in this. If more than half are not known there is no mean."},
+       "tracks. Known: the estimate lies inside the levels; beyond: below the lowest or above the "
+       "highest, and counts as that. Not determined: the answers say hardly anything, or own "
+       "tracks differ in this. If more than half are not known there is no mean."},
       {mean_note()}};
   return table;
 }
 
 Table differences_table(const ThresholdReport& report) {
-  Table table{
-      "differences-of-standards",
-      "Differences of thresholds, first minus second, of participants with tracks of both",
-      columns_of({"first", "second", "n", "known", "difference (dB)", "95% (dB)", "p", "p by Holm"},
-                 {"second"})};
+  Table table{"differences-of-standards",
+              "Differences of thresholds, first minus second, of participants with tracks of both",
+              columns_of({"first", "second", "n", "known", "difference (dB)", "95% (dB)", "t", "p",
+                          "p by Holm", "d_z, 95%"},
+                         {"second"})};
   for (const DifferenceReport& one : report.differences) {
     const CensoredMean& mean = one.difference;
     table.rows.push_back({report.standards[one.first].words, report.standards[one.second].words,
                           std::to_string(mean.participants), std::to_string(mean.exact),
                           signed_plain_figure(mean.mean, 1), plain_range(mean.interval, 1),
-                          p_figure(one.p), p_figure(one.p_holm)});
+                          one.statistic ? t_phrase(*one.statistic) : kNoFigure, p_figure(one.p),
+                          p_figure(one.p_holm), effect_figure(one.statistic)});
   }
   table.notes = {
       {"Mean, interval and p, two-sided, as for thresholds; a difference is known if both "
        "thresholds are, and has a bound if one of them lies beyond the levels. By Holm: adjusted "
-       "over all pairs.",
-       {Source::student, Source::tobin, Source::holm}}};
+       "over all pairs. t and d_z, the mean over its standard deviation between participants, if "
+       "every difference is known.",
+       {Source::student, Source::tobin, Source::holm, Source::cumming_finch}}};
   return table;
 }
 
@@ -317,26 +327,28 @@ std::optional<double> hundredfold(const std::optional<double>& share) {
   return share ? std::optional(100.0 * *share) : std::nullopt;
 }
 
-void add_headline(const ThresholdReport& report, Section& section) {
+Section result_section(const ThresholdReport& report) {
+  Section section{"result", "Result", {}};
   const ThresholdOptions& options = report.options();
   const auto say = [&](std::string text) { section.blocks.emplace_back(Cited{std::move(text)}); };
-  say(fmt::format("Measured: {}. Participants said {}. Levels are {}, from {} to {}.{}",
-                  task_words(options), question_words(options),
-                  study::threshold::unit_of_level(options),
-                  plain_figure(options.track.levels.front(), 1),
-                  plain_figure(options.track.levels.back(), 1), criterion_words(report)));
   if (report.tracks.empty()) {
     say("No trial counts, so there is no result.");
-    return;
+    return section;
   }
   if (report.has_thresholds()) {
-    for (const StandardReport& one : report.standards) say(standard_sentence(report, one));
+    // Beside a verdict they would repeat the table.
+    for (const StandardReport& one : report.standards) {
+      if (!report.primary) say(standard_sentence(report, one));
+    }
   } else {
     for (const SameDifferentGroup& one : report.same_different_groups) {
       say(difference_sentence(one, report));
     }
   }
-  say(sound_sentence(report));
+  if (was_heard(report)) say(sound_sentence(report));
+  say(fmt::format("Measured: {}. Participants said {}.{}", task_words(options),
+                  question_words(options), criterion_words(report)));
+  return section;
 }
 
 Section thresholds_section(const ThresholdReport& report) {
@@ -347,22 +359,20 @@ Section thresholds_section(const ThresholdReport& report) {
   return section;
 }
 
-Section tracks_section(const ThresholdReport& report) {
+/// A figure shows each person's threshold: the table is for those who need the numbers.
+Section tracks_section(const ThresholdReport& report, bool drawn) {
   Section section{"tracks-of-participants", "Tracks", {}};
   if (!report.has_thresholds() || report.tracks.empty()) return section;
   Table table = tracks_table(report);
   table.notes = tracks_notes(report);
-  section.blocks.emplace_back(std::move(table));
+  (drawn ? section.more : section.blocks).emplace_back(std::move(table));
   return section;
 }
 
 Section methods_section(const ThresholdReport& report) {
-  Section section{"analysis", "Analysis", {}, true};
-  section.blocks.emplace_back(Cited{procedure_words(report)});
-  section.blocks.emplace_back(Cited{estimate_words(report)});
-  section.blocks.emplace_back(Cited{
-      "A threshold above or below the levels, or that the answers do not determine, has no number. "
-      "It is stated by what is known of it."});
+  Section section{"analysis", "Analysis", {}};
+  section.more.emplace_back(Cited{procedure_words(report)});
+  section.more.emplace_back(Cited{estimate_words(report)});
   return section;
 }
 
@@ -370,12 +380,13 @@ Section methods_section(const ThresholdReport& report) {
 
 Document threshold_document(const ThresholdReport& report, const Provenance& provenance,
                             const Pictures& pictures) {
-  Section result{"result", "Result", {}};
-  add_headline(report, result);
+  const bool drawn = std::ranges::any_of(pictures, [](const Picture& one) {
+    return one.id.starts_with("threshold") && !one.svg.empty();
+  });
   return framed_document(
-      report, std::move(result),
-      {thresholds_section(report), same_different_section(report), control_section(report),
-       tracks_section(report), habits_section(report), methods_section(report)},
+      report, result_section(report),
+      {thresholds_section(report), same_different_section(report), tracks_section(report, drawn),
+       control_section(report), habits_section(report), methods_section(report)},
       provenance, pictures);
 }
 

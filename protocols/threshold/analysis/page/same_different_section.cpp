@@ -57,10 +57,10 @@ Section same_different_section(const ThresholdReport& report) {
   Section section{"same-or-different", "Same or different", {}};
   if (report.same_different.empty()) return section;
   section.blocks.emplace_back(group_d_prime_table(report));
-  section.blocks.emplace_back(same_different_table(
+  section.more.emplace_back(same_different_table(
       report, "same-different-pooled", "Answers \"different\", all participants pooled", true));
-  section.blocks.emplace_back(same_different_table(report, "same-different-participants",
-                                                   "Answers \"different\" by participant", false));
+  section.more.emplace_back(same_different_table(report, "same-different-participants",
+                                                 "Answers \"different\" by participant", false));
   return section;
 }
 

@@ -23,6 +23,8 @@ namespace touchtrial::analysis::threshold {
 
 /// \return a section without blocks if the question is another one
 [[nodiscard]] Section same_different_section(const ThresholdReport& report);
+/// Whether anybody could hear it with the hand off the device: then thresholds may be of the ear.
+[[nodiscard]] bool was_heard(const ThresholdReport& report);
 /// Whether anybody could hear it with the hand off the device, who, and the means without them; or
 /// what the block could have found.
 [[nodiscard]] std::string sound_sentence(const ThresholdReport& report);

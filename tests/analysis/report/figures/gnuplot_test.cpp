@@ -52,8 +52,8 @@ std::string complaint_about(const std::string& script) {
   std::filesystem::permissions(program, std::filesystem::perms::owner_all);
   const Variable path("PATH", folder.path().string() + ":/usr/bin:/bin");
   try {
-    static_cast<void>(
-        drawn({.id = "x", .caption = {}, .alt = {}, .script = "plot x\n"}, FigureFormat::svg));
+    const Figure figure{.id = "x", .caption = {}, .alt = {}};
+    static_cast<void>(drawn(figure, FigureFormat::svg));
   } catch (const Error& error) {
     return error.what();
   }

@@ -117,12 +117,40 @@ TEST_CASE("page: a picture's ids are unique, and a picture with a script is left
 
 TEST_CASE("page: a table of a thousand participants is folded away") {
   StudyReport report = hand_made_report();
-  const ParticipantAccuracy one = report.methods[0].per_participant[0];
-  report.methods[0].per_participant.assign(1000, one);
+  std::vector<ParticipantAccuracy>& all = report.methods[0].per_participant;
+  all.assign(1000, all.front());
+  report.methods[1].per_participant.clear();
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].participant = "P" + std::to_string(i);
   const std::string page = page_of(report);
-  // And one for all participants together.
-  CHECK_THAT(page, holds_text(", 1001 rows</summary>"));
+  CHECK_THAT(page, holds_text(", 1000 rows</summary>"));
   CHECK(faults_of_page(page) == std::vector<std::string>());
+}
+
+TEST_CASE("page: what is folded has numbers of its own, follows, and is left out of the text") {
+  const auto table = [](const std::string& id, Source source) {
+    Table made{id, "Table " + id, {{"x"}, {"y"}}, {{"row", "1"}}};
+    made.notes = {{"Note.", {source}}};
+    return made;
+  };
+  Document document;
+  document.sections = {
+      {"all", "All", {}, false, {table("c", Source::wilson)}},
+      {"part", "Part", {table("a", Source::student)}, false, {table("b", Source::wagner)}},
+      {"last", "Last", {table("d", Source::holm)}}};
+  const std::string page = page_html(document);
+  CHECK(faults_of_page(page) == std::vector<std::string>());
+  for (const char* caption : {"<b>Table 1.</b> Table a", "<b>Table S1.</b> Table b",
+                              "<b>Table 2.</b> Table d", "<b>Table S2.</b> Table c"}) {
+    CHECK_THAT(page, holds_text(caption));
+  }
+  CHECK(page.find("Table d") < page.find("Table c"));
+  CHECK(references_of(document) ==
+        std::vector{Source::student, Source::holm, Source::wilson, Source::wagner});
+  CHECK(references_in_print(document) == 2);
+  CHECK(tables_of(document).size() == 4);
+  const std::string text = document_text(document);
+  CHECK_THAT(text, holds_text("Table a") && holds_text("Table d") && !holds_text("Table b") &&
+                       !holds_text("Table c"));
 }
 
 TEST_CASE("page: the report before unblinding tells nothing about outcomes") {

@@ -88,13 +88,13 @@ class BringUpRig final : public AcceptanceBench, public AcceptancePerson {
   [[nodiscard]] std::optional<double> temperature_c(const std::string& /*question*/) override {
     return std::nullopt;
   }
-  [[nodiscard]] std::string saw(const std::string& question) override {
+  [[nodiscard]] std::string ask_observation(const std::string& question) override {
     count();
     if (question.find("ruler") != std::string::npos) return "20.5";
     if (question.find("Towards which side") == std::string::npos) return "1";
     return std::to_string(feels ? side() : kNowhere);
   }
-  void tell(const std::string& /*result*/) override {}
+  void show(const std::string& /*result*/) override {}
 
   double greatest_n = 0.0;            ///< of every run before and beside the two below
   double greatest_limit_n = 0.0;      ///< of the safety chain in the same runs
@@ -196,7 +196,7 @@ TEST_CASE("a reading that runs along another axis ends a bring-up before any for
   CHECK(record.outcome(BringUpStep::push) == StepOutcome::not_reached);
 }
 
-TEST_CASE("pushes that nobody feels, or that were left out, confirm nothing") {
+TEST_CASE("pushes that were not felt or were skipped confirm nothing") {
   BringUpRig numb(device_model("falcon"));
   numb.feels = false;
   const BringUp felt_nothing = brought_up(numb);
@@ -215,7 +215,7 @@ TEST_CASE("pushes that nobody feels, or that were left out, confirm nothing") {
   CHECK(felt_nothing.outcome(BringUpStep::wall) == StepOutcome::left_out);
 }
 
-TEST_CASE("a bring-up that ends at any moment keeps what it has and names the rest") {
+TEST_CASE("a bring-up interrupted at any moment keeps its results and names the missing steps") {
   int calls = 0;
   std::set<BringUpStep> interrupted;
   for (; calls < 200; ++calls) {
@@ -247,7 +247,7 @@ TEST_CASE("a device that is lost ends a bring-up as a fault") {
   CHECK(record.find("noise_mm") != nullptr);
 }
 
-TEST_CASE("the file of a bring-up has no serial number, and tells two devices apart") {
+TEST_CASE("the file of a bring-up has no serial number, but distinguishes two devices") {
   BringUpRig rig(device_model("falcon"));
   const std::string file = bring_up_json(brought_up(rig));
   CHECK(file.find("4711") == std::string::npos);

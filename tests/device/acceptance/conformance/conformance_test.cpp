@@ -119,7 +119,8 @@ TEST_CASE("conformance: the example plug-in passes every check, its calls' time 
   CHECK(finding(checks, ConformanceId::halting) == "after 1 ms");
 }
 
-TEST_CASE("conformance: without leave no force is sent, and what it would show is not observed") {
+TEST_CASE(
+    "conformance: without permission no force is sent, and checks of forces are not observed") {
   const Checks checks = checked({TOUCHTRIAL_EXAMPLE_PLUGIN, "{}"}, brief(false));
   INFO(text_of(checks));
   CHECK(failed(checks) == Ids{});
@@ -183,7 +184,7 @@ TEST_CASE("conformance: a check that is stopped says so, and passes nothing more
   CHECK(finding(checks, ConformanceId::calls) == "the check was stopped");
 }
 
-TEST_CASE("conformance: a device that nobody makes ready is not judged beyond that") {
+TEST_CASE("conformance: further checks of a device that never becomes ready are not observed") {
   ConformanceOptions options = brief(true);
   options.ready_limit_s = 0.1;
   bool advised = false;
@@ -200,7 +201,7 @@ TEST_CASE("conformance: a device that nobody makes ready is not judged beyond th
   CHECK(advised);
 }
 
-TEST_CASE("conformance: the simulated hand passes what can be seen of it") {
+TEST_CASE("conformance: the simulated hand passes all observable checks") {
   VirtualClock clock;
   ConformanceSubject subject;
   subject.open = [] { return device::open_device("simulated", {}); };
@@ -212,7 +213,7 @@ TEST_CASE("conformance: the simulated hand passes what can be seen of it") {
                                 ConformanceId::workspace}));
 }
 
-TEST_CASE("conformance: the mouse passes what can be seen of it") {
+TEST_CASE("conformance: the mouse passes all observable checks") {
   VirtualClock clock;
   ScriptedPointer pointer(clock, [](double time_s) {
     return PointerState{{50.0 + 20.0 * std::sin(3.0 * time_s), 50.0}, false, false, 0};

@@ -131,7 +131,8 @@ TEST_CASE("dhd: the library carries arms and end-effector, whatever force is com
   CHECK(fake->misuses == 0);
 }
 
-TEST_CASE("dhd: without compensation, force comes on once the library has shed the weight") {
+TEST_CASE(
+    "dhd: without compensation, force is switched on once the library has removed the weight") {
   LoadedDhd fake;
   fake->arm_mass_kg = 0.3;
   DhdSettings settings = settings_of_fake();
@@ -181,7 +182,7 @@ TEST_CASE("dhd: an end-effector that weighs more than the model with its arms is
   CHECK_NOTHROW(opened(fake, settings));
 }
 
-TEST_CASE("dhd: a weight that cannot be one is refused, or a fault before force comes on") {
+TEST_CASE("dhd: an implausible weight is refused, or a fault before force is switched on") {
   LoadedDhd fake;
   SECTION("it points down and sideways") {
     fake->weight_is_nonsense = true;
@@ -213,7 +214,7 @@ TEST_CASE("dhd: a weight is finite, points up, and is no larger than the model's
   CHECK_FALSE(is_plausible_weight({bad, 0.0, 4.1}, 6.2));
 }
 
-TEST_CASE("dhd: the functions of newer libraries tell the weight too") {
+TEST_CASE("dhd: the weight is also read with the functions of newer libraries") {
   const fakes::LoadedDrd fake;
   DhdSettings settings{.library = TOUCHTRIAL_FAKE_DRD};
   fake->arm_mass_kg = 0.3;
@@ -417,7 +418,7 @@ TEST_CASE("dhd: a device that loses its calibration is not ready, and its force 
   CHECK(device.fault() == DeviceFault::none);
 }
 
-TEST_CASE("dhd: a device whose force comes on by its button alone asks a person to press it") {
+TEST_CASE("dhd: a device whose force only its button switches on asks a person to press it") {
   LoadedDhd fake;
   fake->wants_button = true;
   device::DhdDevice device = opened(fake);
@@ -453,7 +454,7 @@ TEST_CASE("dhd: force that the device itself switches off is a fault by its caus
   CHECK(device.fault() == fault);
 }
 
-TEST_CASE("dhd: what switched force off in an earlier program is no fault of this one") {
+TEST_CASE("dhd: a force switch-off in an earlier program is not a fault") {
   LoadedDhd fake;
   fake->force_off_cause = GENERATE(2, 3, 5);
   fake->wants_button = GENERATE(true, false);
@@ -507,7 +508,7 @@ TEST_CASE("dhd: no reading is new while the library exchanges nothing with the d
   CHECK(next_sample(device).sequence > last);
 }
 
-TEST_CASE("dhd: saturated motors are not a fault, and the servo is told of them") {
+TEST_CASE("dhd: saturated motors are not a fault, and are reported to the servo") {
   LoadedDhd fake;
   fake->saturated = true;
   device::DhdDevice device = opened(fake);
@@ -654,7 +655,7 @@ TEST_CASE(
                     holds_text("name libdrd.so") && holds_text("rest position"));
 }
 
-TEST_CASE("the list of dhd says what is missing, and how to mend it") {
+TEST_CASE("the list of dhd names what is missing, with the remedy") {
   struct Lack {
     const char* library;
     bool present;

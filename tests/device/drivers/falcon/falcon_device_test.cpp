@@ -243,7 +243,7 @@ HandModel moving_hand() {
   return [tick = 0](Vec3) mutable { return Vec3{0.3 * tick++, 0.0, 0.0}; };
 }
 
-TEST_CASE("a Falcon's reply that comes late does not answer the next command") {
+TEST_CASE("a late reply of a Falcon does not answer the next command") {
   Rig rig(true);
   rig.emulator.set_hand(moving_hand());
   rig.lockstep.steps(20);
@@ -407,7 +407,7 @@ TEST_CASE("closing sends packets without force and switches the lights off") {
   rig.device.reset();
   CHECK(rig.emulator.motors() == kNoMotors);
   CHECK(rig.emulator.lamps() == Lamps{});
-  CHECK(rig.emulator.exchanges() >= before + FalconDevice::kFarewells);
+  CHECK(rig.emulator.exchanges() >= before + FalconDevice::kFinalPackets);
   CHECK(rig.emulator.complaints().empty());
 }
 

@@ -32,7 +32,7 @@ TEST_CASE("falcon motors: minus 6,616 for a newton metre, rounded") {
   CHECK_FALSE(cold({0.6189, -0.6189, 0.0}).limited);
 }
 
-TEST_CASE("falcon motors: beyond 4,095 all three shrink by one factor, and it is told") {
+TEST_CASE("falcon motors: beyond 4,095 all three are scaled by one factor, which is reported") {
   CHECK(cold({-1.0, 0.0, 0.0}).values == MotorValues{4095, 0, 0});
   CHECK(cold({-2.0, 1.2, 0.4}).values == MotorValues{4095, -2457, -819});
   CHECK(cold({-1.0, 0.0, 0.0}).limited);
@@ -130,7 +130,7 @@ TEST_CASE("falcon motors: a hand that presses with 0.7 N for an hour never meets
   }
 }
 
-TEST_CASE("falcon motors: heat is of what was sent, over the time until the next command") {
+TEST_CASE("falcon motors: heat is that of the sent command, over the time until the next one") {
   FalconMotors often({});
   FalconMotors seldom({});
   for (int ms = 0; ms < 15'000; ++ms) {

@@ -224,7 +224,7 @@ Bytes damaged(Bytes bytes, RandomStream& random) {
   return bytes;
 }
 
-TEST_CASE("falcon stream finds in random damage what a search at every place finds") {
+TEST_CASE("falcon stream finds the same packets in random damage as a search at every place") {
   RandomStream random(3, "falcon stream");
   for (int round = 0; round < 2000; ++round) {
     Bytes payload;

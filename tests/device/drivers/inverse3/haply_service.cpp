@@ -53,17 +53,17 @@ device::Inverse3Settings HaplyService::settings() const {
   return settings;
 }
 
-void HaplyService::tell(const std::string& command) {
+void HaplyService::send_command(const std::string& command) {
   process_->write(command + '\n');
 }
 
 void HaplyService::send_event(const nlohmann::json& event) {
-  tell("event " + event.dump());
+  send_command("event " + event.dump());
   (void)next_line("sent");
 }
 
 nlohmann::json HaplyService::report() {
-  tell("report");
+  send_command("report");
   return nlohmann::json::parse(next_line("{"));
 }
 

@@ -22,7 +22,7 @@ class HaplyService {
   /// The driver's settings for it.
   [[nodiscard]] device::Inverse3Settings settings() const;
   /// Gives it a command; inverse3_service.py lists them.
-  void tell(const std::string& command);
+  void send_command(const std::string& command);
   /// Sends an event and waits until it is sent.
   void send_event(const nlohmann::json& event);
   /// What it has been told up to now.

@@ -71,7 +71,7 @@ TEST_CASE("inverse3: place and velocity arrive with x right, y up, z towards the
   HaplyService service;
   const auto device = opened(service);
   // To the right, away, down.
-  service.tell("hold [[0.01, 0.02, -0.03], [0.1, -0.2, 0.3]]");
+  service.send_command("hold [[0.01, 0.02, -0.03], [0.1, -0.2, 0.3]]");
   REQUIRE(eventually([&] {
     return norm(next_sample(*device).position_mm - Vec3{10.0, -30.0, -20.0}) < 1e-9;
   }));
@@ -121,7 +121,7 @@ TEST_CASE("inverse3: filters are off, the frame is centred, and the session has 
   CHECK(info.workspace->greatest_mm == Vec3{100.0, 100.0, 100.0});
 }
 
-TEST_CASE("inverse3: a session's record tells a left arm from a right one") {
+TEST_CASE("inverse3: a session's record distinguishes left and right arms") {
   HaplyService service({"--handedness", "left", "--home-return", "unknown"});
   const std::string firmware = opened(service)->info().firmware;
   CHECK(firmware.find(", left-handed, ") != std::string::npos);
@@ -146,7 +146,7 @@ TEST_CASE("inverse3: a service whose HTTP is on a port of its own is found there
   CHECK(device::device_driver("inverse3").list(lab).at(0).present);
 }
 
-TEST_CASE("inverse3: what does not answer as a service that is known is told apart") {
+TEST_CASE("inverse3: unknown services are distinguished by their answers") {
   // Older than 3.1: HTTP, but no /version.
   CHECK(refusal_by({"--http-apart", "--no-version"}).find("older than 3.1") != std::string::npos);
   // A simulation channel, and no HTTP anywhere.
@@ -172,7 +172,7 @@ TEST_CASE("inverse3: a Minverse reaches less far, and a grip has buttons") {
 TEST_CASE("inverse3: version 3.1 gets its forces as values, in the frame of the arm's base") {
   HaplyService service({"--version", "3.1", "--no-events"});
   const auto device = opened(service);
-  service.tell("hold [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]]");
+  service.send_command("hold [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]]");
   CHECK(eventually([&] { return norm(next_sample(*device).position_mm) < 1e-9; }));
   CHECK(reaches(service, *device, {0.5, 1.0, 1.5}, {0.5, -1.5, 1.0}));
   CHECK(device->info().firmware.find("service 3.1, right-handed, torque scaling on") !=
@@ -181,7 +181,7 @@ TEST_CASE("inverse3: version 3.1 gets its forces as values, in the frame of the 
   CHECK(service.report().at("complaints") == json::array());
 }
 
-TEST_CASE("inverse3: what keeps it from opening is named with the remedy") {
+TEST_CASE("inverse3: problems of opening are reported with the remedy") {
   const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> cases = {
       {{"--gate-on"}, {"force gate at 0.3", "alters textures", "Haply Hub"}},
       {{"--hub-scale"}, {"turns or scales", "profile touchtrial"}},
@@ -219,11 +219,11 @@ TEST_CASE("inverse3: without calibration or power the force stays zero") {
   CHECK(device->readiness() == device::DeviceReadiness::needs_inkwell);
   REQUIRE(
       write_until(*device, {0.0, 1.0, 0.0}, [&] { return service.report().at("messages") > 50; }));
-  service.tell("calibrate");
+  service.send_command("calibrate");
   REQUIRE(reaches(service, *device, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}));
   CHECK(device->readiness() == device::DeviceReadiness::ready);
   CHECK(service.report().at("forces_uncalibrated") == 0);
-  service.tell("power off");
+  service.send_command("power off");
   CHECK(eventually([&] { return !next_sample(*device).ready; }));
   CHECK(device->readiness() == device::DeviceReadiness::needs_calibration);
   CHECK(reaches(service, *device, {0.0, 1.0, 0.0}, {}));
@@ -241,7 +241,7 @@ TEST_CASE("inverse3: a service that falls silent is a lost link") {
   CHECK(device.read(sample) == device::DeviceStatus::fault);
 }
 
-TEST_CASE("inverse3: a service that ends is a lost link, and what makes no sense is bad data") {
+TEST_CASE("inverse3: a service that ends is a lost link, and invalid messages are bad data") {
   const auto [option, value, fault] = GENERATE(table<const char*, const char*, DeviceFault>({
       {"--disconnect-after", "50", DeviceFault::link_lost},
       {"--garbage", "gone", DeviceFault::link_lost},  // the device
@@ -294,14 +294,14 @@ TEST_CASE("inverse3: closing leaves no force, whatever the servo wrote last") {
     REQUIRE(reaches(service, *device, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}));
     (void)device->write({0.0, 1.0, 0.0});
   }
-  CHECK(service.report().at("zeros_last") >= Inverse3Device::kFarewells);
+  CHECK(service.report().at("zeros_last") >= Inverse3Device::kFinalPackets);
   CHECK(eventually([&] {
     const json report = service.report();
     return report.at("clients") == 0 && report.at("listeners") == 0;
   }));
 }
 
-TEST_CASE("inverse3: a force beyond the setting is shortened, and one that is no number is none") {
+TEST_CASE("inverse3: a force beyond the setting is shortened, and NaN becomes zero") {
   HaplyService service;
   device::Inverse3Settings settings = service.settings();
   settings.max_force_n = 2.0;
@@ -315,7 +315,7 @@ TEST_CASE("inverse3: a force beyond the setting is shortened, and one that is no
 TEST_CASE("inverse3: a wall carries the hand, in a whole run of the servo") {
   HaplyService service;
   SteppedInverse3 device(service.settings());
-  service.tell("explore");
+  service.send_command("explore");
   // A horizontal plane 10 mm below the middle.
   device::PlacedDevice placed(device, {device::PlaneOrientation::horizontal, {0.0, -10.0, 0.0}});
   FlatWall wall;

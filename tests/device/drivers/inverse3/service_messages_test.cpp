@@ -186,7 +186,7 @@ TEST_CASE("sessions of an Inverse service are counted and named") {
   CHECK_THROWS_AS(device::inverse3::sessions_in(R"({"ok": false, "error": "no"})"), BadMessage);
 }
 
-TEST_CASE("an event of an Inverse service tells what happened to which device") {
+TEST_CASE("an event of an Inverse service names the event and the device") {
   const auto event = device::inverse3::event_in(
       R"({"name": "device-safety-triggered", "category": "device", "level": "error",
           "data": {"device_family": "inverse", "device_id": "049D",
@@ -206,7 +206,7 @@ TEST_CASE("a force for an Inverse3 is a vector from version 3.5 on, and values b
         json::parse(R"({"values": {"x": 1.0, "y": -2.0, "z": 0.5}})"));
 }
 
-TEST_CASE("the first message to an Inverse service says who we are and switches filters off") {
+TEST_CASE("the first message to an Inverse service identifies us and switches filters off") {
   const json first = json::parse(device::inverse3::first_message(kNew, "049D"));
   CHECK(first == json::parse(R"({
       "session": {"configure": {"profile": {"name": "touchtrial"}}},

@@ -129,7 +129,7 @@ TEST_CASE("pressing lands smoothly on the wall and holds 0.7 N, releasing lifts 
   CHECK(steepest_n_per_s < 25.0);
 }
 
-TEST_CASE("a hand that was down when a plane went off is up when the next comes on") {
+TEST_CASE("a hand that was down at the end of a plane is up at the start of the next") {
   VirtualClock clock;
   bool pressed = true;
   ScriptedPointer pointer(clock, [&](double) { return at(20.0, 20.0, pressed); });
@@ -302,7 +302,7 @@ TEST_CASE("a smooth pull never leaves the range of its targets, whatever the ste
   }
 }
 
-TEST_CASE("the mouse is present where there is a display, and says what is missing elsewhere") {
+TEST_CASE("the mouse is listed with a display, and otherwise with what is missing") {
   const EnvironmentVariable wayland("WAYLAND_DISPLAY", nullptr);
   {
     const EnvironmentVariable display("DISPLAY", ":7");
@@ -318,7 +318,7 @@ TEST_CASE("the mouse is present where there is a display, and says what is missi
   CHECK_THAT(listing.missing[0], holds_text("graphical session"));
 }
 
-TEST_CASE("the registry knows the mouse, and says that only a window can open it") {
+TEST_CASE("the registry lists the mouse, which only a window can open") {
   CHECK_THROWS_AS(device::open_device("mouse", {}), DeviceError);
   bool listed = false;
   for (const DeviceListing& listing : list_devices({})) listed |= listing.driver == "mouse";

@@ -58,7 +58,7 @@ TEST_CASE("openhaptics: the device describes itself") {
   CHECK(info.workspace->greatest_mm == Vec3{80.0, 60.0, 30.0});
 }
 
-TEST_CASE("openhaptics: what the library does not tell is no limit, the reach, or a usual size") {
+TEST_CASE("openhaptics: values that the library does not report get defaults") {
   LoadedHd fake;
   const auto info = [] { return device::OpenHapticsDevice(settings_of_fake()).info(); };
   fake->tells_damping = false;
@@ -107,7 +107,7 @@ TEST_CASE("openhaptics: without calibration the force stays zero, and the readin
   CHECK(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->force_n.get().y == 1.0; }));
 }
 
-TEST_CASE("openhaptics: of the styles that a device has, auto comes before inkwell before reset") {
+TEST_CASE("openhaptics: calibration prefers auto to inkwell to reset") {
   using device::DeviceReadiness;
   const auto [styles, need] = GENERATE(table<int, DeviceReadiness>(
       {{fakes::kHdEncoderReset | fakes::kHdAuto | fakes::kHdInkwell, DeviceReadiness::needs_homing},
@@ -177,7 +177,7 @@ TEST_CASE("openhaptics: a calibration that fails is tried again, and is no fault
   CHECK(device.fault() == device::DeviceFault::none);
 }
 
-TEST_CASE("openhaptics: what a device learns while forces are on waits until they are off") {
+TEST_CASE("openhaptics: a calibration update waits until forces are off") {
   LoadedHd fake;
   fake->calibration_styles = fakes::kHdAuto;
   fake->encoder_error_mm.set({0.5, 0.0, 0.0});

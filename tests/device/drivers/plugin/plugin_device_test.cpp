@@ -71,7 +71,7 @@ TEST_CASE("a plug-in describes its device, and the driver's name stands before t
   CHECK(info.workspace->shape == device::WorkspaceShape::ellipsoid);
 }
 
-TEST_CASE("a plug-in's readings and forces pass as they are, once an exchange") {
+TEST_CASE("a plug-in's readings and forces pass unchanged, once per exchange") {
   PluginRig rig(example_with());
   const Vec3 force_n{0.5, -1.0, 2.0};
   rig.clock.pass_ms(1);
@@ -111,7 +111,7 @@ TEST_CASE("a plug-in that needs no enabling gets its forces, and zeros, all the 
   CHECK(rig.motors_after({0.0, 1.0, 0.0}) == Vec3{});
 }
 
-TEST_CASE("a library that is no plug-in, or half of one, is refused with what it lacks") {
+TEST_CASE("an incomplete plug-in library is refused with the missing part") {
   const auto [how, words] = GENERATE(table<const char*, const char*>(
       {{"nothing", "touchtrial_device_v1 returned nothing"},
        {"version", "has version 2 of the interface, this program has 1"},
@@ -165,7 +165,7 @@ TEST_CASE("what a plug-in reports or gets wrong latches as a fault, and the forc
        {"unknown_code", DeviceFault::driver, PluginFault::failed},
        {"values", DeviceFault::bad_data, PluginFault::not_finite},
        {"huge", DeviceFault::bad_data, PluginFault::absurd},
-       {"numbering", DeviceFault::bad_data, PluginFault::sequence_fell},
+       {"numbering", DeviceFault::bad_data, PluginFault::sequence_decreased},
        {"unknown_readiness", DeviceFault::bad_data, PluginFault::unknown_readiness},
        {"memory", DeviceFault::bad_data, PluginFault::wrote_past}}));
   PluginRig rig(broken_by(name));
@@ -226,7 +226,7 @@ TEST_CASE("a plug-in that kills the process that loads it is found without loadi
   CHECK_THROWS_AS(device::open_device("plugin", settings), DeviceError);
 }
 
-TEST_CASE("the list of plug-ins shows the one of the settings, or what it lacks") {
+TEST_CASE("the list of plug-ins shows the one in the settings, or its problem") {
   device::DeviceSettings settings;
   const auto listed = [&] { return device::device_driver("plugin").list(settings).at(0); };
   CHECK_FALSE(listed().present);

@@ -23,7 +23,7 @@ class CsvFile {
 
 constexpr const char* kHeader = "time_s,x_mm,y_mm,z_mm\n";
 
-TEST_CASE("a motion's rate and positions come from its rows") {
+TEST_CASE("a motion's rate and positions are read from its rows") {
   const device::RecordedMotion motion =
       CsvFile(std::string(kHeader) + "0.5,1,2,3\n0.5005,4,5,6\n0.501,7e0,-8,9.25\n").read();
   CHECK(motion.rate_hz() == 2000.0);

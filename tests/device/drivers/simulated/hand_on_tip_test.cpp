@@ -117,7 +117,7 @@ TEST_CASE("a hand that foresees its way without forces, and its copies, move and
   const device::ExplorationPath path(kPlane, {}, random);
   const device::SimulatedHand plain(options, path, device_model(name));
   device::SimulatedHand foreseeing = plain;
-  foreseeing.foresee();
+  foreseeing.precompute();
   std::vector<Vec3> expected;
   for (const device::SimulatedHand& one : {plain, foreseeing, foreseeing}) {
     device::SimulatedHand hand = one;

@@ -19,9 +19,11 @@ MethodReport fake_method(const FakeReportOptions& options, std::size_t number) {
   std::vector<analysis::Proportion> by_place(static_cast<std::size_t>(places));
   std::vector<ReactionTimes> reaction(static_cast<std::size_t>(classes) + 1);
   std::vector<double> accuracies;
+  std::vector<std::vector<bool>> right;
   for (int p = 0; p < options.participants; ++p) {
     const double skill = 0.55 + 0.4 * random.uniform() - 0.1 * static_cast<double>(number);
     analysis::ConfusionMatrix own(classes);
+    right.emplace_back();
     for (int place = 0; place < places; ++place) {
       const int presented = (place * 7 + p) % classes;
       analysis::Choice choice{presented, presented};
@@ -30,6 +32,7 @@ MethodReport fake_method(const FakeReportOptions& options, std::size_t number) {
         choice.answered = static_cast<int>(random.below(static_cast<unsigned>(classes)));
       if (fate > 0.99) choice.answered.reset();
       own.add(choice);
+      right.back().push_back(choice.answered == presented);
       method.confusion.add(choice);
       analysis::Proportion& at = by_place[static_cast<std::size_t>(place)];
       ++at.n;
@@ -62,6 +65,7 @@ MethodReport fake_method(const FakeReportOptions& options, std::size_t number) {
     trials.groups.push_back({std::to_string(place + 1), at, analysis::wilson_interval(at)});
   }
   method.breakdowns.push_back(std::move(trials));
+  method.over_trials = accuracy_over_trials(right);
   return method;
 }
 

@@ -83,7 +83,13 @@ MethodReport method_of(const std::string& name, const std::vector<std::vector<in
 
 MethodPair pair_of() {
   MethodPair pair;
-  pair.overall = {6, -0.083, {-0.2, 0.034}, 0.125, -0.42, analysis::Interval{-0.16, -0.01}};
+  pair.overall = {6,
+                  -0.083,
+                  {-0.2, 0.034},
+                  0.125,
+                  -0.42,
+                  analysis::Interval{-0.16, -0.01},
+                  analysis::TStatistic{-1.82, 5, -0.74, analysis::Interval{-1.63, 0.2}}};
   pair.odds_ratio = analysis::OddsRatio{0.66, {0.31, 1.4}, analysis::Interval{0.25, 1.7}};
   for (int i = 0; i < 3; ++i) {
     pair.classes.push_back({{25, 18}, {25, 20}, {6, -0.08, {-0.3, 0.14}, 0.5, -0.46}, {}});

@@ -1,6 +1,7 @@
 // A report for everybody holds nobody's name and nothing that a person wrote.
 #include "analysis/fake_study.hpp"
 #include "analysis/outcomes/identities.hpp"
+#include "analysis/report/figures/redraw.hpp"
 #include "analysis/text_matching.hpp"
 #include "core/bytes.hpp"
 #include "core/files.hpp"
@@ -53,7 +54,7 @@ void add_people_and_texts(FakeStudy& study) {
   store.look_at("qqbert", seconds(1'769'860'900), "qqperson");
   store.exclude(3, seconds(1'769'861'000), "qqexcluded");
   store.note(1, seconds(1'769'861'100), "qqcode", "qqnote");
-  store.withdraw(4, seconds(1'769'861'200), "qqwithdrew", record::Kept::data);
+  store.withdraw(4, seconds(1'769'861'200), "qqwithdrew", record::Retention::data);
   store.replace(6, "qqafter", seconds(1'769'861'300), "qqreplace");
   store.close_study(seconds(1'769'861'400));
   store.unblind(seconds(1'769'861'500), "qqunblind", false);
@@ -66,7 +67,8 @@ std::string everything(const StudyReport& report, const analysis::Provenance& pr
                     analysis::tables_markdown(document) + analysis::tables_latex(document) +
                     report_json(report);
   for (const analysis::Figure& figure : report_figures(report)) {
-    all += figure.id + figure.caption + figure.alt + figure.script;
+    all += figure.id + figure.caption + figure.alt;
+    for (const auto& [name, content] : analysis::redraw_files(figure)) all += content;
   }
   return all;
 }

@@ -201,9 +201,7 @@ TEST_CASE(
     if (line.starts_with("---")) titles += before.substr(0, before.find(" [")) + "; ";
   }
   CHECK(titles ==
-        "Result; Participants; Exploration; What to bear in mind; Accuracy; Confusions; Answers by "
-        "place; Comparison "
-        "of methods; Reaction times; Which cue was it?; Servo and validity; This report; ");
+        "Result; Comparison of methods; Accuracy; Confusions; Participants; This report; ");
   std::string ids;
   std::string headline;
   const analysis::Document document = study_document(report, {});
@@ -212,17 +210,14 @@ TEST_CASE(
     if (table->id != "headline") continue;
     for (const analysis::Cell& cell : table->rows.at(1)) headline += cell.text + " | ";
   }
-  CHECK(headline ==
-        "tv-gabor | 2 | 24 | 83.3% | [0.0, 100.0] | [66.7, 100.0] | 21.9 [0.0, 37.3] | ");
+  CHECK(headline.starts_with("tv-gabor | 2 | 24 | 83.3% | [0.0, 100.0] | 21.9 [0.0, 37.3] | "));
   CHECK(ids ==
-        "primary people looks explorations-1 explorations-2 headline ability "
-        "accuracy-by-class-adaptive accuracy-by-participant-adaptive accuracy-by-class-tv-gabor "
-        "accuracy-by-participant-tv-gabor confusions-adaptive unbiased-hits-adaptive "
-        "choice-model-adaptive confusions-tv-gabor unbiased-hits-tv-gabor choice-model-tv-gabor "
-        "information answers-by-place preferences-of-participants methods methods-by-class-1 "
-        "order-adaptive accuracy-by-order-group-adaptive "
-        "order-tv-gabor accuracy-by-order-group-tv-gabor reaction-times-adaptive "
-        "reaction-times-tv-gabor with-and-without-adaptive with-and-without-tv-gabor ");
+        "primary methods methods-by-class-1 headline accuracy-by-class-adaptive "
+        "accuracy-by-class-tv-gabor ability accuracy-by-participant confusions-adaptive "
+        "confusions-tv-gabor choice-model-adaptive choice-model-tv-gabor answers-by-place "
+        "preferences-of-participants order-adaptive accuracy-by-order-group-adaptive "
+        "order-tv-gabor accuracy-by-order-group-tv-gabor reaction-times with-and-without-adaptive "
+        "with-and-without-tv-gabor explorations looks ");
 }
 
 }  // namespace touchtrial

@@ -437,11 +437,11 @@ TEST_CASE("the script of the model of ratings has the study's methods and all fu
 
 TEST_CASE("wishes that a report of ratings cannot fulfil are refused by their names") {
   const HandMadeRatings made;
-  using analysis::ReportWishes;
+  using analysis::ReportOptions;
   CHECK_THROWS_WITH(own::rating_analysis().results(made.outcomes, {.trial = "P1:3"}),
                     holds_text("--trial"));
   CHECK_THROWS_WITH(
-      own::rating_analysis().results(made.outcomes, {.traces = ReportWishes::Traces::yes}),
+      own::rating_analysis().results(made.outcomes, {.traces = ReportOptions::Traces::yes}),
       holds_text("--cues"));
 }
 

@@ -77,12 +77,12 @@ class Experimenter final : public session::Attendant {
  public:
   Experimenter(EmulatedFalcon& falcon, SteppedFalcon*& device) : falcon_(falcon), device_(device) {}
 
-  [[nodiscard]] Says attend(const std::string& need) override {
+  [[nodiscard]] Reply attend(const std::string& need) override {
     // What the motors of an unplugged Falcon do is unknown, and beyond anyone's reach.
     if (falcon_.plugged) strongest_n = std::max(strongest_n, norm(falcon_.emulator.force_n()));
     if (need.empty()) {
       ++consents;
-      return Says::arm;
+      return Reply::arm;
     }
     if (!falcon_.plugged) {
       falcon_.plug();
@@ -90,7 +90,7 @@ class Experimenter final : public session::Attendant {
       falcon_.hand.home();
       device_->steps(kHomingSteps);
     }
-    return Says::wait;
+    return Reply::wait;
   }
 
   int consents = 0;
@@ -205,7 +205,7 @@ class Pausing final : public session::Experimenter {
   bool resumes_ = false;
 };
 
-TEST_CASE("a pause on the emulated Falcon leaves no force, and its trial comes again") {
+TEST_CASE("a pause on the emulated Falcon leaves no force, and its trial is repeated") {
   Laboratory lab;
   Pausing experimenter(lab);
   const session::SessionTally tally =

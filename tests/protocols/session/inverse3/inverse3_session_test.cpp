@@ -32,16 +32,16 @@ class HelperAtService final : public session::Attendant {
  public:
   explicit HelperAtService(HaplyService& service) : service_(service) {}
 
-  [[nodiscard]] Says attend(const std::string& need) override {
+  [[nodiscard]] Reply attend(const std::string& need) override {
     if (!service_.runs()) {
       needs.push_back(need);
       if (needs.size() > 1) service_.start_again();
-      return Says::wait;
+      return Reply::wait;
     }
     strongest_n = std::max(strongest_n, force_on(service_));
-    if (!need.empty()) return Says::wait;
+    if (!need.empty()) return Reply::wait;
     ++consents;
-    return Says::arm;
+    return Reply::arm;
   }
 
   std::vector<std::string> needs;
@@ -66,7 +66,7 @@ class PersonAtService final : public simulation::PromptParticipant {
     contact_ = 0;
     lifted_ = false;
     ++begun;
-    service_.tell("explore");
+    service_.send_command("explore");
     return station_.device();
   }
   void exploring(device::ServoControl& servo) override {

@@ -106,16 +106,16 @@ class HelperAtCable final : public session::Attendant {
  public:
   explicit HelperAtCable(const Vendor& vendor) : vendor_(vendor) {}
 
-  [[nodiscard]] Says attend(const std::string& need) override {
+  [[nodiscard]] Reply attend(const std::string& need) override {
     strongest_n = std::max(strongest_n, norm(vendor_.force_n()));
     if (need.empty()) {
       ++consents;
-      return Says::arm;
+      return Reply::arm;
     }
     if (needs.find(need) == std::string::npos) needs += need + "\n";
     if (need.find(Vendor::kCalibrationNeed) != std::string::npos) vendor_.calibrate();
     if (!std::exchange(plugged, true)) vendor_.plug();
-    return Says::wait;
+    return Reply::wait;
   }
 
   bool plugged = true;

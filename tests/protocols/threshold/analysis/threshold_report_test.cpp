@@ -49,8 +49,8 @@ nlohmann::json json_of(const HandMadeTracks& made) {
 
 bool has_table(const analysis::Document& page, const std::string& section, const std::string& id) {
   for (const analysis::Section& one : page.sections) {
-    for (const analysis::Block& block : one.blocks) {
-      const auto* table = std::get_if<analysis::Table>(&block);
+    for (const analysis::Block* block : all_blocks(one)) {
+      const auto* table = std::get_if<analysis::Table>(block);
       if (one.id == section && table != nullptr && table->id == id) return true;
     }
   }

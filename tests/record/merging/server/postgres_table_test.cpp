@@ -67,7 +67,7 @@ bool is_denied(const std::string& line) {
 
 }  // namespace
 
-TEST_CASE("a row comes back as it was sent, and is kept once") {
+TEST_CASE("a row is read as it was sent, and stored once") {
   const ServerFixture there;
   const auto table = there.table();
   CHECK(table->rows().empty());
@@ -130,7 +130,7 @@ TEST_CASE("a collecting role only adds, a reading role only reads, and a row nam
   CHECK(there.table("reader")->rows().size() == 4);
 }
 
-TEST_CASE("a station that may not make the table is told who does") {
+TEST_CASE("a station without the right to create the table gets a message on who can") {
   const ServerFixture there;
   there.ask("REVOKE CREATE ON SCHEMA public FROM PUBLIC");
   if (there.ask("SELECT 1 FROM pg_roles WHERE rolname = 'newcomer'").empty()) {

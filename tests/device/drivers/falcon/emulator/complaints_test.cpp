@@ -48,7 +48,7 @@ void load(FalconEmulator& falcon, std::size_t block_size) {
   send(falcon, std::vector<std::uint8_t>(block_size, 0x55));
 }
 
-TEST_CASE("the emulated Falcon complains about what no correct driver sends, and only about that") {
+TEST_CASE("the emulated Falcon reports exactly the packets that no correct driver sends") {
   struct Driver {
     const char* complaint;  ///< null: none
     EmulatorOptions state;

@@ -63,13 +63,13 @@ class FalconEmulator {
   /// Sends bytes to the host at once, without a command.
   void send_garbage(std::span<const std::uint8_t> bytes);
   void stick_encoders(bool stuck) {
-    tell([=](RunningFalcon& falcon) { falcon.stick_encoders(stuck); });
+    post_order([=](RunningFalcon& falcon) { falcon.stick_encoders(stuck); });
   }
   void unplug();
   /// \param keeps_power  the Falcon has its own supply: then firmware and homing survive
   void replug(bool keeps_power);
   void forget_homing() {
-    tell([](RunningFalcon& falcon) { falcon.forget_homing(); });
+    post_order([](RunningFalcon& falcon) { falcon.forget_homing(); });
   }
   ///@}
 
@@ -77,7 +77,7 @@ class FalconEmulator {
   ///@{
   /// \param buttons  bits 0 to 3: plus, forward, centre, minus
   void press(std::uint32_t buttons) {
-    tell([=](RunningFalcon& falcon) { falcon.press(buttons); });
+    post_order([=](RunningFalcon& falcon) { falcon.press(buttons); });
   }
   void set_hand(HandModel hand);
   ///@}
@@ -118,7 +118,7 @@ class FalconEmulator {
     return runs() ? ((*running_).*question)() : std::decay_t<Answer>{};
   }
   template <typename Order>
-  void tell(const Order& order) {
+  void post_order(const Order& order) {
     const std::scoped_lock lock(mutex_);
     if (runs()) order(*running_);
   }

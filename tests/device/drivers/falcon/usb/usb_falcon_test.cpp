@@ -107,7 +107,7 @@ TEST_CASE("a Falcon that another program has claimed is busy, and nothing stays 
   CHECK(device.open_handles() == 0);
 }
 
-TEST_CASE("a kernel driver is detached while the Falcon is open, and comes back") {
+TEST_CASE("a kernel driver is detached while the Falcon is open, and reattached") {
   Loopback model;
   ShimmedUsbDevice device(model);
   device.attach_kernel_driver(true);

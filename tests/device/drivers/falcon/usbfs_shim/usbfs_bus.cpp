@@ -70,7 +70,7 @@ UsbfsBus& UsbfsBus::instance() {
 void UsbfsBus::add(const std::shared_ptr<BusDevice>& device) {
   const std::lock_guard lock(mutex_);
   devices_.insert(device);
-  tell("add", device->identity);
+  notify("add", device->identity);
 }
 
 void UsbfsBus::remove(const std::shared_ptr<BusDevice>& device) {
@@ -86,7 +86,7 @@ void UsbfsBus::remove(const std::shared_ptr<BusDevice>& device) {
     system_close(handle.reader);
     handle.reader = -1;
   }
-  tell("remove", device->identity);
+  notify("remove", device->identity);
 }
 
 void UsbfsBus::change(const std::function<void()>& action) {
@@ -314,7 +314,7 @@ void UsbfsBus::stop_monitor() {
   monitor_ = -1;
 }
 
-void UsbfsBus::tell(const std::string& action, const UsbIdentity& identity) {
+void UsbfsBus::notify(const std::string& action, const UsbIdentity& identity) {
   if (monitor_ < 0) return;
   events_.push_back({action, identity});
   eventfd_write(monitor_, 1);

@@ -72,7 +72,7 @@ class UsbfsBus {
   void serve_writes(BusHandle& handle);
   void serve_reads(BusHandle& handle);
   void serve_all();
-  void tell(const std::string& action, const UsbIdentity& identity);
+  void notify(const std::string& action, const UsbIdentity& identity);
 
   std::mutex mutex_;
   std::set<std::shared_ptr<BusDevice>> devices_;

@@ -1,0 +1,193 @@
+#include "analysis/report/figures/redraw_scripts.hpp"
+#include "analysis/report/figures/style.hpp"
+
+#include <fmt/format.h>
+
+namespace touchtrial::analysis {
+namespace {
+
+int r_shape(Glyph glyph) noexcept {
+  switch (glyph) {
+    case Glyph::disc:
+      return 16;
+    case Glyph::square:
+      return 15;
+    case Glyph::triangle:
+      return 17;
+    case Glyph::diamond:
+      return 18;
+    case Glyph::down:
+      return 25;
+    case Glyph::ring:
+      return 1;
+    case Glyph::cross:
+      return 4;
+  }
+  return 16;
+}
+
+/// One layer's terms, each after a plus.
+std::string in_r(const Layer& layer, int number) {
+  const std::string data = fmt::format("layer({})", number);
+  const std::string look = "colour = " + quoted(colour_of(layer));
+  const std::string fill = "fill = " + quoted(colour_of(layer));
+  const auto term = [&](const char* geom, const char* aes, const std::string& more) {
+    return fmt::format(" +\n  {}(aes({}), {}, {})", geom, aes, data, more);
+  };
+  const std::string points =
+      term("geom_point", "x, y",
+           fmt::format("shape = {}, size = {:.3g}, {}", r_shape(layer.glyph), layer.size, look));
+  const std::string style = layer.dashed ? ", linetype = 2" : "";
+  switch (layer.kind) {
+    case LayerKind::points:
+      return points;
+    case LayerKind::line:
+      return term("geom_path", "x, y, group = text",
+                  fmt::format("linewidth = {:.3g}, {}{}", 0.35 * layer.size, look, style));
+    case LayerKind::path:
+      return term("geom_point", "x, y, colour = value", "size = 0.3") +
+             " +\n  scale_colour_viridis_c()";
+    case LayerKind::band:
+      return term("geom_ribbon", "x, ymin = low, ymax = high", fill + ", alpha = 0.2");
+    case LayerKind::interval:
+      return term("geom_linerange", "x, ymin = low, ymax = high", look) + points;
+    case LayerKind::across:
+      return term("geom_linerange", "y = y, xmin = low, xmax = high", look) + points;
+    case LayerKind::box:
+      return term("geom_crossbar", "x, y, ymin = low, ymax = high",
+                  fmt::format("width = {:.3g}, fill = NA, linewidth = 0.3, {}",
+                              layer.rows.front().value, look));
+    case LayerKind::rule:
+      return fmt::format(" +\n  rule({}, {}{})", data, look, style);
+    case LayerKind::tile:
+      return term("geom_tile", "x, y, fill = value", "colour = \"white\", show.legend = FALSE") +
+             " +\n  scale_fill_gradient(low = \"white\", high = \"#003e6e\", limits = c(0, 1))" +
+             term("geom_text", "x, y, label = text, colour = value > 0.5",
+                  "size = 2.5, show.legend = FALSE") +
+             " +\n  scale_colour_manual(values = c(\"black\", \"white\"))";
+    case LayerKind::label:
+      return term("geom_text", "x, y, label = text",
+                  fmt::format("size = 2.8, hjust = {}, {}",
+                              layer.anchor == Anchor::start ? "0"
+                              : layer.anchor == Anchor::end ? "1"
+                                                            : "0.5",
+                              look));
+    case LayerKind::arrow:
+      return term("geom_segment", "x, y, xend = low, yend = high",
+                  "arrow = grid::arrow(length = grid::unit(0.1, \"cm\")), " + look);
+    case LayerKind::picture:
+      return fmt::format(" +\n  picture({}, \"{}\")", data, number);
+  }
+  return "";
+}
+
+std::string axis_in_r(char name, const Axis& axis) {
+  std::string scale = fmt::format("scale_{}_continuous({}", name, quoted(axis.label));
+  if (!axis.names.empty()) {
+    scale += fmt::format(", breaks = {}, labels = {}", numbers_of(axis.names, "c(", ")"),
+                         list_of(axis.names, "c(", ")"));
+  }
+  if (axis.logarithmic) {
+    scale += ", trans = \"log10\"";
+  } else if (axis.reversed) {
+    scale += ", trans = \"reverse\"";
+  }
+  std::string script = " +\n  " + scale + ")";
+  if (axis.hidden) {
+    script += fmt::format(
+        " +\n  theme(axis.text.{0} = element_blank(), axis.ticks.{0} = element_blank(), "
+        "axis.line.{0} = element_blank())",
+        name);
+  }
+  return script;
+}
+
+/// Limits that leave no data out.
+std::string limits_in_r(const Panel& panel) {
+  const auto of = [](const Axis& axis) {
+    if (!axis.names.empty()) return fmt::format("c(0.5, {}.5)", axis.names.size());
+    return axis.low && axis.high ? fmt::format("c({:.6g}, {:.6g})", *axis.low, *axis.high)
+                                 : std::string("NULL");
+  };
+  const auto turned = [&of](const Axis& axis) {
+    const std::string limits = of(axis);
+    return axis.reversed && limits != "NULL" ? "rev(" + limits + ")" : limits;
+  };
+  return fmt::format(" +\n  coord_cartesian(xlim = {}, ylim = {})", turned(panel.x),
+                     turned(panel.y));
+}
+
+constexpr const char* kRHead = R"r(library(ggplot2)
+
+arguments <- commandArgs(FALSE)
+own <- sub("^--file=", "", grep("^--file=", arguments, value = TRUE))
+stem <- sub("[.]r$", "", if (length(own)) own[1] else file.choose())
+table <- read.csv(paste0(stem, ".csv"), colClasses = c(text = "character", name = "character"))
+layer <- function(number) {
+  rows <- table[table$layer == number, ]
+  rows$text <- factor(rows$text, unique(rows$text))
+  rows
+}
+rule <- function(rows, colour, ...) {
+  level <- rows[!is.na(rows$y), ]
+  upright <- rows[is.na(rows$y), ]
+  list(
+    geom_rect(aes(xmin = -Inf, xmax = Inf, ymin = low, ymax = high), level[!is.na(level$low), ],
+              fill = colour, alpha = 0.16),
+    geom_rect(aes(ymin = -Inf, ymax = Inf, xmin = low, xmax = high), upright[!is.na(upright$low), ],
+              fill = colour, alpha = 0.16),
+    geom_hline(aes(yintercept = y), level, colour = colour, ...),
+    geom_vline(aes(xintercept = x), upright[!is.na(upright$x), ], colour = colour, ...),
+    geom_text(aes(x = Inf, y = y, label = text), level, colour = colour, size = 2.8, hjust = 1,
+              vjust = -0.3)
+  )
+}
+picture <- function(rows, number) {
+  raster <- png::readPNG(paste0(stem, "-", number, ".png"))
+  lapply(seq_len(nrow(rows)), function(i) {
+    annotation_raster(raster, rows$x[i], rows$low[i], rows$high[i], rows$y[i])
+  })
+}
+panels <- list()
+)r";
+
+}  // namespace
+
+std::string ggplot_script(const Figure& figure, const Layout& layout) {
+  const Grid grid = grid_of(figure, layout);
+  std::string script =
+      fmt::format(
+          "# Draws {0}.csv, which lies beside, with ggplot2:\n#     Rscript {0}.r FILE.pdf\n",
+          figure.id) +
+      kRHead;
+  int number = 0;
+  for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+    const Panel& panel = figure.panels[i];
+    script += fmt::format("\npanels[[{}]] <- ggplot()", i + 1);
+    for (const Layer& layer : panel.layers) {
+      ++number;
+      if (!layer.rows.empty()) script += in_r(layer, number);
+    }
+    script += " +\n  theme_classic(base_size = 8)" + axis_in_r('x', panel.x) +
+              axis_in_r('y', panel.y) + limits_in_r(panel) +
+              fmt::format(" +\n  ggtitle({})\n", quoted(panel.title));
+  }
+  return script +
+         fmt::format(
+             "\nwanted <- commandArgs(TRUE)\npdf(if (length(wanted)) wanted[1] else paste0(stem, "
+             "\"-ggplot2.pdf\"), {:.2f}, {:.2f})\ngrid::pushViewport(grid::viewport(layout = "
+             "grid::grid.layout({}, {}, widths = c({}), heights = c({}))))\nfor (i in "
+             "seq_along(panels)) {{\n  print(panels[[i]], "
+             "vp = grid::viewport(layout.pos.row = (i - 1) %/% {} + 1, layout.pos.col = (i - 1) "
+             "%% {} + 1))\n}}\n",
+             figure.width_cm * kInchesOfCm, layout.height_cm * kInchesOfCm, grid.rows, grid.columns,
+             grid.widths, grid.heights, grid.columns, grid.columns) +
+         (figure.simulated || !figure.stamp.empty()
+              ? fmt::format("grid::popViewport()\ngrid::grid.text({}, 0.99, 0.99, c(\"right\", "
+                            "\"top\"), gp = grid::gpar(col = \"#b3261e\", fontsize = 8))\n",
+                            quoted(stamps_of(figure)))
+              : "") +
+         "invisible(dev.off())\n";
+}
+
+}  // namespace touchtrial::analysis

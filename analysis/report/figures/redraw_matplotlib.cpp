@@ -1,0 +1,235 @@
+#include "analysis/report/figures/redraw_scripts.hpp"
+#include "analysis/report/figures/style.hpp"
+
+#include <fmt/format.h>
+
+namespace touchtrial::analysis {
+namespace {
+
+const char* python_marker(Glyph glyph) noexcept {
+  switch (glyph) {
+    case Glyph::square:
+      return "s";
+    case Glyph::triangle:
+      return "^";
+    case Glyph::diamond:
+      return "D";
+    case Glyph::down:
+      return "v";
+    case Glyph::cross:
+      return "x";
+    case Glyph::disc:
+    case Glyph::ring:
+      break;
+  }
+  return "o";
+}
+
+constexpr const char* kPythonHead = R"py(import csv
+import pathlib
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+stem = pathlib.Path(__file__).with_suffix("")
+with open(f"{stem}.csv", newline="", encoding="utf-8") as file:
+    table = list(csv.DictReader(file))
+
+
+def rows(layer):
+    return [row for row in table if row["layer"] == str(layer)]
+
+
+def column(layer, name):
+    return [float(row[name] or "nan") for row in rows(layer)]
+
+
+def lines(ax, layer, **look):  # a line for each text
+    for text in dict.fromkeys(row["text"] for row in rows(layer)):
+        own = [row for row in rows(layer) if row["text"] == text]
+        ax.plot(*([float(row[name] or "nan") for row in own] for name in "xy"), **look)
+        look.pop("label", None)
+
+
+def texts(ax, layer, **look):
+    for row in rows(layer):
+        ax.text(float(row["x"]), float(row["y"]), row["text"], **look)
+
+
+def rules(ax, layer, color, beyond=False, **look):  # lines through the panel, bands and names
+    for row in rows(layer):
+        level = row["y"] != ""
+        if row["low"]:
+            span = ax.axhspan if level else ax.axvspan
+            span(float(row["low"]), float(row["high"]), color=color, alpha=0.16, linewidth=0)
+        if level:
+            ax.axhline(float(row["y"]), color=color, **look)
+            ax.text(1.02 if beyond else 1, float(row["y"]), row["text"], color=color,
+                    ha="left" if beyond else "right", va="center" if beyond else "bottom",
+                    transform=ax.get_yaxis_transform())
+        elif row["x"]:
+            ax.axvline(float(row["x"]), color=color, **look)
+
+
+plt.rcParams.update({"font.size": 8, "text.parse_math": False, "axes.linewidth": 0.6,
+                     "axes.spines.top": False, "axes.spines.right": False})
+)py";
+
+/// One layer's statements.
+/// \param number  of the layer, in the data
+std::string in_python(const Layer& layer, int number) {
+  const std::string colour = quoted(colour_of(layer));
+  const auto columns = [number](const std::string& names) {
+    std::string list;
+    for (std::size_t at = 0; at != std::string::npos;) {
+      const std::size_t end = names.find(' ', at);
+      list += fmt::format("{}column({}, \"{}\")", list.empty() ? "" : ", ", number,
+                          names.substr(at, end - at));
+      at = end == std::string::npos ? end : end + 1;
+    }
+    return list;
+  };
+  const std::string label = layer.in_key ? ", label=" + quoted(layer.name) : "";
+  const std::string scatter = fmt::format(
+      "ax.scatter({}, s={:.3g}, marker=\"{}\", {}={}, linewidths=0.7{})\n", columns("x y"),
+      9.0 * layer.size * layer.size, python_marker(layer.glyph),
+      layer.glyph == Glyph::ring ? "facecolors=\"none\", edgecolors" : "color", colour, label);
+  const std::string style = layer.dashed ? ", linestyle=\"--\"" : "";
+  switch (layer.kind) {
+    case LayerKind::points:
+      return scatter;
+    case LayerKind::line:
+      return fmt::format("lines(ax, {}, color={}, linewidth={:.3g}{}{})\n", number, colour,
+                         0.9 * layer.size, style, label);
+    case LayerKind::path:
+      return fmt::format(
+          "points = ax.scatter({}, c=column({}, \"value\"), s=3, cmap=\"viridis\")\n",
+          columns("x y"), number);
+    case LayerKind::band:
+      return fmt::format("ax.fill_between({}, color={}, alpha=0.2, linewidth=0{})\n",
+                         columns("x low high"), colour, label);
+    case LayerKind::interval:
+      return fmt::format("ax.vlines({}, color={}, linewidth=1.2)\n", columns("x low high"),
+                         colour) +
+             scatter;
+    case LayerKind::across:
+      return fmt::format("ax.hlines({}, color={}, linewidth=1.2)\n", columns("y low high"),
+                         colour) +
+             scatter;
+    case LayerKind::box:
+      return fmt::format(
+          "for x, y, low, high, width in zip({}):\n"
+          "    ax.add_patch(plt.Rectangle((x - width / 2, low), width, high - low, fill=False, "
+          "edgecolor={}))\n    ax.hlines(y, x - width / 2, x + width / 2, color={}, linewidth=2)\n",
+          columns("x y low high value"), colour, colour);
+    case LayerKind::rule:
+      return fmt::format("rules(ax, {}, {}{}, linewidth={:.3g}{}{})\n", number, colour,
+                         layer.anchor == Anchor::start ? ", beyond=True" : "", 0.9 * layer.size,
+                         style, label);
+    case LayerKind::tile:
+      return fmt::format(
+          "for x, y, share, row in zip({}, rows({})):\n    ax.add_patch(plt.Rectangle((x - 0.5, y "
+          "- 0.5), 1, 1, facecolor=plt.cm.Blues(share), edgecolor=\"white\"))\n    ax.text(x, y, "
+          "row[\"text\"], ha=\"center\", va=\"center\", color=\"white\" if share > 0.5 else "
+          "\"black\")\n",
+          columns("x y value"), number);
+    case LayerKind::label: {
+      const char* where = layer.anchor == Anchor::start ? "left"
+                          : layer.anchor == Anchor::end ? "right"
+                                                        : "center";
+      return fmt::format("texts(ax, {}, ha=\"{}\", va=\"center\", color={})\n", number, where,
+                         colour);
+    }
+    case LayerKind::arrow:
+      return fmt::format(
+          "for x, y, to_x, to_y in zip({}):\n    ax.annotate(\"\", (to_x, to_y), (x, y), "
+          "arrowprops={{\"arrowstyle\": \"->\", \"color\": {}}})\n",
+          columns("x y low high"), colour);
+    case LayerKind::picture:
+      return fmt::format(
+          "for left, top, right, bottom in zip({}):\n    ax.imshow(plt.imread(f\"{{stem}}-{}.png\")"
+          ", cmap=\"gray\", vmin=0, vmax=1, extent=(left, right, bottom, top), "
+          "aspect=\"auto\")\n",
+          columns("x y low high"), number);
+  }
+  return "";
+}
+
+std::string limit_in(const std::optional<double>& end, const char* none) {
+  return end ? fmt::format("{:.6g}", *end) : none;
+}
+
+std::string axis_in_python(char name, const Axis& axis) {
+  std::string script = fmt::format("ax.set_{}label({})\n", name, quoted(axis.label));
+  if (axis.logarithmic) {
+    script += fmt::format("ax.set_{0}scale(\"log\")\nax.{0}axis.set_major_formatter(\"{{x:g}}\")\n",
+                          name);
+  }
+  if (!axis.names.empty()) {
+    script +=
+        fmt::format("ax.set_{}lim(0.5, {}.5)\nax.set_{}ticks({}, {}{})\n", name, axis.names.size(),
+                    name, numbers_of(axis.names, "[", "]"), list_of(axis.names, "[", "]"),
+                    name == 'x' ? ", rotation=45, ha=\"right\"" : "");
+  } else {
+    script += fmt::format("ax.set_{}lim({}, {})\n", name, limit_in(axis.low, "None"),
+                          limit_in(axis.high, "None"));
+  }
+  if (axis.reversed) script += fmt::format("ax.invert_{}axis()\n", name);
+  if (axis.hidden) script += fmt::format("ax.{}axis.set_visible(False)\n", name);
+  return script;
+}
+
+}  // namespace
+
+std::string matplotlib_script(const Figure& figure, const Layout& layout) {
+  const Grid grid = grid_of(figure, layout);
+  const std::size_t columns = grid.columns;
+  std::string script =
+      fmt::format(
+          "# Draws {0}.csv, which lies beside, with matplotlib 3.6 or later:\n#     python3 "
+          "{0}.py FILE.pdf\n",
+          figure.id) +
+      kPythonHead +
+      fmt::format(
+          "figure, axes = plt.subplots({}, {}, figsize=({:.2f}, {:.2f}), squeeze=False, "
+          "layout=\"constrained\",\n                            "
+          "gridspec_kw={{\"width_ratios\": [{}], \"height_ratios\": [{}]}})\n",
+          grid.rows, columns, figure.width_cm * kInchesOfCm, layout.height_cm * kInchesOfCm,
+          grid.widths, grid.heights);
+  int number = 0;
+  for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+    const Panel& panel = figure.panels[i];
+    script += fmt::format("\nax = axes[{}][{}]\nax.set_title({}, loc=\"left\", fontsize=8)\n",
+                          i / columns, i % columns, quoted(panel.title));
+    for (const Layer& layer : panel.layers) script += in_python(layer, ++number);
+    script += axis_in_python('x', panel.x) + axis_in_python('y', panel.y);
+    if (!panel.colour_scale.empty()) {
+      script +=
+          fmt::format("figure.colorbar(points, ax=ax, label={})\n", quoted(panel.colour_scale));
+    }
+  }
+  for (std::size_t i = figure.panels.size(); i < grid.rows * columns; ++i) {
+    script += fmt::format("axes[{}][{}].set_axis_off()\n", i / columns, i % columns);
+  }
+  const std::string stamp = stamps_of(figure);
+  if (!stamp.empty()) {
+    script +=
+        fmt::format("figure.suptitle({}, x=0.99, ha=\"right\", fontsize=8, color=\"#b3261e\")\n",
+                    quoted(stamp));
+  }
+  if (!layout.key.empty()) {
+    script +=
+        "named = {}\nfor ax in axes.flat:\n    for handle, label in "
+        "zip(*ax.get_legend_handles_labels()):\n"
+        "        named.setdefault(label, handle)\n"
+        "axes.flat[0].legend(named.values(), named.keys(), loc=\"lower left\", ncols=2,\n"
+        "                    bbox_to_anchor=(0, 1.04), frameon=False)\n";
+  }
+  return script +
+         "figure.savefig(sys.argv[1] if len(sys.argv) > 1 else f\"{stem}-matplotlib.pdf\")\n";
+}
+
+}  // namespace touchtrial::analysis

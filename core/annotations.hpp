@@ -1,0 +1,12 @@
+/// \file Keys of an annotated schema that only tables read, or that become its descriptions. Private
+/// to core.
+#pragma once
+
+namespace touchtrial {
+
+inline constexpr const char* kMeaning = "x-meaning";
+inline constexpr const char* kUnit = "x-unit";
+inline constexpr const char* kOtherwise = "x-otherwise";
+inline constexpr const char* kRange = "x-range";
+
+}  // namespace touchtrial

@@ -1,0 +1,177 @@
+#include "protocols/identification/analysis/methods.hpp"
+
+#include "core/strict_json.hpp"
+#include "core/text.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace touchtrial::analysis::identification {
+namespace {
+
+std::string trial_sentence(const study::Study& study) {
+  const bool spoken = study.session.sight == study::Sight::blindfold;
+  const std::string what = spoken ? "name" : "picture";
+  const std::string question = study.presented_methods() > 1
+                                   ? "which " + what + " fitted best what had been felt"
+                                   : "the " + what + " whose texture had been felt";
+  return fmt::format("In each trial one plane was felt, and participants {} {}, of {}{}.",
+                     spoken ? "said" : "chose", question, study.classes.size(),
+                     spoken ? "; the experimenter entered the answer"
+                            : " in places that were drawn for each participant and stayed");
+}
+
+std::string order_words(const study::TrialOptions& trials) {
+  using enum study::TrialOrder;
+  const std::string runs =
+      trials.max_run > 0 ? fmt::format(", with at most {} of one texture in a row", trials.max_run)
+                         : std::string();
+  switch (trials.order) {
+    case shuffled:
+      return "in random order, each order as likely as any other" + runs;
+    case de_bruijn:
+      return "in a random de Bruijn sequence, in which each texture followed each, itself "
+             "included, once";
+    case uniform:
+      return "each drawn by itself, so that textures were not balanced" + runs;
+    case williams:
+      return "in rows of a Williams design, in which each texture stood at each place and followed "
+             "each other one equally often" +
+             runs;
+  }
+  return {};
+}
+
+std::string number_words(const study::Study& study) {
+  const int methods = study.presented_methods();
+  const std::string by = methods > 1 ? fmt::format(" by each of {} methods", methods) : "";
+  return fmt::format("Each of {} textures came {} times{}, which made {} scored trials, {}.",
+                     study.classes.size(), study.trials.repeats, by, study.scored_trials(),
+                     order_words(study.trials));
+}
+
+std::string blocks_words(const study::Study& study) {
+  if (study.presented_methods() < 2) return {};
+  if (study.trials.blocks == study::Blocks::mixed) return "Methods were mixed in one block.";
+  return "Each method had a block of its own; the order of blocks was a row of a Williams design, "
+         "and participants were dealt the rows at random, each once before any was repeated.";
+}
+
+std::string images_words(const study::Study& study) {
+  const bool has_several = std::ranges::any_of(
+      study.classes, [](const study::StudyClass& one) { return one.images.size() > 1; });
+  if (!has_several) return {};
+  return "The image of a presentation was drawn at random from those of its texture, all of which "
+         "came before any was repeated.";
+}
+
+std::string unscored_words(const study::TrialOptions& trials) {
+  std::vector<std::string> parts;
+  if (trials.lead_in > 0) {
+    parts.push_back(
+        fmt::format("{} at the start of each block", counted(trials.lead_in, "presentation")));
+  }
+  if (trials.catch_trials > 0) {
+    parts.push_back(fmt::format("{} of a plane without texture, at random places",
+                                counted(trials.catch_trials, "catch trial")));
+  }
+  return parts.empty() ? "" : "Not scored were " + listed(parts, " and ") + ".";
+}
+
+void add_accuracy(const StudyReport& report, Sentences& all) {
+  const auto any = [&](auto has) { return std::ranges::any_of(report.methods, has); };
+  all.push_back(
+      {"The unit of analysis was the participant: means are of the participants' own "
+       "shares of right answers, with Student's t intervals of 95 %; trials without an "
+       "answer counted as wrong.",
+       {Source::student}});
+  if (any([](const MethodReport& one) { return one.bootstrap.has_value(); })) {
+    all.push_back({"Bootstrap intervals drew participants, with expanded percentiles.",
+                   {Source::davison_hinkley, Source::hesterberg}});
+  }
+  if (any([](const MethodReport& one) { return one.spread.has_value(); })) {
+    all.push_back(
+        {"The standard deviation between participants is without what a limited number "
+         "of trials adds by chance.",
+         {Source::paule_mandel, Source::viechtbauer}});
+  }
+  if (any([](const MethodReport& one) { return one.chance.has_value(); })) {
+    all.push_back(
+        {"Whether anybody did better than chance was tested by permutation over the "
+         "orders that could have been dealt, one-sided.",
+         {Source::phipson_smyth}});
+  }
+  if (any([](const MethodReport& one) { return one.prevalence.has_value(); })) {
+    all.push_back(
+        {"The prevalence of people who would pass this test on their own trials is a "
+         "posterior mode with its highest-density interval.",
+         {Source::ince}});
+  }
+}
+
+void add_comparison(const StudyReport& report, Sentences& all) {
+  if (report.pairs.empty()) return;
+  all.push_back(
+      {"Two methods were compared by the mean of participants' differences, with its t "
+       "interval and a two-sided sign-flip permutation test.",
+       {Source::student, Source::phipson_smyth}});
+  const auto any = [&](auto has) { return std::ranges::any_of(report.pairs, has); };
+  if (any([](const MethodPair& one) { return one.p_holm.has_value(); })) {
+    all.push_back({"Over all pairs of methods p was adjusted by Holm's method.", {Source::holm}});
+  }
+  if (any([](const MethodPair& one) { return one.odds_ratio.has_value(); })) {
+    all.push_back({"Odds ratios were stratified by participant.",
+                   {Source::mantel_haenszel, Source::robins_breslow_greenland}});
+  }
+  if (report.together) {
+    all.push_back(
+        {"All methods together were compared by Cochran's Q and by exchanging methods "
+         "within participants.",
+         {Source::cochran, Source::phipson_smyth}});
+  }
+}
+
+void add_confusions(const StudyReport& report, Sentences& all) {
+  const auto any = [&](auto has) { return std::ranges::any_of(report.methods, has); };
+  if (any([](const MethodReport& one) { return one.choice.has_value(); })) {
+    all.push_back(
+        {"Confusions were described by the similarity choice model, by information "
+         "transfer with a correction for its bias, and by unbiased hit rates.",
+         {Source::luce, Source::townsend_landon, Source::miller, Source::wagner}});
+  }
+  if (any([](const MethodReport& one) { return one.d_prime.estimate.has_value(); })) {
+    all.push_back({"d′ was computed from pooled trials as that of as many alternatives.",
+                   {Source::green_swets, Source::hacker_ratcliff}});
+  }
+  if (any([](const MethodReport& one) { return one.confidence.has_value(); })) {
+    all.push_back(
+        {"Whether confidence told right from wrong answers is the area under the type 2 "
+         "curve.",
+         {Source::fleming_lau}});
+  }
+  if (report.cues) {
+    all.push_back(
+        {"Ideal observers, each with one cue of the recorded forces, were compared with "
+         "participants by the divergence of their confusions.",
+         {Source::lin}});
+  }
+}
+
+}  // namespace
+
+ProtocolMethods protocol_methods(const StudyReport& report, const Outcomes& outcomes) {
+  const study::Study& study = outcomes.design;
+  ProtocolMethods methods;
+  methods.trial = {{trial_sentence(study)}};
+  methods.sequence = {{number_words(study)},
+                      {images_words(study)},
+                      {blocks_words(study)},
+                      {unscored_words(study.trials)}};
+  add_accuracy(report, methods.statistics);
+  add_comparison(report, methods.statistics);
+  add_confusions(report, methods.statistics);
+  return methods;
+}
+
+}  // namespace touchtrial::analysis::identification

@@ -1,0 +1,40 @@
+/// \file The numbers of a rating study, for its page and its results.json.
+#pragma once
+
+#include "analysis/report/measure.hpp"
+#include "protocols/rating/analysis/report.hpp"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace touchtrial::analysis::rating {
+
+/// Decimals of ratings in tables and sentences.
+inline constexpr int kRatingDecimals = 2;
+inline constexpr int kCorrelationDecimals = 2;
+
+/// \name Lists that refer to a report, which must outlive them.
+/// \{
+
+[[nodiscard]] MeasureList<ItemMean> item_measures(const RatingReport& report);
+[[nodiscard]] MeasureList<MethodDifference> difference_measures(const RatingReport& report);
+[[nodiscard]] MeasureList<CatchRating> catch_measures(const RatingReport& report);
+/// Of each participant, by the index into RatingReport::people.
+[[nodiscard]] MeasureList<std::size_t> use_measures(const RatingReport& report,
+                                                    const ScaleReport& scale);
+
+/// \}
+
+/// \param member  of results.json: "method"
+/// \param labels  by GroupMean::group; must outlive the list
+[[nodiscard]] MeasureList<GroupMean> group_measures(const std::string& member,
+                                                    const std::vector<std::string>& labels);
+
+/// Student's t of a difference; nothing if all differences are the same.
+[[nodiscard]] std::optional<TStatistic> statistic_of(const MethodDifference& difference);
+
+/// The indices of the participants.
+[[nodiscard]] std::vector<std::size_t> people_of(const RatingReport& report);
+
+}  // namespace touchtrial::analysis::rating

@@ -1,0 +1,290 @@
+/// \file The study file's "registration".
+#include "core/text.hpp"
+#include "study/deviation_codes.hpp"
+#include "study/study_sections.hpp"
+
+#include <algorithm>
+#include <span>
+
+namespace touchtrial::study {
+namespace {
+
+constexpr int kMaxParticipants = 100'000;
+constexpr std::size_t kMaxCodes = 64;
+constexpr std::size_t kLongestCode = 64;  // bytes
+constexpr NumberRange kShare{.low = 0.0, .high = 1.0, .open_low = true};
+constexpr NumberRange kDecibels{0.0, 200.0, true};
+constexpr double kMinAlpha = 1e-6;
+
+constexpr TextRule kStatement = kParagraphs<4000>;
+
+constexpr TextRule kDeviation{
+    .check =
+        [](const JsonValue& place) {
+          if (is_deviation_code(read_line(place, kLongestCode))) return;
+          place.refuse("is no code that the program records, which are " + listed(kDeviationCodes) +
+                       " and no-day-sheet-1, ..; a code that experimenters enter belongs in "
+                       "\"own_deviations\"");
+        },
+    .min_length = 1,
+    .max_length = kLongestCode};
+
+/// The codes of a list, of which `deviations` has the program's first.
+void describe_codes(ObjectIo& io, std::string_view key, const TextRule& rule, bool is_written,
+                    std::vector<std::string>& codes, std::string_view meaning) {
+  io.list(key, codes, {.most = kMaxCodes},
+          {.meaning = meaning, .written = is_written, .range = "up to 64 codes"},
+          [&rule](ValueIo& value, std::string& code) { value.text(code, rule); });
+}
+
+void describe_exclusion_rules(ObjectIo& io, ExclusionRules& rules) {
+  const auto own = std::ranges::find_if_not(rules.deviations, is_deviation_code);
+  std::vector<std::string> programs(rules.deviations.begin(), own);
+  std::vector<std::string> laboratory(own, rules.deviations.end());
+  describe_codes(io, "deviations", kDeviation, true, programs,
+                 "a session with one of these [deviations](data-dictionary.md) is left out; a code "
+                 "that the program does not record is refused");
+  describe_codes(io, "own_deviations", kLine<kLongestCode>, !laboratory.empty(), laboratory,
+                 "the same for codes of your own, which experimenters enter during a session or "
+                 "with `note --deviation`");
+  rules.deviations = programs;
+  rules.deviations.insert(rules.deviations.end(), laboratory.begin(), laboratory.end());
+  std::stable_partition(rules.deviations.begin(), rules.deviations.end(), is_deviation_code);
+  io.number("invalid_trials", rules.invalid_trials, {.low = 0.0, .high = 1.0},
+            {"a session with a larger share of trials that break the validity rule is left out"});
+  io.optional("missed_catch", rules.missed_catch,
+              {.meaning = "a session with more catch trials without the right answer is left out; "
+                          "of protocols whose catch trials have a right answer (thresholds). "
+                          "Nobody sees that before unblinding, so the report itself leaves it out "
+                          "of the registered question, excluded or not",
+               .range = "0 to 1,000, below the catch trials of a session"},
+              [](ValueIo& value, int& trials) { value.integer(trials, 0, 1000); });
+}
+
+void describe_standard(ObjectIo& io, RegisteredStandard& standard) {
+  std::optional<std::string> label;
+  if (!standard.label.empty()) label = standard.label;
+  io.optional("class", label, {"label of a class; may be left out if the study has one"},
+              [](ValueIo& value, std::string& text) { value.text(text, kPlainName); });
+  standard.label = label.value_or("");
+  io.number("value", standard.value, {-200.0, 200.0},
+            {"one of the study's `standards`; may be left out if there is one"});
+}
+
+constexpr std::string_view kAnalysisKeys[] = {
+    "methods",         "standards", "test",           "sides",    "alpha",
+    "smallest_effect", "margin",    "looks",          "spending", "smallest_effect_db",
+    "margin_db",       "visits",    "exclusion_rules"};
+
+/// The keys of some estimands alone.
+constexpr std::string_view kKeysOfAccuracies[] = {"methods", "smallest_effect", "margin"};
+constexpr std::string_view kKeysOfThresholds[] = {"standards", "smallest_effect_db", "margin_db"};
+constexpr std::string_view kKeysOfTests[] = {"test",     "sides",     "looks",
+                                             "spending", "margin_db", "smallest_effect_db"};
+
+void refuse_keys(const JsonObject& object, std::span<const std::string_view> keys,
+                 const std::string& what) {
+  for (const std::string_view key : keys) {
+    if (const auto member = object.find(key)) member->refuse(what);
+  }
+}
+
+/// Refuses keys that mean nothing for the estimand.
+void check_keys(const JsonObject& object, Estimand estimand) {
+  const std::string of = " \"" + std::string(name_of(estimand)) + "\"; remove it";
+  if (!is_of_thresholds(estimand)) {
+    return refuse_keys(object, kKeysOfThresholds, "is about thresholds, and not about" + of);
+  }
+  refuse_keys(object, kKeysOfAccuracies, "is about right answers, and not about" + of);
+  if (estimand == Estimand::mean_threshold) {
+    return refuse_keys(
+        object, kKeysOfTests,
+        "belongs to a test; \"mean-threshold\" is an estimate without one: remove it");
+  }
+  const auto refuse = [&](const char* key, const char* what) {
+    if (const auto member = object.find(key)) member->refuse(what);
+  };
+  if (estimand == Estimand::threshold_difference) {
+    return refuse("margin_db", "belongs to \"threshold-equality\"; remove it, or register that");
+  }
+  refuse("sides", "belongs to no equality, which is two one-sided tests; remove it");
+  refuse("smallest_effect_db", "is given for an equality, whose size is \"margin_db\"; remove it");
+  static_cast<void>(object.at("margin_db"));
+}
+
+/// The usual test of an estimand. Flips of signs are about 0, so a margin needs a t test.
+RegisteredAnalysis usual_analysis(Estimand estimand, bool has_margin, RegisteredTest usual_test) {
+  RegisteredAnalysis analysis;
+  analysis.estimand = estimand;
+  if (estimand == Estimand::mean_accuracy) return analysis;
+  if (is_of_thresholds(estimand)) {
+    analysis.one_sided = estimand == Estimand::threshold_equality;
+    return analysis;
+  }
+  analysis.test =
+      has_margin && usual_test == RegisteredTest::sign_flip ? RegisteredTest::t : usual_test;
+  analysis.one_sided = has_margin;
+  return analysis;
+}
+
+/// A number that has one key of right answers, and one of thresholds.
+void describe_size(ObjectIo& io, std::string_view key, std::optional<double>& size,
+                   const NumberRange& range, bool is_here, const About& about) {
+  std::optional<double> own = is_here ? size : std::nullopt;
+  io.number(key, own, range, about);
+  if (own) size = own;
+}
+
+void describe_sizes(ObjectIo& io, RegisteredAnalysis& analysis) {
+  const bool of_thresholds = is_of_thresholds(analysis.estimand);
+  describe_size(io, "smallest_effect", analysis.smallest_effect, kShare, !of_thresholds,
+                {"smallest value worth having: an accuracy above chance (0.4: 40 % right), or a "
+                 "difference (0.07: 7 points)"});
+  describe_size(io, "margin", analysis.margin, kShare, !of_thresholds,
+                {"of a difference, in place of `smallest_effect`: the first method is as good as "
+                 "the second if it is worse by less than this "
+                 "([non-inferiority](statistics.md#as-good-by-a-margin)); one-sided, by `t` or "
+                 "`crossover`"});
+  describe_size(io, "smallest_effect_db", analysis.smallest_effect, kDecibels, of_thresholds,
+                {"of `threshold-difference`: smallest difference worth having"});
+  describe_size(io, "margin_db", analysis.margin, kDecibels, of_thresholds,
+                {.meaning = "of `threshold-equality`, which needs it: the thresholds are the same "
+                            "if every difference of two is less, either way",
+                 .otherwise = "none"});
+}
+
+/// Which test, at how many looks.
+void describe_test(ObjectIo& io, RegisteredAnalysis& analysis) {
+  const bool has_test = analysis.estimand != Estimand::mean_threshold;
+  io.choice("test", analysis.test, kRegisteredTestNames,
+            {.meaning = "Student's t test over participants, exact sign flips of a difference, or "
+                        "the [period-adjusted t "
+                        "test](statistics.md#two-methods-in-blocks) of two methods in "
+                        "blocks",
+             .written = has_test,
+             .otherwise = "`t`; for a difference `crossover` if two methods are in blocks, else "
+                          "`sign-flip`, or `t` with a margin"});
+  io.choice("sides", analysis.one_sided, kSidesNames,
+            {.meaning = "one-sided, against larger values, or two-sided",
+             .written = has_test && analysis.estimand != Estimand::threshold_equality,
+             .otherwise = "`one`; `two` for a difference without margin"});
+  io.list("looks", analysis.looks, {.most = 20},
+          {.meaning = "numbers of participants at which the answer to the registered question is "
+                      "looked at before the end (`unblind --interim`), ascending, below "
+                      "`participants`",
+           .written = has_test},
+          [](ValueIo& value, int& look) { value.integer(look, 2, kMaxParticipants); });
+  io.rule([&analysis](const JsonValue& place, const JsonObject& /*object*/) {
+    const auto falling = std::ranges::adjacent_find(analysis.looks, std::greater_equal<>());
+    if (falling == analysis.looks.end()) return;
+    place.refuse_below("/looks/" + std::to_string(falling + 1 - analysis.looks.begin()),
+                       "is not more than the look before; list looks in ascending order");
+  });
+  io.choice("spending", analysis.spending, kSpendingNames,
+            {.meaning = "how alpha is spent over the looks (Lan and DeMets)", .written = has_test});
+}
+
+void describe_analysis(ObjectIo& io, RegisteredAnalysis& analysis) {
+  const bool of_thresholds = is_of_thresholds(analysis.estimand);
+  io.list("methods", analysis.methods, {.most = 2},
+          {.meaning = "of a difference: the first less the second",
+           .written = !of_thresholds,
+           .otherwise = "the study's two",
+           .range = "none or two labels"},
+          [](ValueIo& value, std::string& label) { value.text(label, kPlainName); });
+  io.list("standards", analysis.standards, {.most = 64},
+          {.meaning = "of thresholds: a difference is the first less the second. `class` (label) "
+                      "or `value` (one of the study's `standards`) may be left out where the "
+                      "study has one",
+           .written = of_thresholds,
+           .otherwise = "all of the study",
+           .range = "`class` and `value`"},
+          [](ValueIo& value, RegisteredStandard& one) { value.part(one, describe_standard); });
+  io.number("alpha", analysis.alpha, {.low = kMinAlpha, .high = 0.5},
+            {"error rate of the test over all looks"});
+  describe_sizes(io, analysis);
+  describe_test(io, analysis);
+  io.optional(
+      "exclusion_rules", analysis.exclusion_rules,
+      {"all rules that leave a session out, besides that it was stopped or its "
+       "participant withdrew"},
+      [](ValueIo& value, ExclusionRules& rules) { value.part(rules, describe_exclusion_rules); });
+  io.choice("visits", analysis.visits, kRegisteredVisitsNames,
+            {.meaning = "in a study with several visits: those that enter the analysis. `all`: a "
+                        "participant's accuracy is that of the trials of all visits together. With "
+                        "`first`, whoever had the first visit counts",
+             .if_changed = true});
+}
+
+}  // namespace
+
+RegisteredTest usual_test_of(const Study& study) {
+  return study.presented_methods() == 2 && study.trials.blocks == Blocks::by_method
+             ? RegisteredTest::crossover
+             : RegisteredTest::sign_flip;
+}
+
+std::string_view name_of(Estimand estimand) {
+  return name_in(kEstimandNames, estimand);
+}
+
+std::string_view name_of(RegisteredTest test) {
+  return name_in(kRegisteredTestNames, test);
+}
+
+std::string_view name_of(Spending spending) {
+  return name_in(kSpendingNames, spending);
+}
+
+void describe(ObjectIo& io, Registration& registration, RegisteredTest usual_test) {
+  io.text("hypothesis", registration.hypothesis, kStatement,
+          {"the expected result, stated so that data can contradict it"});
+  io.integer("participants", registration.participants, 0, kMaxParticipants,
+             {"planned number; 0: not stated"});
+  io.text("stopping_rule", registration.stopping_rule, kStatement, {"when data collection ends"});
+  io.text("exclusions", registration.exclusions, kStatement,
+          {"who is excluded, in addition to the validity rule of trials"});
+  io.text("primary_test", registration.primary_test, kStatement,
+          {"the test that decides on the hypothesis"});
+  std::optional<Estimand> estimand;
+  if (registration.analysis) estimand = registration.analysis->estimand;
+  io.optional(
+      "estimand", estimand,
+      {.meaning = "what is estimated: the mean over participants of the share of right answers, "
+                  "against chance, or of the accuracy with one method less that with another; or "
+                  "[of thresholds](thresholds.md#the-registered-question) the mean at one "
+                  "standard, the difference of two, or the equality of two or more. A protocol's "
+                  "report answers some of them, and a study cannot register another; ratings have "
+                  "none",
+       .otherwise = "none"},
+      [](ValueIo& value, Estimand& one) { value.choice(one, kEstimandNames); });
+  io.rule([&](const JsonValue& /*place*/, const JsonObject& object) {
+    if (!estimand) {
+      return refuse_keys(object, kAnalysisKeys,
+                         "is given without \"estimand\"; say what is estimated, or remove it");
+    }
+    check_keys(object, *estimand);
+    registration.analysis =
+        usual_analysis(*estimand, object.find("margin").has_value(), usual_test);
+  });
+  RegisteredAnalysis none;
+  describe_analysis(io, registration.analysis ? *registration.analysis : none);
+  io.integer("safety_record_years", registration.safety_record_years, 0, 100,
+             {"years after a session that its safety record is kept when the participant's data "
+              "are erased (`withdraw --erase`); in clear in every database"});
+}
+
+nlohmann::json to_json(const Registration& registration) {
+  Registration copy = registration;
+  Registration usual;
+  usual.analysis.emplace();
+  nlohmann::json text =
+      written_section([&](ObjectIo& io) { describe(io, copy, RegisteredTest::t); },
+                      [&](ObjectIo& io) { describe(io, usual, RegisteredTest::t); });
+  if (!registration.analysis) {
+    for (const std::string_view key : kAnalysisKeys) text.erase(std::string(key));
+  }
+  return text;
+}
+
+}  // namespace touchtrial::study

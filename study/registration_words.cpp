@@ -1,0 +1,144 @@
+#include "study/registration_words.hpp"
+
+#include "core/text.hpp"
+#include "study/study_sections.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace touchtrial::study {
+namespace {
+
+using Field = std::pair<std::string, std::string>;
+
+/// A hundred times the share, without the binary digits of 7.000000000000001.
+std::string per_cent_text(double share) {
+  return number_text(std::round(1e10 * share) / 1e8);
+}
+
+/// "bark at -18", or what of it is named.
+std::string standard_words(const RegisteredStandard& standard) {
+  if (!standard.value) return standard.label;
+  return standard.label + (standard.label.empty() ? "" : " at ") + number_text(*standard.value);
+}
+
+std::string threshold_words(const RegisteredAnalysis& analysis) {
+  std::vector<std::string> standards;
+  for (const RegisteredStandard& one : analysis.standards) standards.push_back(standard_words(one));
+  const std::string mean = "mean over participants of the threshold";
+  switch (analysis.estimand) {
+    case Estimand::mean_threshold:
+      return mean + (standards.empty() ? "" : ", standard " + standards.front());
+    case Estimand::threshold_difference:
+      if (standards.empty()) return mean + " at the first standard less that at the second";
+      return mean + ", standard " + standards.front() + " less standard " + standards.back();
+    default:
+      break;
+  }
+  return "equality of the thresholds of " +
+         (standards.empty() ? "all standards" : "the standards " + listed(standards, " and ")) +
+         ": means over participants of all differences of two";
+}
+
+std::string name_in_words(RegisteredTest test) {
+  using enum RegisteredTest;
+  static constexpr auto kNames = std::to_array<Named<RegisteredTest>>(
+      {{"exact sign flips over participants", sign_flip},
+       {"period-adjusted t test over participants (period differences compared between the "
+        "two "
+        "orders of methods), checked by a permutation of orders within the blocks in which "
+        "they were dealt",
+        crossover},
+       {"Student's t test over participants", t}});
+  return std::string(name_in(kNames, test));
+}
+
+Field margin_field(const RegisteredAnalysis& analysis) {
+  const std::string level = per_cent_text(1.0 - 2.0 * analysis.alpha) + " %";
+  if (is_of_thresholds(analysis.estimand)) {
+    return {"margin", "the same if every difference is less than " + number_text(*analysis.margin) +
+                          " dB either way; decided by the " + level +
+                          " intervals; nothing follows if more than half of the participants have "
+                          "no threshold at one of the standards"};
+  }
+  return {"margin", "as good if worse by less than " + per_cent_text(*analysis.margin) +
+                        " points; decided by the " + level +
+                        " t interval, and only if both methods are above chance"};
+}
+
+}  // namespace
+
+std::string estimand_words(const RegisteredAnalysis& analysis) {
+  if (is_of_thresholds(analysis.estimand)) return threshold_words(analysis);
+  if (analysis.estimand == Estimand::mean_accuracy) {
+    return "mean over participants of the share of right answers, against chance";
+  }
+  const std::string of =
+      analysis.methods.empty()
+          ? " with the first method less that with the second"
+          : " with " + analysis.methods[0] + " less that with " + analysis.methods[1];
+  return "mean over participants of the accuracy" + of;
+}
+
+std::string test_words(const RegisteredAnalysis& analysis) {
+  if (analysis.estimand == Estimand::mean_threshold) return "none: an estimate with its interval";
+  if (analysis.estimand == Estimand::threshold_equality) {
+    return name_in_words(analysis.test) +
+           ", two one-sided for every difference, all of which must reject";
+  }
+  return name_in_words(analysis.test) + (analysis.one_sided ? ", one-sided" : ", two-sided");
+}
+
+std::string looks_words(const RegisteredAnalysis& analysis) {
+  if (analysis.looks.empty()) return "none";
+  std::vector<std::string> looks;
+  for (const int look : analysis.looks) looks.push_back(std::to_string(look));
+  return "at " + listed(looks, " and ") + " participants; levels by Lan and DeMets, spending of " +
+         (analysis.spending == Spending::pocock ? "Pocock's" : "O'Brien and Fleming's") + " kind";
+}
+
+std::string rules_words(const ExclusionRules& rules) {
+  std::vector<std::string> words = rules.deviations;
+  for (std::string& code : words) code = "a deviation " + in_quotes(code);
+  if (rules.invalid_trials) {
+    words.push_back("more than " + per_cent_text(*rules.invalid_trials) + " % of trials not valid");
+  }
+  if (rules.missed_catch) {
+    words.push_back("more than " + counted(*rules.missed_catch, "missed catch trial"));
+  }
+  if (words.empty()) return "none, besides sessions stopped early and participants who withdrew";
+  return "a session with " + listed(words, " or ") +
+         "; besides sessions stopped early and participants who withdrew";
+}
+
+std::pair<std::string, std::string> size_field(const RegisteredAnalysis& analysis) {
+  if (analysis.margin) return margin_field(analysis);
+  const auto worth = [&]() -> std::string {
+    if (!analysis.smallest_effect) return "not stated";
+    if (is_of_thresholds(analysis.estimand)) return number_text(*analysis.smallest_effect) + " dB";
+    const bool accuracy = analysis.estimand == Estimand::mean_accuracy;
+    return per_cent_text(*analysis.smallest_effect) + (accuracy ? " % right" : " points");
+  };
+  return {"smallest worth having", worth()};
+}
+
+std::vector<std::pair<std::string, std::string>> fields_of(const Registration& registration) {
+  if (!registration.analysis) return {};
+  const RegisteredAnalysis& analysis = *registration.analysis;
+  const Field size = size_field(analysis);
+  std::vector<std::pair<std::string, std::string>> fields = {
+      {"estimand", estimand_words(analysis)},
+      {"test", test_words(analysis)},
+      {"alpha", number_text(analysis.alpha)},
+      size,
+      {"interim looks", looks_words(analysis)},
+      {"exclusion rules",
+       analysis.exclusion_rules ? rules_words(*analysis.exclusion_rules) : "not stated"}};
+  if (analysis.visits != RegisteredVisits::all) {
+    const bool first = analysis.visits == RegisteredVisits::first;
+    fields.emplace_back("visits", first ? "the first alone" : "the last alone");
+  }
+  return fields;
+}
+
+}  // namespace touchtrial::study

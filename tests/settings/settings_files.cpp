@@ -1,0 +1,137 @@
+/// \file The JSON Schemas of config/schema and the tables of settings in docs, made from the
+/// descriptions that the readers follow.
+///
+///     settings_files check ROOT   says which of them are not as the descriptions make them
+///     settings_files write ROOT   writes them
+///     settings_files judge KIND   reads a settings file from each line, writes the reader's
+///     refusal
+#include "core/describe.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "device/device_settings.hpp"
+#include "device/model/device_model.hpp"
+#include "device/settings_schemas.hpp"
+#include "protocols/registration/registration.hpp"
+#include "protocols/simulation/subject_model.hpp"
+#include "protocols/simulation/subject_schema.hpp"
+#include "study/study.hpp"
+#include "study/study_schema.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <string_view>
+
+namespace touchtrial {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A kind of settings file.
+struct Kind {
+  std::string_view name;  ///< of its schema
+  std::string (*schema)();
+  void (*read)(const std::string& text);
+};
+
+constexpr Kind kKinds[] = {
+    {"study", study::study_schema,
+     [](const std::string& text) { static_cast<void>(study::parse_study(text, "", "file")); }},
+    {"subject", simulation::subject_model_schema,
+     [](const std::string& text) {
+       static_cast<void>(simulation::parse_subject_model(text, "file"));
+     }},
+    {"devices", device::device_settings_schema,
+     [](const std::string& text) {
+       static_cast<void>(device::parse_device_settings(text, "/lab", "file"));
+     }},
+    {"device-model", device::device_model_schema,
+     [](const std::string& text) { static_cast<void>(device::parse_device_model(text, "file")); }}};
+
+const Kind& kind_of(std::string_view name) {
+  const Kind* const kind = std::ranges::find(kKinds, name, &Kind::name);
+  if (kind == std::end(kKinds))
+    throw UsageError("no kind of settings is called " + std::string(name));
+  return *kind;
+}
+
+/// The page with its tables made anew. A table stands between the lines
+/// `<!-- settings: KIND /pointer -->` or `<!-- settings: KIND /pointer with inner keys -->` and
+/// `<!-- end of settings -->`.
+std::string with_tables(const std::string& page) {
+  constexpr std::string_view kBegins = "<!-- settings: ";
+  constexpr std::string_view kEnds = "<!-- end of settings -->\n";
+  constexpr std::string_view kInner = " with inner keys";
+  std::string text;
+  std::size_t at = 0;
+  for (std::size_t mark = page.find(kBegins); mark != page.npos; mark = page.find(kBegins, at)) {
+    const std::size_t line_ends = page.find('\n', mark) + 1;
+    std::string what = page.substr(mark + kBegins.size(), line_ends - mark - kBegins.size() - 5);
+    const bool nested = what.ends_with(kInner);
+    if (nested) what.resize(what.size() - kInner.size());
+    const std::size_t space = what.find(' ');
+    const std::string pointer = space == what.npos ? "" : what.substr(space + 1);
+    text += page.substr(at, line_ends - at) + "\n" +
+            table_of_settings(kind_of(what.substr(0, space)).schema(), pointer, nested) + "\n";
+    at = page.find(kEnds, line_ends);
+    if (at == page.npos) throw UsageError("a table of settings has no end: " + what);
+  }
+  return text + page.substr(at);
+}
+
+/// \return whether the file was as it should be
+bool settle(const fs::path& file, const std::string& wanted, bool writes) {
+  if (is_there(file) && text_of(read_file(file)) == wanted) return true;
+  if (writes) replace_file(file, wanted);
+  std::cout << file.string()
+            << (writes ? " is written\n" : " is not as the descriptions have it\n");
+  return writes;
+}
+
+bool settle_all(const fs::path& root, bool writes) {
+  bool is_right = true;
+  for (const Kind& kind : kKinds) {
+    const std::string name = std::string(kind.name) + ".schema.json";
+    is_right &= settle(root / "config" / "schema" / name, plain_schema(kind.schema()), writes);
+  }
+  for (const auto& page : fs::recursive_directory_iterator(root / "docs")) {
+    if (page.path().extension() != ".md") continue;
+    is_right &= settle(page.path(), with_tables(text_of(read_file(page.path()))), writes);
+  }
+  if (!is_right) std::cout << "run `settings_files write ROOT`, tests/settings\n";
+  return is_right;
+}
+
+void judge(const Kind& kind) {
+  for (std::string line; std::getline(std::cin, line);) {
+    try {
+      kind.read(line);
+      std::cout << '\n';
+    } catch (const StudyError& error) {
+      std::cout << error.what() << '\n';
+    }
+  }
+}
+
+int run(std::string_view task, const std::string& what) {
+  registration::register_protocols();
+  if (task == "judge") {
+    judge(kind_of(what));
+    return 0;
+  }
+  return settle_all(what, task == "write") ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace touchtrial
+
+int main(int count, char** words) {
+  if (count != 3) return 2;
+  try {
+    return touchtrial::run(words[1], words[2]);
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+    return 1;
+  }
+}
