@@ -318,8 +318,8 @@ TEST_CASE("a missing database is recreated only on request") {
   MondayStation desk;
   for (const char* const name : {"study.db", "study.db.head"}) fs::remove(desk.study() / name);
   const std::string waiting = monday_block(kDead, 0).at(1);
-  desk.check_refusal(waiting, {"study.db: ", "media/stick/study.db.head",
-                               "18 answers acknowledged", "--accept-loss"});
+  desk.check_refusal(waiting, {"study.db: ", "media/stick/study.db.head", "18 answers acknowledged",
+                               "--accept-loss"});
   CHECK_FALSE(fs::exists(desk.study() / "study.db"));
   check_went_on(desk.follow(kOlder), "P07");
   CHECK_THAT(desk.check_holds().output, holds_text("18 acknowledged answers are missing"));
