@@ -26,7 +26,7 @@ constexpr const char* kGrey = "grey levels";
 constexpr double kOurTolerance_grey = 4e-5;
 /// filter2D uses the Fourier transform for masks of 11 x 11 and more.
 constexpr double kPeerTolerance_grey = 2e-3;
-/// A sub-band reaches 510, where the last bit of a float is 3e-5.
+/// Sub-bands reach 510, where the last bit of a float is 3e-5.
 constexpr double kBandTolerance_grey = 3e-4;
 constexpr int kWideRadius = 7;
 constexpr int kLargeSize_px = 4096;

@@ -1,5 +1,4 @@
-/// \file The input images, and their results in double precision, against which all others are
-/// compared.
+/// \file The input images, and reference results in double precision.
 #pragma once
 
 #include "core/plane.hpp"
@@ -14,8 +13,8 @@ namespace touchtrial::bench {
 /// \throws FileError if one is missing
 [[nodiscard]] std::vector<GreyImage> shipped_pictures();
 
-/// A square of any size from the picture on which times are taken, bark.png unless another is
-/// chosen: its first samples, continued beyond the edge by mirror images, so that there is no seam.
+/// A square of any size from the picture for timing, bark.png by default. It is extended beyond the
+/// edge by mirror images, so that there is no seam.
 [[nodiscard]] GreyImage timed_image(int size_px);
 /// \throws FileError if the picture cannot be read
 void choose_timed_picture(const std::filesystem::path& path);
@@ -33,7 +32,7 @@ class ExtractionTruth {
   engine::Extraction<double> truth_;
 };
 
-/// TV-Gabor's default options, but for a gap that no solver reaches.
+/// TV-Gabor's default options, except for a gap that no solver reaches.
 inline const engine::TvGaborOptions kEndless{.gap = -1.0};
 
 /// TV-Gabor's v under the default options after hundreds of steps in double.

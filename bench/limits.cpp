@@ -60,8 +60,8 @@ using Real = hn::Vec<Reals>;
 
 constexpr std::size_t kBlock = hn::MaxLanes(Shorts());
 
-/// Sums of the neighbours in one ring and the centre give the difference; two of them, mixed by
-/// Horner's rule with an order for each pixel, the texture.
+/// A ring's difference is a sum over its neighbours and the centre. Horner's rule combines two of
+/// them, with an order for each pixel, to the texture.
 HWY_INLINE Real rings_of(Short ring_1, Short ring_2, Real order, bool upper) {
   const Reals d;
   const Longs wide;
@@ -144,7 +144,7 @@ float arithmetic(std::size_t pixels) {
     whole_before = hn::Xor(low_whole, inner_before);
     root_before = hn::Xor(high_root, outer_before);
     order = hn::Max(order, hn::Mul(textures, hn::Set(d, 1e-9F)));
-    // Not the same sums in every turn.
+    // Makes the sums differ between turns.
     hn::Store(hn::Xor(x0, x4), shorts, rows[i / (2 * kBlock) % 2]);
   }
   return hn::GetLane(hn::SumOfLanes(d, hn::Add(textures, hn::ConvertTo(d, bands))));

@@ -36,7 +36,7 @@ struct Arguments {
   bool quick = false;
 };
 
-/// A case whose job is made when it is first measured, and kept.
+/// A case whose job is created when it is first measured, and then kept.
 class MadeCase {
  public:
   /// \param goal  of the case's row; none for peers and bounds
@@ -49,7 +49,7 @@ class MadeCase {
 
   void measure(benchmark::State& state) {
     const tbb::global_control threads(kThreads, static_cast<std::size_t>(case_.threads));
-    run(1);  // finds the caches as it leaves them itself
+    run(1);  // warms the caches
     if (job_->error && !error_) error_ = job_->error();
     if (error_.value_or(0.0) > case_.tolerance) {
       return state.SkipWithError("its error is so large that it computes something else");

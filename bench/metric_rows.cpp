@@ -28,10 +28,10 @@ namespace {
 constexpr double kMsSsimTolerance = 1e-4;
 /// All statistics except contrast are at most a few units.
 constexpr double kGlcmTolerance = 1e-9;
-/// Relative to v; solvers that stop early are far from it.
+/// Relative to v; large because some solvers stop early.
 constexpr double kTvGaborTolerance = 0.5;
 constexpr double kGoalOfV = 1e-3;
-/// ADMM computes its own gap at every tenth step, so that only this interval costs nothing extra.
+/// ADMM computes its gap at every tenth step, so checking at this interval is free.
 constexpr int kAdmmRhythm = 10;
 constexpr int kMaxAdmmSteps = 300;
 constexpr int kQuickPictures = 2;
@@ -124,7 +124,7 @@ Row glcm_row() {
           .error_unit = "relative"};
 }
 
-/// After how many steps ADMM in single precision comes as close to v as the goal asks for.
+/// The number of steps after which ADMM in single precision reaches the goal's distance to v.
 int steps_to_goal(const GreyImage& image) {
   const Plane<double> truth = tv_gabor_truth(image);
   engine::TvGaborSolver<float> solver(image, kEndless);
@@ -167,8 +167,8 @@ Case admm_to_goal() {
   });
 }
 
-/// FFTW's transforms of one size, there and back. They are planned by measurement, unlike the
-/// engine's: a bound need not give the same digits twice.
+/// FFTW's forward and backward transforms of one size. Unlike the engine's, they are planned by
+/// measurement, because a bound need not be reproducible.
 class MeasuredTransforms {
  public:
   explicit MeasuredTransforms(int side)
@@ -176,7 +176,7 @@ class MeasuredTransforms {
         spectrum_(fftwf_alloc_complex(area(side, side / 2 + 1))),
         forward_(fftwf_plan_dft_r2c_2d(side, side, samples_, spectrum_, FFTW_MEASURE)),
         inverse_(fftwf_plan_dft_c2r_2d(side, side, spectrum_, samples_, FFTW_MEASURE)) {
-    // Zeros stay zeros, and take no less time than other samples.
+    // Zeros stay zeros and take the same time as other samples.
     std::fill_n(samples_, area(side, side), 0.0F);
   }
   ~MeasuredTransforms() {
@@ -206,7 +206,7 @@ class MeasuredTransforms {
   fftwf_plan inverse_;
 };
 
-/// The transforms of as many steps and their checks, there and back.
+/// The forward and backward transforms of the same number of steps with their checks.
 Case transforms() {
   Case one = timed(
       "transforms",
@@ -219,7 +219,7 @@ Case transforms() {
   return one;
 }
 
-/// The greatest number of steps to the goal over the pictures that fill their frame.
+/// The largest number of steps to the goal over the pictures that fill their frame.
 double steps_on_pictures(bool quick) {
   std::vector<GreyImage> pictures = shipped_pictures();
   if (quick) pictures.resize(kQuickPictures);

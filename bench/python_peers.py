@@ -1,5 +1,5 @@
-"""Run times of the Python module beside the C++ call, PyWavelets and scikit-image, as medians of
-rounds in which everything is measured in turn. Called by scripts/bench-python."""
+"""Run times of the Python module, the C++ call, PyWavelets and scikit-image, as medians of interleaved rounds. Called
+by scripts/bench-python."""
 
 import statistics
 import sys

@@ -1,5 +1,5 @@
-/// \file The benchmark's table. A row is a piece of work by the engine, beside the same work by peers,
-/// what the machine cannot do faster, and the goal.
+/// \file The benchmark's table. A row compares a job of the engine with the same job by peers, with
+/// the machine's bound, and with the goal.
 #pragma once
 
 #include <functional>
@@ -12,27 +12,27 @@
 
 namespace touchtrial::bench {
 
-/// A piece of work with its inputs and outputs, ready to run again and again.
+/// A job with its inputs and outputs, which can be run repeatedly.
 struct Job {
-  std::function<void()> run;  ///< overwrites the outputs of the former run; allocates no planes
-  /// The error of the last run's outputs against double precision; empty if it has no meaning.
+  std::function<void()> run;  ///< overwrites the previous outputs; allocates no planes
+  /// The error of the last run's outputs against double precision; empty if not defined.
   std::function<double()> error{};
-  /// What is counted, for instance steps; empty if nothing is.
+  /// A count, for instance of steps; empty if nothing is counted.
   std::function<double()> count{};
 };
 
-/// How a job's time is taken.
+/// How a job is timed.
 enum class Clock {
   processor,  ///< of the process, in all threads
-  wall,       ///< of work whose time includes the disk
-  none        ///< not at all: the job only has an error or a count
+  wall,       ///< for work that includes the disk
+  none        ///< not timed: the job only has an error or a count
 };
 
-/// A job that is not made yet, so that its inputs are in memory only while it is measured.
+/// A job that is created on demand, so that its inputs are in memory only while it is measured.
 struct Case {
   std::string who;  ///< "touchtrial", or for instance "OpenCV filter2D, f32"
   std::function<Job()> make;
-  /// A larger error means that the case computes something else.
+  /// A larger error means that the case does not compute the same result.
   double tolerance = std::numeric_limits<double>::infinity();
   std::string simd_target = {};  ///< to run on; "" for the best
   Clock clock = Clock::processor;
@@ -43,7 +43,7 @@ struct Case {
 
 using Cases = std::vector<Case>;
 
-/// A case on a state that is made with it.
+/// A case with its own state.
 /// \param make_state  returns the state: its inputs and outputs
 /// \param run  called with the state
 template <class MakeState, class Run>
@@ -85,7 +85,7 @@ struct Row {
   std::string what;
   Case ours;
   Cases peers = {};  ///< the first one is the goal's, the others are for the record
-  /// The machine's bounds by name. Several ways to one bound differ behind a comma: the fastest
+  /// The machine's bounds by name. Variants of one bound differ after a comma, and the fastest
   /// counts.
   Cases bounds = {};
   Goal goal = {};
@@ -95,7 +95,7 @@ struct Row {
 
 using Rows = std::vector<Row>;
 
-/// What the program was asked for.
+/// The options of the run.
 struct Scope {
   std::vector<std::string> simd_targets;  ///< of this machine, best first
   bool quick = false;                     ///< few repetitions and pictures
@@ -105,7 +105,7 @@ struct Scope {
 [[nodiscard]] Rows extraction_rows(const Scope& scope);
 /// MS-SSIM, co-occurrence statistics and TV-Gabor.
 [[nodiscard]] Rows metric_rows(const Scope& scope);
-/// What the servo computes in a tick: forces, kinematics, and all of it together.
+/// The servo's computations in a tick: forces, kinematics, and the whole tick.
 [[nodiscard]] Rows servo_rows();
 /// A whole simulated study.
 [[nodiscard]] Rows study_rows();

@@ -1,5 +1,5 @@
-// What the servo computes in a tick: a model's force, the kinematics of a Falcon, and all of it
-// together.
+// The servo's computations in a tick: a model's force, the kinematics of a Falcon, and the whole
+// tick.
 #include "app/commands/test_texture.hpp"
 #include "bench/inputs.hpp"
 #include "bench/rows.hpp"
@@ -32,7 +32,7 @@
 namespace touchtrial::bench {
 namespace {
 
-/// Places in one run, each so far from the last as a hand at 100 mm/s moves in a tick.
+/// The number of places in one run, spaced as for a hand that moves at 100 mm/s.
 constexpr int kPlaces = 10'000;
 constexpr double kStep_mm = 0.1;
 
@@ -124,8 +124,8 @@ Row falcon_row() {
   return row;
 }
 
-/// A stylus that comes down from 2 mm and strokes a plane 1 mm deep, at up to 90 mm/s in a closed
-/// figure of 10 s, whatever the force.
+/// A stylus on a prescribed path: it comes down from 2 mm and strokes a plane 1 mm deep at up to 90
+/// mm/s, in a closed figure of 10 s.
 class LedStylus final : public device::HapticDevice {
  public:
   explicit LedStylus(double side_mm) {
@@ -179,7 +179,7 @@ class ServiceClock final : public device::ServoClock {
   std::optional<Time> begin_;
 };
 
-/// Takes samples from a ring and encodes them as a session does, until it is told to end.
+/// Reads samples from a ring and encodes them as a session does, until `ending` is set.
 void encode_traces(device::SampleRing& ring, const std::atomic<bool>& ending) {
   constexpr std::size_t kSamplesOfTrace = 60'000;
   std::vector<device::ServoSample> batch(1024);

@@ -74,8 +74,8 @@ double simulate(int threads) {
   return std::round(static_cast<double>(fs::file_size(database)) / trials);
 }
 
-/// As many explorations as the study has trials, tick by tick: the hand and the force of a stimulus
-/// and nothing else. No servo, limit, sense, trace or answer, and nobody learns before.
+/// The bare explorations of the study's trials, tick by tick: only the hand and the stimulus force,
+/// without servo, limits, senses, traces, answers and training.
 void explore_alone() {
   const study::StudyKey& key = prepared().key;
   const simulation::SubjectModel subject = app::subject_for({}, key.study, {});

@@ -1,7 +1,7 @@
 # cmake -D SOURCE=.. -D TEMPLATE=.. -D OUTPUT=.. -P Commit.cmake
-# Writes OUTPUT with the commit of the tree SOURCE, unless it has that already. The commit comes from the
-# tree's own repository, never from one around it; without one from cmake/commit.txt, which `git archive`
-# fills in; without either it is empty. Nothing that git refuses is an error.
+# Writes OUTPUT with the commit of the tree SOURCE, unless it is up to date. The commit comes from the
+# tree's own repository, never from an enclosing one, or else from cmake/commit.txt, which `git archive`
+# fills in. Without either it is empty. Errors of git are ignored.
 set(COMMIT "")
 if(EXISTS "${SOURCE}/.git")
   # Hooks of git set these to the repository in which they run.

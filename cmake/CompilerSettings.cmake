@@ -10,8 +10,8 @@ if(MOLD_PROGRAM AND CMAKE_BUILD_TYPE STREQUAL "Debug" AND NOT CMAKE_INTERPROCEDU
   add_link_options(-fuse-ld=mold)
 endif()
 
-# Warnings are errors where CMAKE_COMPILE_WARNING_AS_ERROR is on: in the presets for writing code and in
-# continuous integration, never for users, whose compilers and libraries warn of other things.
+# Warnings are errors where CMAKE_COMPILE_WARNING_AS_ERROR is on: in developers' presets and in
+# continuous integration, but never for users, whose compilers and libraries may give other warnings.
 add_library(touchtrial_settings INTERFACE)
 target_compile_features(touchtrial_settings INTERFACE cxx_std_20)
 target_compile_options(touchtrial_settings INTERFACE
@@ -20,11 +20,11 @@ target_compile_options(touchtrial_settings INTERFACE
   # No contraction to fused multiply-add: results must not depend on the compiler's choices.
   -ffp-contract=off)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # GCC 12 sees overlapping copies in std::string's operator+ (its bug 105651).
+  # GCC 12 falsely reports overlapping copies in std::string's operator+ (its bug 105651).
   target_compile_options(touchtrial_settings INTERFACE -Wno-restrict)
   if(CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 13)
-    # GCC 13 and 14 see uninitialised values in copies of std::variant that are not there, and dangling
-    # references to what functions return that take a temporary key.
+    # GCC 13 and 14 falsely report uninitialised values in copies of std::variant, and dangling
+    # references from functions with a temporary argument.
     target_compile_options(touchtrial_settings INTERFACE -Wno-maybe-uninitialized -Wno-dangling-reference)
   endif()
 endif()
@@ -42,7 +42,7 @@ if(TOUCHTRIAL_SANITIZE)
     target_link_options(touchtrial_settings INTERFACE -Wl,--export-dynamic-symbol=dlclose)
   endif()
   if(TOUCHTRIAL_SANITIZE STREQUAL "thread")
-    # Stands in for oneTBB, whose own build the sanitizer cannot see into: tests/tsan/README.md.
+    # Replaces oneTBB, whose build is not instrumented for the sanitizer: tests/tsan/README.md.
     target_include_directories(touchtrial_settings BEFORE INTERFACE "${CMAKE_SOURCE_DIR}/tests/tsan")
   endif()
 endif()

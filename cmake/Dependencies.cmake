@@ -1,4 +1,4 @@
-# Everything that Touchtrial uses and did not write. The versions of Debian 12 and 13 serve.
+# Touchtrial's third-party dependencies. The versions in Debian 12 and 13 are sufficient.
 set(TOUCHTRIAL_NEED REQUIRED)
 include(EngineDependencies)
 if(NOT OPENCV_HEADERS OR NOT OPENCV_CORE OR NOT OPENCV_IMGPROC)
@@ -28,8 +28,8 @@ pkg_check_modules(libusb REQUIRED IMPORTED_TARGET GLOBAL libusb-1.0)
 
 find_package(glfw3 REQUIRED)
 find_package(OpenGL REQUIRED)
-# Debian's Dear ImGui holds the GLFW and OpenGL 3 backends, and leaves these two to whoever links it.
+# Debian's Dear ImGui includes the GLFW and OpenGL 3 backends, but does not link these two libraries.
 pkg_check_modules(imgui REQUIRED IMPORTED_TARGET GLOBAL imgui)
 pkg_check_modules(freetype REQUIRED IMPORTED_TARGET GLOBAL freetype2)
-# For its header: the library is loaded when sound is first wanted.
+# Only the header; the library is loaded when sound is first used.
 pkg_check_modules(portaudio REQUIRED portaudio-2.0)

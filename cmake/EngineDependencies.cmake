@@ -1,6 +1,6 @@
-# What core and engine use and did not write. TOUCHTRIAL_NEED is REQUIRED, or QUIET: a program that is
-# built on the installed engine reads this file too, to link the same libraries, perhaps in several of its
-# folders (cmake/touchtrial-config.cmake.in).
+# Third-party dependencies of core and engine. TOUCHTRIAL_NEED is REQUIRED or QUIET. Programs that use
+# the installed engine also include this file, possibly from several folders
+# (cmake/touchtrial-config.cmake.in).
 find_package(PkgConfig ${TOUCHTRIAL_NEED})
 find_package(Threads ${TOUCHTRIAL_NEED})
 find_package(TBB ${TOUCHTRIAL_NEED})
@@ -14,8 +14,8 @@ pkg_check_modules(libsodium ${TOUCHTRIAL_NEED} IMPORTED_TARGET GLOBAL libsodium)
 pkg_check_modules(nettle ${TOUCHTRIAL_NEED} IMPORTED_TARGET GLOBAL nettle)
 pkg_check_modules(utf8proc ${TOUCHTRIAL_NEED} IMPORTED_TARGET GLOBAL libutf8proc)
 
-# Highway's library calibrates a clock when it is loaded: where the forwarders have all that its headers
-# call, it is loaded with the first kernel (decision 47).
+# Highway's library calibrates a clock when it is loaded. If the forwarders cover all calls from its
+# headers, it is loaded only with the first kernel (decision 47).
 pkg_check_modules(hwy ${TOUCHTRIAL_NEED} IMPORTED_TARGET GLOBAL libhwy)
 if(NOT TARGET touchtrial_hwy)
   add_library(touchtrial_hwy INTERFACE IMPORTED GLOBAL)
@@ -31,14 +31,13 @@ else()
   target_link_libraries(touchtrial_hwy INTERFACE PkgConfig::hwy)
 endif()
 
-# Only what OpenCV computes with: its own package file wants all of its modules installed, and what
-# these bring along. Its headers warn under C++20; as a system target they stay quiet.
+# Only OpenCV's computing modules, because its own package file requires all modules and their
+# dependencies. A system target suppresses the warnings of its headers under C++20.
 find_path(OPENCV_HEADERS opencv2/imgproc.hpp PATH_SUFFIXES opencv4)
 find_library(OPENCV_CORE opencv_core)
 find_library(OPENCV_IMGPROC opencv_imgproc)
-# Of the archives, where there are any that link, only what is called comes into the program; BLAS,
-# LAPACK and GLX, which the shared libraries load at every start, are then needed by the benchmark's
-# matrices alone (decision 47).
+# Static archives are preferred if they link: only called code enters the program. Only the benchmark's
+# matrices then need BLAS, LAPACK and GLX, which the shared libraries load at every start (decision 47).
 find_library(OPENCV_CORE_ARCHIVE libopencv_core.a)
 find_library(OPENCV_IMGPROC_ARCHIVE libopencv_imgproc.a)
 set(OPENCV_ARCHIVES "${OPENCV_IMGPROC_ARCHIVE}" "${OPENCV_CORE_ARCHIVE}" TBB::tbb ZLIB::ZLIB
@@ -72,8 +71,8 @@ else()
   target_link_libraries(touchtrial_opencv INTERFACE "${OPENCV_IMGPROC}" "${OPENCV_CORE}")
 endif()
 
-# What reads pictures: shared, so that the system's security updates reach them (decision 47). libtiff has
-# handlers of errors for each file from 4.5 on.
+# Image readers are shared libraries, so that the system's security updates apply (decision 47). libtiff
+# has error handlers for each file since 4.5.
 find_package(PNG ${TOUCHTRIAL_NEED})
 find_package(JPEG ${TOUCHTRIAL_NEED})
 find_package(TIFF 4.5 ${TOUCHTRIAL_NEED})

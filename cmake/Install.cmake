@@ -1,15 +1,17 @@
-# What `cmake --install` lays where, by component: program, postgres, doc, development (and python, in python/).
-# Nothing of it knows its prefix: the tree runs from wherever it is moved. The packages are made of
+# The files that `cmake --install` installs, by component: program, postgres, doc, development (and
+# python, in python/).
+# Nothing depends on the prefix, so the installed tree can be moved. The packages are made of
 # the same components: cmake/Packages.cmake.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME program)
 
 install(TARGETS touchtrial RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT program)
-# Where the program looks for it: record/merging/bundle_module.cpp.
+# record/merging/bundle_module.cpp searches this path.
 install(TARGETS touchtrial_postgres LIBRARY DESTINATION lib/touchtrial COMPONENT postgres)
 
-# The ready studies, and what they name: `touchtrial examples` copies them (app/commands/shipped_files.cpp).
+# The ready studies with the files that they name, for `touchtrial examples`
+# (app/commands/shipped_files.cpp).
 set(shipped "${CMAKE_INSTALL_DATADIR}/touchtrial")
 install(DIRECTORY config/ DESTINATION "${shipped}/config" COMPONENT program
         FILES_MATCHING PATTERN "*.json" PATTERN "udev" EXCLUDE PATTERN "desktop" EXCLUDE PATTERN "completion" EXCLUDE PATTERN "*.pack" EXCLUDE)
@@ -20,7 +22,7 @@ install(DIRECTORY stimuli/ DESTINATION "${shipped}/stimuli" COMPONENT program
 file(GLOB rules CONFIGURE_DEPENDS "${CMAKE_SOURCE_DIR}/config/udev/*.rules")
 install(FILES ${rules} DESTINATION lib/udev/rules.d COMPONENT program)
 
-# The desktop's entry opens a terminal: the program has windows, but is begun from one.
+# The desktop entry opens a terminal, because the program is started from the command line.
 install(FILES config/desktop/touchtrial.desktop
         DESTINATION "${CMAKE_INSTALL_DATADIR}/applications" COMPONENT program)
 install(FILES config/desktop/io.github.touchtrial.metainfo.xml
@@ -28,7 +30,7 @@ install(FILES config/desktop/io.github.touchtrial.metainfo.xml
 install(FILES config/desktop/touchtrial.svg
         DESTINATION "${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps" COMPONENT program)
 
-# Man pages come from the program's own definitions of its commands; completions ask the program for them.
+# Man pages and completions are generated from the program's command definitions.
 set(reference "${CMAKE_BINARY_DIR}/reference")
 add_custom_command(OUTPUT "${reference}/made"
   COMMAND "${CMAKE_COMMAND}" -E rm -rf "${reference}"
@@ -48,8 +50,8 @@ install(FILES config/completion/touchtrial.fish
 install(DIRECTORY examples/engine/ DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/libtouchtrial-dev/examples"
         COMPONENT development)
 
-# The engine for other programs: find_package(touchtrial). Headers that say they are private to a
-# folder stay here, and so do those of the kernels and of the Fourier transforms, which show libraries.
+# The engine for other programs: find_package(touchtrial). Headers that are marked as private are not
+# installed, nor those of the kernels and Fourier transforms, which expose third-party libraries.
 set(libraries touchtrial_core touchtrial_engine)
 if(TARGET touchtrial_highway)
   list(APPEND libraries touchtrial_highway)

@@ -1,7 +1,7 @@
 # cmake -D OUTPUT=.. -D SOURCES=a.cpp,b.cpp -P JoinedTests.cmake
-# One translation unit of several tests, as headers cost most of a test's compilation. Each file is
-# included in a namespace of its own, so that files need not know of one another's names; all
-# headers come before, where they belong.
+# Joins several tests into one translation unit, because headers dominate their compile time. Each file
+# is included in its own namespace, so that names cannot collide; all headers are included first,
+# outside these namespaces.
 string(REPLACE "," ";" sources "${SOURCES}")
 set(headers "")
 set(units "")
@@ -12,7 +12,7 @@ foreach(source IN LISTS sources)
   list(APPEND headers ${includes})
   file(STRINGS "${source}" opened REGEX "^namespace [a-z_:]+ {")
   string(APPEND units "\nnamespace touchtrial::unit_${number} {\n")
-  # Within the unit these names stand for what they name outside, as do those that lead to them.
+  # Inside the unit, these names refer to the entities outside, as do the names that lead to them.
   set(names "")
   foreach(line IN LISTS opened)
     string(REGEX REPLACE "^namespace ([a-z_:]+) {.*" "\\1" name "${line}")

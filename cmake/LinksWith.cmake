@@ -1,5 +1,5 @@
 # touchtrial_links_with(VARIABLE PROBE FORWARDERS [INCLUDES folders...] [LIBRARIES libraries...])
-# Sets the variable, once, to whether cmake/probes/PROBE.cpp links with the forwarders alone, without the
+# Sets the cached variable to whether cmake/probes/PROBE.cpp links with only the forwarders, without the
 # library whose functions they look up.
 function(touchtrial_links_with variable probe forwarders)
   if(DEFINED ${variable})

@@ -1,6 +1,6 @@
 # Debian packages of the installed components: `cpack` in the build folder, or scripts/package, which builds
-# the documentation first. One build serves both a prefix and the packages, so CPack makes them rather
-# than a second build by debhelper.
+# the documentation first. CPack makes them from the same build that serves a prefix, which avoids a
+# second build by debhelper.
 set(CPACK_GENERATOR DEB)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
@@ -18,7 +18,7 @@ set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS OFF)
 
 # touchtrial_package(COMPONENT NAME SECTION DESCRIPTION [PARAGRAPH])
-# Names the package of a component, and gives it what every Debian package has.
+# Names the package of a component and sets the fields that all packages share.
 macro(touchtrial_package component name section summary text)
   string(TOUPPER ${component} upper)
   set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${name})
@@ -33,7 +33,7 @@ macro(touchtrial_package component name section summary text)
   endif()
 endmacro()
 
-# The packages are for the system that builds them.
+# The packages target the building system.
 set(TOUCHTRIAL_DISTRIBUTION unstable)
 if(EXISTS /etc/os-release)
   file(STRINGS /etc/os-release codename REGEX "^VERSION_CODENAME=")
@@ -107,7 +107,7 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${touchtrial_python_depends}, sse4.2-support")
 endif()
 if(TARGET touchtrial_highway)
-  # Loaded later, so that dpkg-shlibdeps does not see it; its package has another name in Debian 13.
+  # Loaded at run time, so dpkg-shlibdeps does not detect it; its package has another name in Debian 13.
   set(highway_package libhwy1)
   file(REAL_PATH "${hwy_LIBDIR}/libhwy.so.1" highway_library)
   execute_process(COMMAND dpkg-query --search "${highway_library}" OUTPUT_VARIABLE found ERROR_QUIET)

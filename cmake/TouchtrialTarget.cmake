@@ -1,13 +1,13 @@
-# Compiles a target in less time, for code that spends none: at this level GCC sees uninitialised
-# values that are not there.
+# Reduces the compile time of code that is not performance-critical. At this level GCC gives false
+# warnings of uninitialised values.
 set(TOUCHTRIAL_UNHURRIED -O1 -Wno-maybe-uninitialized)
 
 option(TOUCHTRIAL_UNITY "Compile several files at a time: sooner done, but less is rebuilt alone" OFF)
 
-# How many files, of the product and of its tests.
+# The number of files per unit, for the product and for tests.
 set(TOUCHTRIAL_BATCH 24)
 set(TOUCHTRIAL_TEST_BATCH 16)
-# Only a test that hangs takes so long: on a busy machine all of them may wait for their turn.
+# Long enough for a busy machine: only a test that hangs takes longer.
 set(TOUCHTRIAL_TEST_TIMEOUT_S 1800)
 
 # touchtrial_library(NAME [UNHURRIED] [ONLY files...] [EXCEPT folders and files...] [PUBLIC targets...]
@@ -107,12 +107,13 @@ function(touchtrial_joined variable batch name)
   set(${variable} ${units} PARENT_SCOPE)
 endfunction()
 
-# touchtrial_test(NAME [WHOLE] [JOINED] [EXCEPT folders...] [LIBRARIES ...])
+# touchtrial_test(NAME [WHOLE] [JOINED] [COMPUTES] [EXCEPT folders...] [LIBRARIES ...])
 # One test program a folder, of every *_test.cpp file in and below it, except those of folders that
 # have a program of their own; each test case is a CTest test, or with WHOLE the program is, whose
-# cases then share what is dear to make.
+# cases then share what is dear to make. COMPUTES: the tests themselves compute for long, so that
+# optimising them pays.
 function(touchtrial_test name)
-  cmake_parse_arguments(ARG "JOINED;WHOLE" "" "EXCEPT;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "JOINED;WHOLE;COMPUTES" "" "EXCEPT;LIBRARIES" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*_test.cpp")
   foreach(folder ${ARG_EXCEPT})
     list(FILTER sources EXCLUDE REGEX "^${CMAKE_CURRENT_SOURCE_DIR}/${folder}/")
@@ -128,7 +129,11 @@ function(touchtrial_test name)
     touchtrial_allow_included_sources(${name})
   endif()
   # Optimising the test framework costs more time than the tests then save.
-  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:${TOUCHTRIAL_UNHURRIED}>)
+  set(level -O0)
+  if(ARG_COMPUTES)
+    set(level ${TOUCHTRIAL_UNHURRIED})
+  endif()
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:${level}>)
   if(ARG_WHOLE)
     add_test(NAME ${name} COMMAND ${name})
     set_tests_properties(${name} PROPERTIES TIMEOUT ${TOUCHTRIAL_TEST_TIMEOUT_S})

@@ -1,4 +1,4 @@
-# The version is project()'s, in CMakeLists.txt. Whatever else states it must agree.
+# The version is set by project() in CMakeLists.txt. All other places must agree.
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${CMAKE_SOURCE_DIR}/CITATION.cff")
 file(STRINGS CITATION.cff cited REGEX "^version:")
 if(NOT cited STREQUAL "version: ${PROJECT_VERSION}")
@@ -7,8 +7,8 @@ if(NOT cited STREQUAL "version: ${PROJECT_VERSION}")
 endif()
 
 # touchtrial_add_commit(TARGET)
-# Adds a source that knows the commit (app/commit.hpp). It is looked up at each build, and compiled again only
-# when the commit is another.
+# Adds a source with the commit (app/commit.hpp). The commit is read at each build; the source is
+# recompiled only if it changed.
 function(touchtrial_add_commit target)
   set(source "${CMAKE_CURRENT_BINARY_DIR}/commit.cpp")
   set(write "${CMAKE_COMMAND}" -D "SOURCE=${CMAKE_SOURCE_DIR}" -D "OUTPUT=${source}"

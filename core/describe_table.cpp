@@ -122,7 +122,7 @@ class Rows {
       add(key, rule, is_required(object, key), outer, keys_of_shared(shared, rule));
     }
     for (const auto& [key, rule, owners] : shared) {
-      if (owners.size() < kFewestOwners) continue;
+      if (owners.size() < kMinOwners) continue;
       ordered_json of_all = rule;
       of_all[kMeaning] = rule.at(kMeaning).get<std::string>() + " (of " + listed(owners) + ")";
       add(key, of_all, false, outer + "NAME.", {});
@@ -137,7 +137,7 @@ class Rows {
     std::vector<std::string> owners;
   };
   using Shared = std::vector<SharedKey>;
-  static constexpr std::size_t kFewestOwners = 3;
+  static constexpr std::size_t kMinOwners = 3;
 
   [[nodiscard]] static bool is_required(const ordered_json& object, const std::string& key) {
     const ordered_json required = object.value("required", ordered_json::array());
@@ -173,7 +173,7 @@ class Rows {
     for (const SharedKey& one : shared) {
       const auto found = inner["properties"].find(one.key);
       const bool has_it = found != inner["properties"].end() && *found == one.rule;
-      if (has_it && one.owners.size() >= kFewestOwners) keys.push_back(one.key);
+      if (has_it && one.owners.size() >= kMinOwners) keys.push_back(one.key);
     }
     return keys;
   }

@@ -7,5 +7,6 @@ namespace touchtrial::device {
 
 [[nodiscard]] std::string device_settings_schema();
 [[nodiscard]] std::string device_model_schema();
+[[nodiscard]] std::string certificate_schema();
 
 }  // namespace touchtrial::device

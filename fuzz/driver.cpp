@@ -1,4 +1,4 @@
-// The entry point of libFuzzer. It is compiled once for each entry, with the entry's name.
+// The entry point of libFuzzer, compiled once for each entry with the entry's name.
 #include "fuzz/entries.hpp"
 
 #include <cstddef>

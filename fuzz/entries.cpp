@@ -64,7 +64,7 @@ bool claims_a_long_trace(ByteView bytes) {
   return count > kLong && count <= kRefused;
 }
 
-/// Signs the heads of this program, so that changed texts get past the signature.
+/// Signs heads, so that fuzzed texts pass the signature check.
 const Signer& fuzzing_signer() {
   static const Signer signer(sha256(bytes_of("fuzz")));
   return signer;
@@ -85,7 +85,7 @@ void add_payload(ByteView transfer, std::vector<std::uint8_t>& payload) {
   }
 }
 
-/// Counts replies at every position, not only where the stream looks.
+/// Counts replies at every position, not only at those that the stream reads.
 std::uint64_t replies_in(ByteView payload) {
   std::uint64_t found = 0;
   for (std::size_t at = 0; at + device::falcon::kPacketSize <= payload.size(); ++at) {
@@ -95,7 +95,7 @@ std::uint64_t replies_in(ByteView payload) {
   return found;
 }
 
-/// Requires a finite pose for any counts, and torques only for poses that can be held.
+/// Requires a finite pose for any counts, and torques only for reachable poses.
 void check_pose(const device::falcon::Reply& reply) {
   const device::falcon::Pose pose =
       device::falcon::forward_kinematics(device::falcon::theta1_of_counts(reply.counts));

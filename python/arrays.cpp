@@ -90,7 +90,7 @@ bool is_path(const py::handle& image) {
 GreyImage grey_image_of(const py::handle& image) {
   if (!is_path(image)) return grey_image_from(asarray(image));
   const auto path = image.cast<std::filesystem::path>();
-  const py::gil_scoped_release others_run;
+  const py::gil_scoped_release gil_released;
   return engine::read_grey_image(path);
 }
 

@@ -1,5 +1,5 @@
-/// \file Between NumPy's arrays and the engine's planes. A plane becomes an array without a copy: the
-/// array owns it. Private to python: it shows pybind11's types.
+/// \file Conversions between NumPy arrays and the engine's planes. A plane becomes an array without
+/// a copy: the array owns it. Private to python because it exposes pybind11's types.
 #pragma once
 
 #include "core/plane.hpp"
@@ -30,7 +30,7 @@ template <typename Sample>
   return pybind11::array_t<Sample>({held->height(), held->width()}, held->samples().data(), base);
 }
 
-/// What an argument is that should be a picture: a path, or samples.
+/// Whether a picture argument is a path; otherwise it holds samples.
 [[nodiscard]] bool is_path(const pybind11::handle& image);
 
 /// A picture as 8-bit grey, by the rules of files (docs/method.md, "Images").

@@ -29,8 +29,7 @@ namespace py = pybind11;
 constexpr int kForceNeighbourhood = 3;
 constexpr int kMaxForceNeighbourhood = 1001;
 
-/// A plane's name, as of its file of `extract --dump`, and how the engine is asked for it; null: it
-/// is always there.
+/// A plane's name, as in `extract --dump`, and the option that requests it; null: always computed.
 struct PlaneName {
   std::string_view name;
   bool engine::WantedPlanes::*wanted;
@@ -81,7 +80,7 @@ PictureAndForce picture_and_force(const std::string& mapping, int neighbourhood)
   return {*chosen, neighbourhood};
 }
 
-/// Extracts, and adds what the engine does not compute along with a texture.
+/// Extracts, and adds the planes that the engine does not compute along with a texture.
 template <typename Real>
 engine::Extraction<Real> extracted(const GreyImage& image, const engine::ExtractionOptions& options,
                                    const engine::WantedPlanes& wanted,
@@ -112,7 +111,7 @@ py::dict extract_as(GreyImage image, const engine::ExtractionOptions& options,
                     const engine::WantedPlanes& wanted, const PictureAndForce& further) {
   engine::Extraction<Real> made;
   {
-    const py::gil_scoped_release others_run;
+    const py::gil_scoped_release gil_released;
     made = extracted<Real>(image, options, wanted, further);
   }
   py::dict planes;
@@ -151,7 +150,7 @@ double seconds_of_extraction(const py::object& image, bool all_planes) {
   const GreyImage grey = grey_image_of(image);
   const engine::WantedPlanes wanted =
       all_planes ? engine::WantedPlanes::all() : engine::WantedPlanes{};
-  const py::gil_scoped_release others_run;
+  const py::gil_scoped_release gil_released;
   const auto start = std::chrono::steady_clock::now();
   static_cast<void>(engine::extract_texture<float>(grey, {}, wanted));
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -164,10 +163,10 @@ std::string evaluate(const std::vector<py::object>& images, bool sweep) {
         is_path(image) ? py::module_::import("os").attr("fsencode")(image).cast<std::string>()
                        : "array " + std::to_string(evaluated.size());
     const GreyImage grey = grey_image_of(image);
-    const py::gil_scoped_release others_run;
+    const py::gil_scoped_release gil_released;
     evaluated.push_back({name, engine::evaluate_image(grey, sweep)});
   }
-  const py::gil_scoped_release others_run;
+  const py::gil_scoped_release gil_released;
   return analysis::evaluation_json(evaluated);
 }
 

@@ -41,7 +41,8 @@ void set_up_log() {
 void add_error(py::module_& module) {
   static py::exception<Error> error(module, "Error");
   error.attr("__module__") = "touchtrial";
-  error.doc() = "What a user can cause or meet: one line that says what, where, and the remedy.";
+  error.doc() =
+      "An error that a user can cause: one line with the cause, the place and the remedy.";
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);

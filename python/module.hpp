@@ -1,4 +1,4 @@
-/// \file The parts of the native module. Private to python: it shows pybind11's types.
+/// \file The parts of the native module. Private to python because it exposes pybind11's types.
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -23,7 +23,7 @@ namespace {
 
 namespace py = pybind11;
 
-/// A texture on the plane with the gains that are felt.
+/// A texture on the plane with its gains.
 class Field {
  public:
   Field(engine::TextureField field, engine::RenderingOptions options)
@@ -45,7 +45,7 @@ class Field {
   bool over_budget_ = false;
 };
 
-/// What a field is made from: an image, or an extracted texture.
+/// The source of a field: an image, or an extracted texture.
 struct FieldSource {
   GreyImage image;
   Plane<double> texture;
@@ -64,11 +64,11 @@ FieldSource source_of(const py::object& given) {
 engine::TextureField made_field(const FieldSource& source, const engine::ExtractionOptions& method,
                                 const engine::RenderingOptions& rendering) {
   if (source.image.empty()) return engine::make_texture_field(source.texture, rendering);
-  std::optional<study::TakenTexture> none;
+  std::optional<study::ExtractedTexture> none;
   return study::build_field(source.image, method, rendering, none, false).field;
 }
 
-/// The gains of all fields together, as of a study's stimuli.
+/// Fields with common gains, like the stimuli of a study.
 std::vector<std::shared_ptr<Field>> force_fields(const std::vector<py::object>& sources,
                                                  const engine::ExtractionOptions& method,
                                                  const std::string& rendering) {
@@ -78,11 +78,11 @@ std::vector<std::shared_ptr<Field>> force_fields(const std::vector<py::object>& 
   std::vector<engine::FieldView> views;
   for (const py::object& one : sources) {
     const FieldSource source = source_of(one);
-    const py::gil_scoped_release others_run;
+    const py::gil_scoped_release gil_released;
     fields.push_back(std::make_shared<Field>(made_field(source, method, options), options));
     views.push_back(fields.back()->view());
   }
-  const py::gil_scoped_release others_run;
+  const py::gil_scoped_release gil_released;
   const engine::StudyGains gains = engine::choose_gains(views, options);
   for (std::size_t i = 0; i < fields.size(); ++i) {
     fields[i]->set_gains(gains.of_field[i], gains.over_budget);
@@ -99,7 +99,7 @@ py::array heights_of(const py::object& self) {
 py::array lateral_force_of(const Field& field) {
   engine::LateralField lateral;
   {
-    const py::gil_scoped_release others_run;
+    const py::gil_scoped_release gil_released;
     lateral = engine::lateral_field(field.view(), field.gains());
   }
   const engine::ForceField<double>& force = lateral.force;
@@ -115,7 +115,7 @@ py::array lateral_force_of(const Field& field) {
 py::dict statistics_of(const Field& field) {
   engine::FieldStatistics found;
   {
-    const py::gil_scoped_release others_run;
+    const py::gil_scoped_release gil_released;
     found = engine::field_statistics(field.view(), field.gains(), field.options());
   }
   py::dict statistics;
@@ -136,7 +136,7 @@ py::dict gains_of(const Field& field) {
   return gains;
 }
 
-/// Backward differences, as a loop in real time has them; the first velocity is 0.
+/// Backward differences, as in a real-time loop; the first velocity is 0.
 std::vector<Vec3> differences(const double* path, std::size_t count, double dt_s) {
   std::vector<Vec3> velocities(count);
   for (std::size_t i = 1; i < count; ++i) {
@@ -178,7 +178,7 @@ py::array_t<double> render(const Field& field, const py::object& path_mm,
   py::array_t<double> forces({path.shape(0), py::ssize_t{3}});
   const double* at = path.data();
   double* to = forces.mutable_data();
-  const py::gil_scoped_release others_run;
+  const py::gil_scoped_release gil_released;
   const engine::RenderingModel model(field.view(), field.options(), field.gains());
   engine::Bristle touch;
   for (const Vec3& velocity : velocities) {
@@ -196,7 +196,7 @@ py::array_t<double> render(const Field& field, const py::object& path_mm,
 void add_rendering(py::module_& module) {
   py::class_<Field, std::shared_ptr<Field>>(
       module, "Field",
-      "A texture on the virtual plane, with the gains that make newtons of grey levels.")
+      "A texture on the virtual plane, with the gains from grey levels to newtons.")
       .def_property_readonly(
           "heights", &heights_of,
           "(H, W) float32, read-only and without a copy: for the model paper the "
@@ -223,7 +223,7 @@ void add_rendering(py::module_& module) {
             const std::string text = study::written_rendering(field.options());
             return py::module_::import("json").attr("loads")(text);
           },
-          "The rendering options, every key of them.")
+          "All rendering options.")
       .def_property_readonly("gains", &gains_of,
                              "tangential_n and normal_n (paper) or height_mm (surface) per grey "
                              "level; the others are 0.")
@@ -235,11 +235,10 @@ void add_rendering(py::module_& module) {
       .def("statistics", &statistics_of,
            "Numbers that predict how the field feels; docs/method.md defines them.");
   module.def("force_fields", &force_fields, py::arg("sources"), py::arg("method"),
-             py::arg("rendering"), "Fields of images or textures, with gains in common.");
-  module.def(
-      "render", &render, py::arg("field"), py::arg("path_mm"), py::arg("dt_s") = py::none(),
-      py::arg("velocities_mm_s") = py::none(),
-      "The force on a stylus along a path, (N, 3) newtons, by the model that the servo calls.");
+             py::arg("rendering"), "Fields of images or textures with common gains.");
+  module.def("render", &render, py::arg("field"), py::arg("path_mm"), py::arg("dt_s") = py::none(),
+             py::arg("velocities_mm_s") = py::none(),
+             "The force on a stylus along a path, (N, 3) newtons, by the servo's rendering model.");
 }
 
 }  // namespace touchtrial::python

@@ -31,8 +31,8 @@ namespace {
 namespace py = pybind11;
 namespace fs = std::filesystem;
 
-/// Answers for protected keys as long as it lives. There is one at a time: who is asked, and which
-/// keys have been opened, is known to the whole process.
+/// Supplies the passphrase of protected keys during its lifetime. Only one may exist at a time,
+/// because the prompt and the opened keys are global to the process.
 class Passphrase {
  public:
   explicit Passphrase(std::optional<std::string> passphrase) : lock_(one_at_a_time()) {
@@ -84,13 +84,13 @@ class Study {
         ->json();
   }
 
-  /// As `export --format csv` writes them, but for the consents.
+  /// As `export --format csv` writes them, except the consents.
   [[nodiscard]] std::vector<analysis::ResultTable> tables() const {
     const std::lock_guard lock(one_at_a_time_);
     return analysis::exported_tables(store_, outcomes_);
   }
 
-  /// \throws std::out_of_range if the study shows no such trial
+  /// \throws std::out_of_range if the study has no such visible trial
   [[nodiscard]] record::Trace trace(int session, int trial) const {
     const auto found =
         std::ranges::find_if(outcomes_.trials, [&](const analysis::TrialOutcome& one) {
@@ -114,7 +114,7 @@ class Study {
 
 std::unique_ptr<Study> read(const std::string& database, const fs::path& key,
                             const std::optional<std::string>& passphrase) {
-  const py::gil_scoped_release others_run;
+  const py::gil_scoped_release gil_released;
   const Passphrase answers(passphrase);
   return std::make_unique<Study>(database, key);
 }
@@ -167,7 +167,7 @@ py::object column_of(const analysis::DataTable& table, std::size_t column) {
 
 py::dict tables_of(const Study& study) {
   const std::vector<analysis::ResultTable> tables = [&] {
-    const py::gil_scoped_release others_run;
+    const py::gil_scoped_release gil_released;
     return study.tables();
   }();
   py::dict by_name;
@@ -184,7 +184,7 @@ py::dict tables_of(const Study& study) {
 /// The rate, and an array (N, 6) that owns the samples.
 py::tuple trace_of(const Study& study, int session, int trial) {
   record::Trace trace = [&] {
-    const py::gil_scoped_release others_run;
+    const py::gil_scoped_release gil_released;
     return study.trace(session, trial);
   }();
   static_assert(sizeof(record::TraceSample) == 6 * sizeof(double));
@@ -198,7 +198,7 @@ py::tuple trace_of(const Study& study, int session, int trial) {
 std::string simulate(const fs::path& study, const fs::path& database, int participants,
                      std::uint64_t seed, const fs::path& subject, const std::string& on, int jobs,
                      int first_participant, bool keep_blind) {
-  const py::gil_scoped_release others_run;
+  const py::gil_scoped_release gil_released;
   if (jobs == 0) jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   const app::StudyToSimulate wanted{.study = study,
                                     .database = database,

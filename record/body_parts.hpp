@@ -2,7 +2,7 @@
 ///   Source: docs/data-dictionary.md, "Events".
 #pragma once
 
-#include "record/event.hpp"
+#include "record/event_kinds.hpp"
 
 #include <cstddef>
 #include <string>
@@ -22,10 +22,8 @@ struct BodyParts {
 /// \throws StoreError if a part is not a JSON object
 [[nodiscard]] std::string joined_body(const BodyParts& parts);
 
-/// The sealed parts of all events are padded to a multiple of this many bytes.
-inline constexpr std::size_t kSealedUnit = 32;
 /// The padding of the sealed part of an event, bytes: a multiple of kSealedUnit that depends only
-/// on the kind. Answers and times fit into one unit, so sizes reveal nothing.
+/// on the kind.
 [[nodiscard]] std::size_t sealed_padding(EventKind kind);
 
 }  // namespace touchtrial::record

@@ -66,7 +66,7 @@ class Feed {
 };
 
 StudyCommitment commitment_of(const StationChain& station) {
-  return body_of(station.events.front(), commitment_from_json);
+  return body_of<StudyCommitment>(station.events.front());
 }
 
 /// A station's commitment without the parts that may differ between stations.
@@ -261,7 +261,7 @@ class Collection {
   /// Whether an event records a look at one participant's outcomes.
   static bool is_personal(const Event& event) {
     return event.kind == EventKind::study_unblinded &&
-           !body_of(event, unblinding_from_json).participant.empty();
+           !body_of<UnblindingBody>(event).participant.empty();
   }
 
   /// The last event of a kind on a station's chain, other than looks at one participant.
@@ -279,11 +279,11 @@ class Collection {
       const std::span<const Event> events = feed.station().events;
       for (std::size_t i = 0; i < events.size(); ++i) {
         if (!is_personal(events[i])) continue;
-        UnblindingBody body = body_of(events[i], unblinding_from_json);
+        UnblindingBody body = body_of<UnblindingBody>(events[i]);
         body.sessions.emplace();
         for (const Event& before : events.first(i)) {
           if (before.kind != EventKind::session_opened) continue;
-          const SessionOpenedBody opened = body_of(before, session_opened_from_json);
+          const SessionOpenedBody opened = body_of<SessionOpenedBody>(before);
           const auto number = numbers_.find({feed.number(), opened.session});
           if (opened.participant != body.participant || number == numbers_.end()) continue;
           body.sessions->push_back(number->second);
@@ -366,8 +366,8 @@ std::optional<Digest> station_identity(std::span<const Event> chain) {
 bool comes_before(const StationChain& a, const StationChain& b) {
   const auto rank = [](const StationChain& station) {
     const Event& first = *first_opening(station.events);
-    const bool simulated = body_of(station.events.front(), commitment_from_json).simulated;
-    const int enrolment = body_of(first, session_opened_from_json).enrolment;
+    const bool simulated = body_of<StudyCommitment>(station.events.front()).simulated;
+    const int enrolment = body_of<SessionOpenedBody>(first).enrolment;
     return std::tuple(simulated ? enrolment : 0, first.at, simulated ? 0 : enrolment, first.hash);
   };
   return rank(a) < rank(b);

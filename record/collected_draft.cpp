@@ -39,7 +39,7 @@ struct CollectedDraft::Impl {
 
   /// Sessions on a screen and sessions with a haptic device are never pooled.
   void check_kind(const Event& opened) {
-    const SessionOpening opening = body_of(opened, opening_from_json);
+    const SessionOpening opening = body_of<SessionOpening>(opened);
     const bool seen = opening.is_visual();
     if (visual.value_or(seen) != seen) {
       throw StoreError("session " + std::to_string(opened.own_session()) + " is " +

@@ -1,6 +1,5 @@
 #include "record/event.hpp"
 
-#include "core/named.hpp"
 #include "record/damage.hpp"
 
 #include <algorithm>
@@ -19,52 +18,7 @@ auto statement_of(const Event& event) {
   return statement;
 }
 
-constexpr auto kNames = std::to_array<Named<EventKind>>({
-    {"study-committed", EventKind::study_committed},
-    {"session-opened", EventKind::session_opened},
-    {"session-closed", EventKind::session_closed},
-    {"participant-excluded", EventKind::participant_excluded},
-    {"participant-withdrawn", EventKind::participant_withdrawn},
-    {"study-closed", EventKind::study_closed},
-    {"study-unblinded", EventKind::study_unblinded},
-    {"participant-replaced", EventKind::participant_replaced},
-    {"participant-noted", EventKind::participant_noted},
-    {"heads-kept", EventKind::heads_kept},
-    {"loss-accepted", EventKind::loss_accepted},
-    {"opened", EventKind::opened},
-    {"calibrated", EventKind::calibrated},
-    {"instructed", EventKind::instructed},
-    {"practised", EventKind::practised},
-    {"presented", EventKind::presented},
-    {"first-contact", EventKind::first_contact},
-    {"answered", EventKind::answered},
-    {"interrupted", EventKind::interrupted},
-    {"timed-out", EventKind::timed_out},
-    {"trace-stored", EventKind::trace_stored},
-    {"break-taken", EventKind::break_taken},
-    {"paused", EventKind::paused},
-    {"stopped", EventKind::stopped},
-    {"noted", EventKind::noted},
-    {"ticked", EventKind::ticked},
-    {"deviated", EventKind::deviated},
-    {"questioned", EventKind::questioned},
-    {"explored-again", EventKind::explored_again},
-    {"block-restarted", EventKind::block_restarted},
-    {"resumed", EventKind::resumed},
-    {"marked", EventKind::marked},
-    {"closed", EventKind::closed},
-});
-static_assert(kNames.size() == static_cast<std::size_t>(EventKind::closed) + 1);
-
 }  // namespace
-
-std::string_view name_of(EventKind kind) {
-  return name_in(kNames, kind);
-}
-
-std::optional<EventKind> event_kind_from_name(std::string_view name) {
-  return value_in(kNames, name);
-}
 
 bool belongs_to_file_chain(EventKind kind) {
   return kind <= EventKind::loss_accepted;

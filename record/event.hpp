@@ -15,7 +15,8 @@
 
 namespace touchtrial::record {
 
-/// The kind of an event. The first group belongs to the file's chain, the second to a session's.
+/// The kind of an event; event_kinds.cpp has a row for each. The first group belongs to the file's
+/// chain, the second to a session's.
 enum class EventKind {
   study_committed,
   session_opened,
@@ -24,10 +25,10 @@ enum class EventKind {
   participant_withdrawn,
   study_closed,
   study_unblinded,
-  participant_replaced,  ///< another participant inherits this one's enrolment number
-  participant_noted,     ///< a remark or deviation that is recorded after or outside a session
-  heads_kept,            ///< the head files that the database has from now on
-  loss_accepted,         ///< the loss of something that the head file records was accepted
+  participant_replaced,
+  participant_noted,
+  heads_kept,
+  loss_accepted,
 
   opened,
   calibrated,
@@ -43,17 +44,17 @@ enum class EventKind {
   paused,
   stopped,
   noted,
-  ticked,           ///< an item of the day sheet is done
-  deviated,         ///< something deviates from the study's protocol
-  questioned,       ///< a questionnaire was filled in
-  explored_again,   ///< the participant returned to the plane before answering
-  block_restarted,  ///< a block's trials are void and are presented again, in another order
-  resumed,          ///< after a pause, or after the program ended
-  marked,           ///< the marks sent to other instruments, and their times
+  ticked,
+  deviated,
+  questioned,
+  explored_again,
+  block_restarted,
+  resumed,
+  marked,
   closed,
 };
 
-/// The name stored in the database: the enumerator with hyphens, for instance "first-contact".
+/// The name stored in the database, for instance "first-contact".
 [[nodiscard]] std::string_view name_of(EventKind kind);
 [[nodiscard]] std::optional<EventKind> event_kind_from_name(std::string_view name);
 /// Whether events of this kind belong to the file's chain; all others belong to a session's.

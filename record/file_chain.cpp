@@ -24,7 +24,7 @@ std::set<int> sessions_in(std::span<const Event> chain, const std::string& parti
   std::set<int> sessions;
   for (const Event& event : chain) {
     if (event.kind != EventKind::session_opened) continue;
-    const SessionOpenedBody body = body_of(event, session_opened_from_json);
+    const SessionOpenedBody body = body_of<SessionOpenedBody>(event);
     if (body.participant == participant) sessions.insert(body.session);
   }
   return sessions;
@@ -39,7 +39,7 @@ StudyState state_of_chain(std::span<const Event> chain) {
     if (event.kind == EventKind::study_closed) state.closed = true;
     if (event.kind != EventKind::study_unblinded) continue;
     const std::span<const Event> before = chain.first(i);
-    const UnblindingBody body = body_of(event, unblinding_from_json);
+    const UnblindingBody body = body_of<UnblindingBody>(event);
     std::optional<std::set<int>> named;
     if (body.sessions) named.emplace(body.sessions->begin(), body.sessions->end());
     if (!body.participant.empty()) {
@@ -67,7 +67,7 @@ void FileChain::add(const Event& event) {
   }
   switch (event.kind) {
     case EventKind::study_committed:
-      commitment_ = body_of(event, commitment_from_json);
+      commitment_ = body_of<StudyCommitment>(event);
       return;
     case EventKind::session_opened:
       return open_session(event);
@@ -79,30 +79,21 @@ void FileChain::add(const Event& event) {
       return withdraw(event);
     case EventKind::participant_replaced:
       return replace(event);
-    case EventKind::participant_noted:
-      static_cast<void>(body_of(event, note_from_json));
-      static_cast<void>(known(event));
-      return;
-    case EventKind::heads_kept:
-      static_cast<void>(body_of(event, heads_from_json));
-      return;
-    case EventKind::loss_accepted:
-      static_cast<void>(body_of(event, loss_from_json));
-      return;
     case EventKind::study_closed:
       if (closed_) throw EventFault(event, "the study is closed twice");
       closed_ = true;
       return;
-    case EventKind::study_unblinded:
-      static_cast<void>(body_of(event, unblinding_from_json));
-      return;
     default:
-      throw EventFault(event, "an event of this kind belongs to a session");
+      if (!belongs_to_file_chain(event.kind)) {
+        throw EventFault(event, "an event of this kind belongs to a session");
+      }
+      require_members(event);
+      if (session_about(event) > 0) static_cast<void>(known(event));
   }
 }
 
 void FileChain::open_session(const Event& event) {
-  const SessionOpenedBody body = body_of(event, session_opened_from_json);
+  const SessionOpenedBody body = body_of<SessionOpenedBody>(event);
   if (closed_) throw EventFault(event, "a session is opened after the study was closed");
   if (body.session != static_cast<int>(sessions_.size()) + 1) {
     throw EventFault(event,
@@ -138,7 +129,7 @@ void FileChain::require_visit_before(const Event& event, const SessionOpenedBody
 }
 
 void FileChain::close_session(const Event& event) {
-  const SessionClosedBody body = body_of(event, session_closed_from_json);
+  const SessionClosedBody body = body_of<SessionClosedBody>(event);
   SessionOnFile& session = known(event);
   if (session.closed) {
     throw EventFault(event, "session " + std::to_string(body.session) + " is closed twice");
@@ -149,7 +140,7 @@ void FileChain::close_session(const Event& event) {
 
 /// An exclusion cannot be presented as one from before a look.
 void FileChain::exclude(const Event& event) {
-  const ParticipantBody body = body_of(event, participant_from_json);
+  const ParticipantBody body = body_of<ParticipantBody>(event);
   known(event).excluded_at = event.sequence;
   if (body.after_outcomes || !state_of_chain(ends_and_looks_).shows(body.session)) return;
   throw EventFault(event, "hides that the outcomes of session " + std::to_string(body.session) +
@@ -157,7 +148,7 @@ void FileChain::exclude(const Event& event) {
 }
 
 void FileChain::withdraw(const Event& event) {
-  const WithdrawalBody body = body_of(event, withdrawal_from_json);
+  const WithdrawalBody body = body_of<WithdrawalBody>(event);
   SessionOnFile& session = known(event);
   const auto refuse = [&](const std::string& why) {
     throw EventFault(event, "session " + std::to_string(body.session) + " " + why);
@@ -184,7 +175,7 @@ void FileChain::withdraw(const Event& event) {
 }
 
 void FileChain::replace(const Event& event) {
-  const ReplacementBody body = body_of(event, replacement_from_json);
+  const ReplacementBody body = body_of<ReplacementBody>(event);
   SessionOnFile& session = known(event);
   if (!session.replaced_by.empty()) {
     throw EventFault(event, "session " + std::to_string(body.session) + " is replaced twice");
@@ -206,7 +197,7 @@ SessionOnFile& FileChain::known(const Event& event) {
 }
 
 Signatories::Signatories(const Event& committed) {
-  const StudyCommitment commitment = body_of(committed, commitment_from_json);
+  const StudyCommitment commitment = body_of<StudyCommitment>(committed);
   investigator_ = commitment.investigator;
   if (!commitment.station) return;
   const StationIdentity& station = *commitment.station;
@@ -252,7 +243,7 @@ void SessionCheck::add(const Event& event, DerivedRows& rows) {
   chain_.extend(event);
   if (event.sequence == 0) check_opening(event);
   if (event.kind != EventKind::trace_stored) return fold(rows, event);
-  const TraceBody body = body_of(event, trace_body_from_json);
+  const TraceBody body = body_of<TraceBody>(event);
   fold(rows, event, body);
   note_trace(event, body);
 }
@@ -261,7 +252,7 @@ void SessionCheck::check_opening(const Event& event) const {
   if (event.hash != on_file_.opened.first) {
     throw EventFault(session_, 0, "the session's first event is not the one on the file's chain");
   }
-  const SessionOpening opening = body_of(event, opening_from_json);
+  const SessionOpening opening = body_of<SessionOpening>(event);
   if (opening.study_id != commitment_.study_id || opening.seal != commitment_.seal) {
     throw EventFault(session_, 0, "the session belongs to another study");
   }

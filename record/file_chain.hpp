@@ -2,8 +2,8 @@
 ///   against it.
 #pragma once
 
+#include "record/file_bodies.hpp"
 #include "record/fold.hpp"
-#include "record/payload.hpp"
 #include "record/sealing.hpp"
 
 #include <chrono>

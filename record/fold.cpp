@@ -1,9 +1,11 @@
 #include "record/fold.hpp"
 
 #include "record/damage.hpp"
+#include "record/event_kinds.hpp"
 #include "record/opened_parts.hpp"
 #include "record/payload_json.hpp"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -16,7 +18,7 @@ namespace {
 
 void open_session(DerivedRows& rows, const Event& event) {
   if (event.sequence != 0) throw EventFault(event, "a session is opened by its first event only");
-  const SessionOpening opening = body_of(event, opening_from_json);
+  const SessionOpening opening = body_of<SessionOpening>(event);
   rows.sessions[event.session] = {.session = event.session,
                                   .participant = opening.participant,
                                   .enrolment = opening.enrolment,
@@ -49,7 +51,7 @@ void refuse_if_voided(const TrialRow& row, const Event& event) {
 }
 
 void present_trial(DerivedRows& rows, const Event& event) {
-  const TrialBody body = body_of(event, trial_from_json);
+  const PresentedBody body = body_of<PresentedBody>(event);
   const TrialId id(event.session, body.trial);
   const auto before = rows.trials.find(id);
   if (before != rows.trials.end()) {
@@ -86,13 +88,13 @@ TrialRow& waiting_row(DerivedRows& rows, const Event& event, int trial) {
 }
 
 void touch_plane(DerivedRows& rows, const Event& event) {
-  const int trial = body_of(event, trial_from_json).trial;
+  const int trial = body_of<TrialBody>(event).trial;
   TrialRow& row = waiting_row(rows, event, trial);
   if (!row.contact_at) row.contact_at = event.time();
 }
 
 void pause_trial(DerivedRows& rows, const Event& event) {
-  const PauseBody body = body_of(event, pause_from_json);
+  const PauseBody body = body_of<PauseBody>(event);
   if (body.trial) waiting_row(rows, event, *body.trial).paused = true;
 }
 
@@ -109,7 +111,7 @@ void answer_trial(DerivedRows& rows, const Event& event, const AnswerBody& body)
 }
 
 void end_trial(DerivedRows& rows, const Event& event, TrialState state) {
-  const int trial = body_of(event, trial_from_json).trial;
+  const int trial = body_of<TrialBody>(event).trial;
   waiting_row(rows, event, trial).state = state;
 }
 
@@ -123,14 +125,14 @@ void measure_trial(DerivedRows& rows, const Event& event, const TraceBody& body)
 }
 
 void explore_again(DerivedRows& rows, const Event& event) {
-  const int trial = body_of(event, trial_from_json).trial;
+  const int trial = body_of<TrialBody>(event).trial;
   ++waiting_row(rows, event, trial).explorations;
 }
 
 /// Every presented trial of the block becomes void. Its new trials have new numbers, so that
 /// nothing links them to the old ones.
 void restart_block(DerivedRows& rows, const Event& event) {
-  const BlockBody body = body_of(event, block_from_json);
+  const BlockBody body = body_of<BlockBody>(event);
   std::vector<TrialRow*> block;
   for (auto entry = rows.trials.lower_bound({event.session, 0});
        entry != rows.trials.end() && entry->first.first == event.session; ++entry) {
@@ -145,7 +147,7 @@ void restart_block(DerivedRows& rows, const Event& event) {
 }
 
 void close_session(DerivedRows& rows, const Event& event) {
-  const bool complete = body_of(event, closed_from_json).complete;
+  const bool complete = body_of<ClosedBody>(event).complete;
   open_row(rows, event).state = complete ? SessionState::completed : SessionState::stopped;
 }
 
@@ -160,7 +162,7 @@ SessionRow& named_row(DerivedRows& rows, const Event& event) {
 }
 
 void replace_participant(DerivedRows& rows, const Event& event) {
-  const ReplacementBody body = body_of(event, replacement_from_json);
+  const ReplacementBody body = body_of<ReplacementBody>(event);
   SessionRow& row = named_row(rows, event);
   if (!row.replaced_by.empty()) {
     throw EventFault(event, "session " + std::to_string(body.session) + " is replaced twice");
@@ -169,7 +171,7 @@ void replace_participant(DerivedRows& rows, const Event& event) {
 }
 
 void withdraw_participant(DerivedRows& rows, const Event& event) {
-  const WithdrawalBody body = body_of(event, withdrawal_from_json);
+  const WithdrawalBody body = body_of<WithdrawalBody>(event);
   SessionRow& row = named_row(rows, event);
   row.withdrawn = true;
   row.erased = row.erased || body.kept != Retention::data;
@@ -177,7 +179,7 @@ void withdraw_participant(DerivedRows& rows, const Event& event) {
 
 /// In a collected study the file's chain states the station of a session.
 void place_session(DerivedRows& rows, const Event& event) {
-  const SessionOpenedBody body = body_of(event, session_opened_from_json);
+  const SessionOpenedBody body = body_of<SessionOpenedBody>(event);
   if (body.station > 0) named_row(rows, event).station = body.station;
 }
 
@@ -189,13 +191,13 @@ void fold_session_event(DerivedRows& rows, const Event& event) {
     case EventKind::first_contact:
       return touch_plane(rows, event);
     case EventKind::answered:
-      return answer_trial(rows, event, body_of(event, answer_from_json));
+      return answer_trial(rows, event, body_of<AnswerBody>(event));
     case EventKind::interrupted:
       return end_trial(rows, event, TrialState::interrupted);
     case EventKind::timed_out:
       return end_trial(rows, event, TrialState::timed_out);
     case EventKind::trace_stored:
-      return measure_trial(rows, event, body_of(event, trace_body_from_json));
+      return measure_trial(rows, event, body_of<TraceBody>(event));
     case EventKind::explored_again:
       return explore_again(rows, event);
     case EventKind::paused:
@@ -222,17 +224,11 @@ std::optional<std::chrono::nanoseconds> TrialRow::from_contact() const {
 }
 
 int session_about(const Event& event) {
-  switch (event.kind) {
-    case EventKind::session_opened:
-    case EventKind::session_closed:
-    case EventKind::participant_excluded:
-    case EventKind::participant_withdrawn:
-    case EventKind::participant_replaced:
-    case EventKind::participant_noted:
-      return body_of(event, session_from_json);
-    default:
-      return belongs_to_file_chain(event.kind) ? 0 : event.session;
-  }
+  if (!belongs_to_file_chain(event.kind)) return event.session;
+  const bool names_session = std::ranges::any_of(
+      members_of(event.kind),
+      [](const ListedMember& listed) { return listed.member.key == "session"; });
+  return names_session ? body_of(event, session_from_json) : 0;
 }
 
 void fold(DerivedRows& rows, const Event& event) {

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "record/event.hpp"
-#include "record/payload.hpp"
+#include "record/session_bodies.hpp"
 
 #include <array>
 #include <chrono>
@@ -46,7 +46,7 @@ struct SessionRow {
   int visit = 1;    ///< of the participant, from 1
 
   /// Whether it may still continue, as far as the session itself is concerned.
-  [[nodiscard]] bool may_go_on() const noexcept {
+  [[nodiscard]] bool can_resume() const noexcept {
     return state == SessionState::open && !withdrawn && replaced_by.empty();
   }
   friend bool operator==(const SessionRow&, const SessionRow&) = default;

@@ -9,7 +9,7 @@
 
 #include "core/public_keys.hpp"
 #include "record/event.hpp"
-#include "record/payload.hpp"
+#include "record/file_bodies.hpp"
 
 #include <chrono>
 #include <cstddef>

@@ -33,11 +33,6 @@ class EventOpener {
   Unsealer safety_;
 };
 
-/// Reads a body from its two parts.
-/// \throws StoreError, naming the key, if they are not such a body
-template <typename Body>
-[[nodiscard]] Body from_parts(const BodyParts& parts);
-
 /// As fold, with an event that was opened; a trace-stored event's body is read with from_parts.
 /// \param event  with its time and nothing sealed; its body does not count
 /// \throws as fold

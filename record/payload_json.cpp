@@ -1,419 +1,215 @@
 #include "record/payload_json.hpp"
 
-#include "record/marks.hpp"
-#include "record/opened_parts.hpp"
-#include "record/payload_io.hpp"
+#include "core/bytes.hpp"
+#include "record/event_kinds.hpp"
 
-#include <type_traits>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <nlohmann/json.hpp>
 
 namespace touchtrial::record {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
-/// A body as `members` gets it: const where it is written.
-template <typename Io, typename Body>
-using In = std::conditional_t<std::is_same_v<Io, BodyWriter>, const Body, Body>;
-
-std::string compact(const json& object) {
+std::string compact(const Json& object) {
   try {
     return object.dump();
-  } catch (const json::exception&) {
+  } catch (const Json::exception&) {
     throw StoreError("a text to be stored is not UTF-8; type it again without special characters");
   }
 }
 
-/// One member of a body, which may hold others.
-template <typename Value, typename... Least>
-Value member_of(const std::string& text, const char* key, Least... least) {
-  const BodyReader reader(text);
-  Value value{};
-  reader(key, value, least...);
-  return value;
-}
+/// Puts the members of a body into one JSON object. The limits that BodyReader checks are ignored
+/// here.
+class BodyWriter final : public BodyIo {
+ public:
+  Json object = Json::object();
+
+ private:
+  Json& at(const Member& member) { return object[std::string(member.key)]; }
+
+  bool has(const Member& /*member*/, bool there) override { return there; }
+  void text(const Member& member, std::string& value) override { at(member) = value; }
+  void truth(const Member& member, bool& value) override { at(member) = value; }
+  void number(const Member& member, double& value) override {
+    // JSON has no infinities.
+    if (!std::isfinite(value)) {
+      throw StoreError("/" + std::string(member.key) +
+                       " to be stored is not a finite number; check the device");
+    }
+    at(member) = value;
+  }
+  void whole(const Member& member, std::int64_t& value, std::int64_t /*max*/) override {
+    at(member) = value;
+  }
+  void bytes(const Member& member, std::span<std::uint8_t> value) override {
+    at(member) = to_hex(ByteView(value));
+  }
+  void word(const Member& member, std::size_t& value,
+            std::span<const std::string_view> words) override {
+    at(member) = words[value];
+  }
+  void numbers(const Member& member, std::span<double> value) override {
+    at(member) = std::vector<double>(value.begin(), value.end());
+  }
+  void numbers(const Member& member, std::vector<double>& value) override { at(member) = value; }
+  void wholes(const Member& member, std::vector<std::int64_t>& value,
+              std::int64_t /*max*/) override {
+    at(member) = value;
+  }
+  void within(const Member& member, const std::function<void(BodyIo&)>& describe) override {
+    BodyWriter inner;
+    describe(inner);
+    at(member) = std::move(inner.object);
+  }
+};
+
+/// Reads the members of a body from one JSON object, or from two: those of the second override.
+class BodyReader final : public BodyIo {
+ public:
+  /// \throws StoreError if a text is not one JSON object
+  explicit BodyReader(const BodyParts& parts) : first_(parsed(parts.clear)) {
+    if (!parts.hidden.empty()) second_ = parsed(parts.hidden);
+  }
+
+  [[nodiscard]] bool reads() const override { return true; }
+
+ private:
+  /// An object within another one.
+  BodyReader(const BodyReader& outer, std::string_view key, const Json& object)
+      : first_(object), place_(outer.place_ + "/" + std::string(key)) {}
+
+  [[nodiscard]] static Json parsed(std::string_view text) {
+    Json object = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+    if (!object.is_object()) throw StoreError("the body is not a JSON object");
+    return object;
+  }
+
+  [[noreturn]] void refuse(const Member& member, const std::string& why) const {
+    throw StoreError(place_ + "/" + std::string(member.key) + " " + why);
+  }
+  /// \return null if there is none
+  [[nodiscard]] const Json* find(const Member& member) const {
+    for (const Json* const object : {&second_, &first_}) {
+      if (const auto found = object->find(member.key); found != object->end()) return &*found;
+    }
+    return nullptr;
+  }
+  [[nodiscard]] const Json& at(const Member& member) const {
+    const Json* const found = find(member);
+    if (found == nullptr) refuse(member, "is missing");
+    return *found;
+  }
+  [[nodiscard]] const std::string& text_at(const Member& member) const {
+    const Json& found = at(member);
+    if (!found.is_string()) refuse(member, "is not a text");
+    return found.get_ref<const std::string&>();
+  }
+  [[nodiscard]] const Json& list_at(const Member& member) const {
+    const Json& found = at(member);
+    if (!found.is_array()) refuse(member, "is not a list");
+    return found;
+  }
+  [[nodiscard]] double number_in(const Member& member, const Json& item) const {
+    if (!item.is_number()) refuse(member, "contains something other than numbers");
+    return item.get<double>();
+  }
+
+  bool has(const Member& member, bool /*there*/) override { return find(member) != nullptr; }
+  void text(const Member& member, std::string& value) override { value = text_at(member); }
+  void truth(const Member& member, bool& value) override {
+    const Json& found = at(member);
+    if (!found.is_boolean()) refuse(member, "is neither true nor false");
+    value = found.get<bool>();
+  }
+  void number(const Member& member, double& value) override {
+    const Json& found = at(member);
+    if (!found.is_number()) refuse(member, "is not a number");
+    value = found.get<double>();
+  }
+  void whole(const Member& member, std::int64_t& value, std::int64_t max) override {
+    const Json& found = at(member);
+    if (!found.is_number_integer()) refuse(member, "is not a whole number");
+    value = found.get<std::int64_t>();
+    const bool is_too_large = found.is_number_unsigned() && value < 0;
+    if (is_too_large || value < member.note.min || value > max) refuse(member, "is out of range");
+  }
+  void bytes(const Member& member, std::span<std::uint8_t> value) override {
+    const Json& found = at(member);
+    const std::optional<Bytes> bytes =
+        found.is_string() ? from_hex(found.get_ref<const std::string&>()) : std::nullopt;
+    if (!bytes || bytes->size() != value.size()) {
+      refuse(member, "is not " + std::to_string(2 * value.size()) + " hexadecimal digits");
+    }
+    std::ranges::copy(*bytes, value.begin());
+  }
+  void word(const Member& member, std::size_t& value,
+            std::span<const std::string_view> words) override {
+    const auto found = std::ranges::find(words, text_at(member));
+    if (found == words.end()) refuse(member, "is not one of its words");
+    value = static_cast<std::size_t>(found - words.begin());
+  }
+  void numbers(const Member& member, std::span<double> value) override {
+    const Json& found = at(member);
+    if (!found.is_array() || found.size() != value.size()) {
+      refuse(member, "is not a list of the right length");
+    }
+    std::ranges::transform(found, value.begin(),
+                           [&](const Json& item) { return number_in(member, item); });
+  }
+  void numbers(const Member& member, std::vector<double>& value) override {
+    for (const Json& item : list_at(member)) value.push_back(number_in(member, item));
+  }
+  void wholes(const Member& member, std::vector<std::int64_t>& value, std::int64_t max) override {
+    for (const Json& item : list_at(member)) {
+      if (!item.is_number_unsigned()) {
+        refuse(member, "contains something other than whole numbers from 0");
+      }
+      value.push_back(item.get<std::int64_t>());
+      if (value.back() < member.note.min || value.back() > max) refuse(member, "is out of range");
+    }
+  }
+  void within(const Member& member, const std::function<void(BodyIo&)>& describe) override {
+    const Json& found = at(member);
+    if (!found.is_object()) refuse(member, "is not an object");
+    BodyReader inner(*this, member.key, found);
+    describe(inner);
+  }
+
+  Json first_ = Json::object();
+  Json second_ = Json::object();  ///< its members override those of the first
+  std::string place_;             ///< JSON pointer
+};
+
+/// The one member of the bodies about a session.
+struct SessionNumber {
+  int session = 0;
+
+  void describe(BodyIo& io) { io("session", session, "", {.min = 1}); }
+};
 
 }  // namespace
 
-/// Left out of a first visit.
-template <typename Io>
-void visit_member(Io& io, In<Io, int>& visit) {
-  if constexpr (std::is_same_v<Io, BodyWriter>) {
-    if (visit == 1) return;
-  }
-  io.if_any("visit", visit, 2);
-}
-
-/// A choice or a rating, whose members are inlined into the body.
-template <typename Io>
-void answer_members(Io& io, In<Io, std::optional<Answer>>& answer) {
-  std::optional<int> position = position_of(answer);
-  std::optional<int> first_position = first_position_of(answer);
-  std::optional<std::vector<double>> ratings;
-  if (answer && !position) ratings = ratings_of(answer);
-  io("position", position);
-  io("first_position", first_position);
-  io("ratings", ratings);
-  if constexpr (!std::is_same_v<Io, BodyWriter>) {
-    if (position && ratings) throw StoreError("/ratings stands beside a position");
-    if (position) answer = Chosen{*position, first_position};
-    if (ratings) answer = Rated{std::move(*ratings)};
-  }
-}
-
-// The members of each body: key, member, and the minimum of a whole number unless it is 0.
-
-template <typename Io>
-void members(Io& io, In<Io, StationIdentity>& body) {
-  io("name", body.name);
-  io("key", body.key);
-  io("certificate", body.certificate);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, StudyCommitment>& body) {
-  io("study", body.study);
-  io("protocol", body.protocol);
-  io("study_id", body.study_id);
-  io("seal", body.seal);
-  io("pack", body.pack);
-  io("configuration", body.configuration);
-  io("scored_trials", body.scored_trials);
-  io("positions", body.positions);
-  io("simulated", body.simulated);
-  io("pilot", body.pilot);
-  io("safety_record_years", body.safety_record_years);
-  io("program_version", body.program_version);
-  io("investigator", body.investigator);
-  io.part("station", body.station);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, ScreenRecord>& body) {
-  io("mm_per_px", body.mm_per_px);
-  io("source", body.source);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, StationRecord>& body) {
-  io("model", body.model);
-  io("firmware", body.firmware);
-  io("max_force_n", body.max_force_n);
-  io("visual", body.visual);
-  io("rate_hz", body.rate_hz);
-  io("scheduling", body.scheduling);
-  io("calibration", body.calibration);
-  io.part("screen", body.screen);
-  io("force_scale", body.force_scale);
-  io("length_scale", body.length_scale);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, SessionOpening>& body) {
-  io("participant", body.participant);
-  io("enrolment", body.enrolment, 1);
-  visit_member(io, body.visit);
-  io.if_any("group", body.group);
-  io("study_id", body.study_id);
-  io("seal", body.seal);
-  io("device", body.device);
-  io("device_serial", body.device_serial);
-  io("opened_utc", body.opened_utc);
-  io("simulated", body.simulated);
-  io("pilot", body.pilot);
-  io.part("station", body.station);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, AnswerBody>& body) {
-  io("trial", body.trial, 1);
-  answer_members(io, body.answer);
-  io("confidence", body.confidence);
-  io("kind", body.kind);
-  io("track", body.track);
-  io("level", body.level);
-  io("target", body.target);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, MarksBody>& body) {
-  io("codes", body.codes);
-  io("trials", body.trials);
-  io("at_ns", body.at_ns);
-  io("latency_ns", body.latency_ns);
-  io("lsl_zero_s", body.lsl_zero_s);
-  io("lsl_uncertainty_s", body.lsl_uncertainty_s);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, PracticeBody>& body) {
-  io("round", body.round, 1);
-  io("presentation", body.presentation, 1);
-  answer_members(io, body.answer);
-  io("correct", body.correct);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, StopBody>& body) {
-  io.if_any("code", body.code);
-  io.sealed("text", body.text);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, DeviationBody>& body) {
-  io("code", body.code);
-  io.sealed("text", body.text);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, PauseBody>& body) {
-  io.sealed("text", body.text);
-  io.if_any("trial", body.trial, 1);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, ResumedBody>& body) {
-  io("after", body.after);
-  io.sealed("away_s", body.away_s);
-  io("program_version", body.program_version);
-  io.if_any("trial", body.trial, 1);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, ServoHealth>& body) {
-  io("rate_hz", body.rate_hz);
-  io("lateness_p50_us", body.lateness_p50_us);
-  io("lateness_p99_us", body.lateness_p99_us);
-  io("lateness_p999_us", body.lateness_p999_us);
-  io("lateness_worst_us", body.lateness_worst_us);
-  io("lost", body.lost);
-  io("held", body.held);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, TraceBody>& body) {
-  io("trial", body.trial, 1);
-  io.sealed("samples", body.samples);
-  io("rate_hz", body.rate_hz);
-  io("overruns", body.overruns);
-  io("valid", body.valid);
-  io("contact_ok", body.hand.contact);
-  io("path_ok", body.hand.path);
-  io("force_ok", body.hand.force);
-  io("speed_ok", body.hand.speed);
-  io.sealed("saturated", body.saturated);
-  io("trace", body.trace);
-  io.sealed("largest_force_n", body.largest_force_n);
-  io.if_any("explorations", body.explorations);
-  io.if_any("began_ns", body.began_ns);
-  io.part("servo", body.servo);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, TrialMeasures>& body) {
-  io("contact_s", body.contact_s);
-  io("path_mm", body.path_mm);
-  io("force_rms_n", body.force_rms_n);
-  io("saturated_share", body.saturated_share);
-  io("within_limits", body.within_limits);
-  io("limited_ticks", body.limited_ticks);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, InterruptionDetail>& body) {
-  io("safety_fault", body.safety_fault);
-  io("device_fault", body.device_fault);
-  io("ticks", body.ticks);
-  io("flight", body.flight);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, ClosedBody>& body) {
-  io("complete", body.complete);
-  io.if_any("answers", body.answers);
-  io.if_any("one_key", body.one_key);
-  io("largest_force_n", body.largest_force_n);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, ChainEnd>& body) {
-  io("length", body.length, 1);
-  io("head", body.head);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, SessionOpenedBody>& body) {
-  io("session", body.session, 1);
-  io("participant", body.participant);
-  io("enrolment", body.enrolment, 1);
-  visit_member(io, body.visit);
-  io("first", body.first);
-  io("key", body.key);
-  io("safety_key", body.safety_key);
-  io("kept", body.kept);
-  io("remarks", body.remarks);
-  io("reasons", body.reasons);
-  io.if_any("station", body.station, 1);
-  io.if_any("own_session", body.own_session, 1);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, SessionClosedBody>& body) {
-  io("session", body.session, 1);
-  io("length", body.length, 1);
-  io("head", body.head);
-  io("complete", body.complete);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, ParticipantBody>& body) {
-  io("session", body.session, 1);
-  io.sealed("reason", body.reason);
-  io.if_any("after_outcomes", body.after_outcomes);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, WithdrawalBody>& body) {
-  io("session", body.session, 1);
-  io("kept", body.kept);
-  io.sealed("reason", body.reason);
-  io.if_any("not_erased", body.not_erased);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, ReplacementBody>& body) {
-  io("session", body.session, 1);
-  io("by", body.by);
-  io.sealed("reason", body.reason);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, NoteBody>& body) {
-  io("session", body.session, 1);
-  io("code", body.code);
-  io.sealed("text", body.text);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, UnblindingBody>& body) {
-  io("reason", body.reason);
-  io("interim", body.interim);
-  io.if_any("question_alone", body.question_alone);
-  io("sessions", body.sessions);
-  io.if_any("participant", body.participant);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, LossBody>& body) {
-  io("reason", body.reason);
-  io("missing", body.missing);
-  io("answers", body.answers);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, HeadsBody>& body) {
-  io("also", body.also);
-}
-
-// Only for reading: writers omit members by kind of event.
-
-template <typename Io>
-void members(Io& io, In<Io, TrialBody>& body) {
-  io("trial", body.trial, 1);
-  io.if_any("block", body.block);
-  io.if_any("reason", body.reason);
-  io.if_any("safety_fault", body.safety_fault);
-  io.if_any("device_fault", body.device_fault);
-  io.if_any("largest_force_n", body.largest_force_n);
-}
-
-template <typename Io>
-void members(Io& io, In<Io, BlockBody>& body) {
-  io("block", body.block);
-  io("first_trial", body.first_trial, 1);
-}
-
-template <typename Body>
-std::string to_json(const Body& body) {
+std::string written_body(const DescribeMembers& describe) {
   BodyWriter writer;
-  members(writer, body);
-  return compact(writer.object());
+  describe(writer);
+  return compact(writer.object);
 }
 
-template <typename Body>
-Body from_json(const std::string& text) {
-  BodyReader reader(text);
-  Body body;
-  members(reader, body);
-  return body;
+void read_body(const BodyParts& parts, const DescribeMembers& describe) {
+  BodyReader reader(parts);
+  describe(reader);
 }
 
-template <typename Body>
-Body from_parts(const BodyParts& parts) {
-  BodyReader reader(parts.clear, parts.hidden);
-  Body body;
-  members(reader, body);
-  return body;
-}
-
-template AnswerBody from_parts(const BodyParts&);
-template TraceBody from_parts(const BodyParts&);
-
-template std::string to_json(const StudyCommitment&);
-template std::string to_json(const SessionOpening&);
-template std::string to_json(const AnswerBody&);
-template std::string to_json(const PracticeBody&);
-template std::string to_json(const StopBody&);
-template std::string to_json(const DeviationBody&);
-template std::string to_json(const PauseBody&);
-template std::string to_json(const ResumedBody&);
-template std::string to_json(const TraceBody&);
-template std::string to_json(const TrialMeasures&);
-template std::string to_json(const InterruptionDetail&);
-template std::string to_json(const ClosedBody&);
-template std::string to_json(const ChainEnd&);
-template std::string to_json(const SessionOpenedBody&);
-template std::string to_json(const SessionClosedBody&);
-template std::string to_json(const ParticipantBody&);
-template std::string to_json(const WithdrawalBody&);
-template std::string to_json(const ReplacementBody&);
-template std::string to_json(const NoteBody&);
-template std::string to_json(const UnblindingBody&);
-template std::string to_json(const LossBody&);
-template std::string to_json(const HeadsBody&);
-template std::string to_json(const MarksBody&);
-
-template StudyCommitment from_json(const std::string&);
-template SessionOpening from_json(const std::string&);
-template AnswerBody from_json(const std::string&);
-template PracticeBody from_json(const std::string&);
-template StopBody from_json(const std::string&);
-template DeviationBody from_json(const std::string&);
-template PauseBody from_json(const std::string&);
-template ResumedBody from_json(const std::string&);
-template TraceBody from_json(const std::string&);
-template InterruptionDetail from_json(const std::string&);
-template ClosedBody from_json(const std::string&);
-template ChainEnd from_json(const std::string&);
-template SessionOpenedBody from_json(const std::string&);
-template SessionClosedBody from_json(const std::string&);
-template ParticipantBody from_json(const std::string&);
-template WithdrawalBody from_json(const std::string&);
-template ReplacementBody from_json(const std::string&);
-template NoteBody from_json(const std::string&);
-template UnblindingBody from_json(const std::string&);
-template LossBody from_json(const std::string&);
-template HeadsBody from_json(const std::string&);
-template TrialBody from_json(const std::string&);
-template BlockBody from_json(const std::string&);
-
-MarksBody marks_from_json(const std::string& text) {
-  auto marks = from_json<MarksBody>(text);
-  const std::size_t count = marks.codes.size();
-  if (marks.trials.size() != count || marks.at_ns.size() != count ||
-      marks.latency_ns.size() != count) {
-    throw StoreError("/codes has another length than the lists beside it");
+void require_members(const Event& event) {
+  try {
+    read_body({event.body, ""}, row_of(event.kind).body);
+  } catch (const StoreError& error) {
+    throw EventFault(event, error.what());
   }
-  return marks;
 }
 
 TrialMeasures measures_from_json(const std::string& text) try {
@@ -423,52 +219,21 @@ TrialMeasures measures_from_json(const std::string& text) try {
                    "; the database is damaged or of another version, restore it from a backup");
 }
 
-std::string presented_to_json(int trial, int block) {
-  return compact({{"trial", trial}, {"block", block}});
-}
-
-std::string interrupted_to_json(int trial, const std::string& reason,
-                                const InterruptionDetail* detail) {
-  json body{{"trial", trial}, {"reason", reason}};
-  if (detail != nullptr) {
-    body["safety_fault"] = detail->safety_fault;
-    body["device_fault"] = detail->device_fault;
-    body["largest_force_n"] = detail->largest_force_n;
-  }
-  return compact(body);
-}
-
-std::string trial_to_json(int trial) {
-  return compact({{"trial", trial}});
-}
-
-std::string block_to_json(int block, int first_trial) {
-  return compact({{"block", block}, {"first_trial", first_trial}});
-}
-
-std::string remark_to_json(const std::string& text) {
-  return compact({{"text", text}});
-}
-
-std::string remark_from_json(const std::string& text) {
-  return member_of<std::string>(text, "text");
-}
-
 int session_from_json(const std::string& text) {
-  return member_of<int>(text, "session", 1);
+  return from_json<SessionNumber>(text).session;
 }
 
 // Works on JSON, so that members added to the structs later do not change collected chains.
 std::string renumbered(const std::string& body, int session) {
   static_cast<void>(session_from_json(body));
-  json object = json::parse(body);
+  Json object = Json::parse(body);
   object["session"] = session;
   return compact(object);
 }
 
 std::string renumbered_opening(const std::string& body, int session, int station) {
   const int own_session = session_from_json(body);
-  json object = json::parse(body);
+  Json object = Json::parse(body);
   object["session"] = session;
   object["own_session"] = own_session;
   object["station"] = station;

@@ -3,26 +3,54 @@
 /// docs/data-dictionary.md, "Events".
 #pragma once
 
-#include "record/payload.hpp"
+#include "record/body_io.hpp"
+#include "record/body_parts.hpp"
+#include "record/damage.hpp"
+#include "record/event.hpp"
+#include "record/file_bodies.hpp"
+#include "record/session_bodies.hpp"
 
+#include <functional>
 #include <string>
 
 namespace touchtrial::record {
 
-struct MarksBody;
+using DescribeMembers = std::function<void(BodyIo& io)>;
 
-/// Takes every struct of payload.hpp that is a body or a sealed part, except TrialBody and
-/// BlockBody.
 /// \throws StoreError if a text is not UTF-8 or a number is not finite
+[[nodiscard]] std::string written_body(const DescribeMembers& describe);
+/// \throws StoreError, naming the key, if the parts are not such a body
+void read_body(const BodyParts& parts, const DescribeMembers& describe);
+
+/// \throws as written_body
 template <typename Body>
-[[nodiscard]] std::string to_json(const Body& body);
-[[nodiscard]] std::string presented_to_json(int trial, int block);
-/// \param detail  null: not in real time
-[[nodiscard]] std::string interrupted_to_json(int trial, const std::string& reason,
-                                              const InterruptionDetail* detail);
-[[nodiscard]] std::string trial_to_json(int trial);
-[[nodiscard]] std::string block_to_json(int block, int first_trial);
-[[nodiscard]] std::string remark_to_json(const std::string& text);
+[[nodiscard]] std::string to_json(Body body) {
+  return written_body([&](BodyIo& io) { body.describe(io); });
+}
+
+/// \throws as read_body
+template <typename Body>
+[[nodiscard]] Body from_parts(const BodyParts& parts) {
+  Body body;
+  read_body(parts, [&](BodyIo& io) { body.describe(io); });
+  return body;
+}
+/// \throws as read_body
+template <typename Body>
+[[nodiscard]] Body from_json(const std::string& text) {
+  return from_parts<Body>({text, ""});
+}
+
+/// The body of an event.
+/// \throws EventFault, naming the event, if it is not such a body
+template <typename Body>
+[[nodiscard]] Body body_of(const Event& event) {
+  return body_of(event, from_json<Body>);
+}
+
+/// Requires the body of an event to have the members of its kind.
+/// \throws EventFault, naming the event, if it does not
+void require_members(const Event& event);
 
 /// The body of a station's event as a collected study holds it: `session` is the session's number
 /// there; everything else is unchanged.
@@ -31,38 +59,9 @@ template <typename Body>
 /// The same for a `session-opened`, which also gets the session's station.
 [[nodiscard]] std::string renumbered_opening(const std::string& body, int session, int station);
 
-/// All readers throw StoreError if the text is not such a body; the message names the key.
-template <typename Body>
-[[nodiscard]] Body from_json(const std::string& text);
-
-inline constexpr auto* commitment_from_json = &from_json<StudyCommitment>;
-inline constexpr auto* opening_from_json = &from_json<SessionOpening>;
-inline constexpr auto* answer_from_json = &from_json<AnswerBody>;
-inline constexpr auto* practice_from_json = &from_json<PracticeBody>;
-inline constexpr auto* stop_from_json = &from_json<StopBody>;
-inline constexpr auto* deviation_from_json = &from_json<DeviationBody>;
-inline constexpr auto* pause_from_json = &from_json<PauseBody>;
-inline constexpr auto* resumed_from_json = &from_json<ResumedBody>;
-inline constexpr auto* trace_body_from_json = &from_json<TraceBody>;
-inline constexpr auto* interruption_from_json = &from_json<InterruptionDetail>;
-/// \throws StoreError also if the lists differ in length
-[[nodiscard]] MarksBody marks_from_json(const std::string& text);
-inline constexpr auto* closed_from_json = &from_json<ClosedBody>;
-inline constexpr auto* chain_end_from_json = &from_json<ChainEnd>;
-inline constexpr auto* session_opened_from_json = &from_json<SessionOpenedBody>;
-inline constexpr auto* session_closed_from_json = &from_json<SessionClosedBody>;
-inline constexpr auto* participant_from_json = &from_json<ParticipantBody>;
-inline constexpr auto* withdrawal_from_json = &from_json<WithdrawalBody>;
-inline constexpr auto* replacement_from_json = &from_json<ReplacementBody>;
-inline constexpr auto* note_from_json = &from_json<NoteBody>;
-inline constexpr auto* unblinding_from_json = &from_json<UnblindingBody>;
-inline constexpr auto* loss_from_json = &from_json<LossBody>;
-inline constexpr auto* heads_from_json = &from_json<HeadsBody>;
-/// The other members where the body has them.
-inline constexpr auto* trial_from_json = &from_json<TrialBody>;
-inline constexpr auto* block_from_json = &from_json<BlockBody>;
+/// The measures that are sealed with a trace.
+/// \throws StoreError with the remedy
 [[nodiscard]] TrialMeasures measures_from_json(const std::string& text);
-[[nodiscard]] std::string remark_from_json(const std::string& text);
 /// The number of the session that a body on the file's chain is about.
 [[nodiscard]] int session_from_json(const std::string& text);
 

@@ -15,7 +15,7 @@ constexpr std::size_t kStep = 256;
 
 /// A remark without a code is not a deviation. Everything else is part of the safety record.
 bool is_plain_remark(EventKind kind, const std::string& body) {
-  return kind == EventKind::participant_noted && note_from_json(body).code.empty();
+  return kind == EventKind::participant_noted && from_json<NoteBody>(body).code.empty();
 }
 
 /// Collecting renumbers chains and sessions but does not change these members.

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "record/event.hpp"
-#include "record/payload.hpp"
+#include "record/file_bodies.hpp"
 
 #include <optional>
 #include <string>

@@ -1,6 +1,7 @@
 #include "record/sealing.hpp"
 
 #include "record/body_parts.hpp"
+#include "record/event_kinds.hpp"
 #include "record/opened_parts.hpp"
 
 #include <algorithm>
@@ -108,7 +109,7 @@ SecretKey safety_key(const SecretKey& participant_key) {
 }
 
 bool is_safety_record(EventKind kind) {
-  return kind == EventKind::stopped || kind == EventKind::deviated || kind == EventKind::closed;
+  return row_of(kind).more.in_safety_record;
 }
 
 NewKeys wrap_participant_key(const PublicKey& investigator, int own_session,

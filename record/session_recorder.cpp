@@ -2,7 +2,6 @@
 
 #include "core/errors.hpp"
 #include "record/body_parts.hpp"
-#include "record/payload_json.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,20 +9,6 @@
 
 namespace touchtrial::record {
 namespace {
-
-bool is_remark(EventKind kind) {
-  switch (kind) {
-    case EventKind::calibrated:
-    case EventKind::instructed:
-    case EventKind::break_taken:
-    case EventKind::stopped:
-    case EventKind::noted:
-    case EventKind::ticked:
-      return true;
-    default:
-      return false;
-  }
-}
 
 /// The padding of an interruption: for a flight record of three seconds, which the usual record
 /// never exceeds, or for its ticks in whole thousands if it is longer. The size therefore reveals
@@ -62,11 +47,11 @@ void SessionRecorder::opened(std::chrono::nanoseconds at, const SessionOpening& 
 }
 
 void SessionRecorder::presented(std::chrono::nanoseconds at, int trial, int block) {
-  append(at, {EventKind::presented, presented_to_json(trial, block)});
+  append(at, {EventKind::presented, to_json(PresentedBody{.trial = trial, .block = block})});
 }
 
 void SessionRecorder::first_contact(std::chrono::nanoseconds at, int trial) {
-  append(at, {EventKind::first_contact, trial_to_json(trial)});
+  append(at, {EventKind::first_contact, to_json(TrialBody{trial})});
 }
 
 void SessionRecorder::answered(std::chrono::nanoseconds at, const AnswerBody& answer,
@@ -76,8 +61,13 @@ void SessionRecorder::answered(std::chrono::nanoseconds at, const AnswerBody& an
 
 void SessionRecorder::interrupted(std::chrono::nanoseconds at, int trial, const std::string& reason,
                                   const std::optional<InterruptionDetail>& detail) {
-  Draft draft{EventKind::interrupted,
-              interrupted_to_json(trial, reason, detail ? &*detail : nullptr)};
+  InterruptedBody body{.trial = trial, .reason = reason};
+  if (detail) {
+    body.safety_fault = detail->safety_fault;
+    body.device_fault = detail->device_fault;
+    body.largest_force_n = detail->largest_force_n;
+  }
+  Draft draft{EventKind::interrupted, to_json(body)};
   if (detail) {
     draft.secret = to_json(*detail);
     draft.padding = interruption_padding(detail->ticks);
@@ -87,7 +77,7 @@ void SessionRecorder::interrupted(std::chrono::nanoseconds at, int trial, const 
 
 void SessionRecorder::timed_out(std::chrono::nanoseconds at, int trial,
                                 const std::optional<TrialEvidence>& evidence) {
-  append_with(at, evidence, {EventKind::timed_out, trial_to_json(trial)});
+  append_with(at, evidence, {EventKind::timed_out, to_json(TrialBody{trial})});
 }
 
 TrialEvidence SessionRecorder::packed(TraceBody body, const TrialMeasures& measures,
@@ -104,51 +94,10 @@ void SessionRecorder::trace_stored(std::chrono::nanoseconds at, const TraceBody&
   append(at, draft_of(packed(body, measures, trace)));
 }
 
-void SessionRecorder::practised(std::chrono::nanoseconds at, const PracticeBody& body) {
-  append(at, {EventKind::practised, to_json(body)});
-}
-
-void SessionRecorder::deviated(std::chrono::nanoseconds at, const DeviationBody& body) {
-  append(at, {EventKind::deviated, to_json(body)});
-}
-
-void SessionRecorder::questioned(std::chrono::nanoseconds at, const std::string& name,
-                                 const std::string& answers) {
-  append(at, {EventKind::questioned, remark_to_json(name), answers});
-}
-
-void SessionRecorder::marked(std::chrono::nanoseconds at, const MarksBody& marks) {
-  append(at, {EventKind::marked, "{}", to_json(marks)});
-}
-
-void SessionRecorder::explored_again(std::chrono::nanoseconds at, int trial) {
-  append(at, {EventKind::explored_again, trial_to_json(trial)});
-}
-
 void SessionRecorder::block_restarted(std::chrono::nanoseconds at, int block, int first_trial,
                                       const std::string& secret_schedule) {
-  append(at, {EventKind::block_restarted, block_to_json(block, first_trial), secret_schedule});
-}
-
-void SessionRecorder::paused(std::chrono::nanoseconds at, const PauseBody& body) {
-  append(at, {EventKind::paused, to_json(body)});
-}
-
-void SessionRecorder::resumed(std::chrono::nanoseconds at, const ResumedBody& body) {
-  append(at, {EventKind::resumed, to_json(body)});
-}
-
-void SessionRecorder::remarked(std::chrono::nanoseconds at, EventKind kind,
-                               const std::string& text) {
-  if (!is_remark(kind)) {
-    throw StoreError("an event of kind '" + std::string(name_of(kind)) +
-                     "' is not a remark; use its own function");
-  }
-  append(at, {kind, remark_to_json(text)});
-}
-
-void SessionRecorder::stopped(std::chrono::nanoseconds at, const StopBody& why) {
-  append(at, {EventKind::stopped, to_json(why)});
+  append(at, {EventKind::block_restarted,
+              to_json(BlockBody{.block = block, .first_trial = first_trial}), secret_schedule});
 }
 
 void SessionRecorder::closed(std::chrono::nanoseconds at, bool complete, int answers, bool one_key,
@@ -174,6 +123,15 @@ SessionRecorder::Draft SessionRecorder::draft_of(TrialEvidence evidence) {
           .body = to_json(evidence.body),
           .secret = to_json(evidence.measures),
           .trace = std::move(evidence.trace)};
+}
+
+void SessionRecorder::add_described(std::chrono::nanoseconds at, EventKind kind,
+                                    DescribeBody describe, std::string body, std::string secret) {
+  if (row_of(kind).body != describe) {
+    throw StoreError("an event of kind '" + std::string(name_of(kind)) +
+                     "' has another body; use the one of its row in event_kinds.cpp");
+  }
+  append(at, {kind, std::move(body), std::move(secret)});
 }
 
 void SessionRecorder::append(std::chrono::nanoseconds at, Draft draft) {

@@ -1,7 +1,8 @@
 /// \file Records one session as chained, sealed events.
 #pragma once
 
-#include "record/payload.hpp"
+#include "record/event_kinds.hpp"
+#include "record/payload_json.hpp"
 #include "record/sealing.hpp"
 
 #include <chrono>
@@ -13,8 +14,6 @@
 #include <vector>
 
 namespace touchtrial::record {
-
-struct MarksBody;
 
 /// An event, and the trace that comes with one of kind trace_stored.
 struct RecordedEvent {
@@ -83,24 +82,17 @@ class SessionRecorder {
   /// Stores the result of `packed`, without an answer.
   void trace_stored(std::chrono::nanoseconds at, const TraceBody& body,
                     const TrialMeasures& measures, const Trace& trace);
-  void practised(std::chrono::nanoseconds at, const PracticeBody& body);
-  void deviated(std::chrono::nanoseconds at, const DeviationBody& body);
-  /// \param name  of the questionnaire, in clear
-  /// \param answers  JSON, sealed
-  void questioned(std::chrono::nanoseconds at, const std::string& name, const std::string& answers);
-  /// Entirely sealed.
-  void marked(std::chrono::nanoseconds at, const MarksBody& marks);
-  void explored_again(std::chrono::nanoseconds at, int trial);
   /// \param first_trial  number of the block's first trial from now on
   /// \param secret_schedule  JSON of the block's new presentations, sealed
   void block_restarted(std::chrono::nanoseconds at, int block, int first_trial,
                        const std::string& secret_schedule);
-  void paused(std::chrono::nanoseconds at, const PauseBody& body);
-  void resumed(std::chrono::nanoseconds at, const ResumedBody& body);
-  /// \param kind  calibrated, instructed, break_taken, stopped, noted or ticked
-  /// \param text  one line, or empty; sealed if a person may have typed it: stopped, noted
-  void remarked(std::chrono::nanoseconds at, EventKind kind, const std::string& text);
-  void stopped(std::chrono::nanoseconds at, const StopBody& why);
+  /// Any other event: one whose body, and perhaps a sealed text beside it, says all.
+  /// \throws StoreError also if events of this kind have another body
+  template <typename Body>
+  void add(std::chrono::nanoseconds at, EventKind kind, const Body& body,
+           const std::string& secret = {}) {
+    add_described(at, kind, describe_body<Body>, to_json(body), secret);
+  }
   /// Seals the chain's current length and head into the event, see ChainEnd.
   /// \param complete  whether the schedule was finished
   /// \param answers, one_key, largest_force_n  see ClosedBody
@@ -123,6 +115,8 @@ class SessionRecorder {
     std::optional<std::size_t> padding{};  ///< empty: the kind's
     std::optional<SealedTrace> trace{};
   };
+  void add_described(std::chrono::nanoseconds at, EventKind kind, DescribeBody describe,
+                     std::string body, std::string secret);
   void append(std::chrono::nanoseconds at, Draft draft);
   /// All or none, one after the other at the same time.
   void append_together(std::chrono::nanoseconds at, std::span<Draft> drafts);

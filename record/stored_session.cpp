@@ -62,7 +62,7 @@ void require_match(const Event& event, const SealedTrace* trace) {
     if (trace == nullptr) return;
     throw EventFault(event, "an event of this kind has no trace");
   }
-  const int trial = body_of(event, trace_body_from_json).trial;
+  const int trial = body_of<TraceBody>(event).trial;
   if (trace == nullptr || trace->session != event.session || trace->trial != trial) {
     throw EventFault(event, "the trace of trial " + std::to_string(trial) + " is missing");
   }
@@ -102,7 +102,7 @@ void StoredStudy::admit(const Event& opened, const SessionKeys& keys, std::chron
   if (opened.kind != EventKind::opened) {
     throw EventFault(opened, "a session begins with 'opened'");
   }
-  const SessionOpening opening = body_of(opened, opening_from_json);
+  const SessionOpening opening = body_of<SessionOpening>(opened);
   check_opening(opening);
   append_to_file(EventKind::session_opened, at,
                  to_json(SessionOpenedBody{
@@ -124,12 +124,11 @@ void StoredStudy::admit(const Event& opened, const SessionKeys& keys, std::chron
 bool StoredStudy::conclude(const Event& closed, std::chrono::nanoseconds at) {
   Query kept = database_.query("DELETE FROM station_keys WHERE session = ? RETURNING session");
   const bool erased = kept.bind(closed.session).step();
-  append_to_file(
-      EventKind::session_closed, at,
-      to_json(SessionClosedBody{.session = closed.session,
-                                .length = closed.sequence + 1,
-                                .head = closed.hash,
-                                .complete = body_of(closed, closed_from_json).complete}));
+  append_to_file(EventKind::session_closed, at,
+                 to_json(SessionClosedBody{.session = closed.session,
+                                           .length = closed.sequence + 1,
+                                           .head = closed.hash,
+                                           .complete = body_of<ClosedBody>(closed).complete}));
   return erased;
 }
 
@@ -166,7 +165,7 @@ void StoredStudy::refuse_mixture(const SessionOpening& opening) const {
            "or choose a device that is felt");
   }
   const std::optional<Event> earlier = read_event(database_, 1, 0);
-  if (earlier && body_of(*earlier, opening_from_json).is_visual() != visual) {
+  if (earlier && body_of<SessionOpening>(*earlier).is_visual() != visual) {
     refuse(std::string("its sessions are ") + (visual ? "felt" : "seen on a screen") +
            ", and device '" + opening.device + "' is " + (visual ? "seen" : "felt") +
            ": they are never pooled; use another database");

@@ -24,7 +24,7 @@ const StudyCommitment& StoredStudy::commitment() const {
   if (!commitment_) {
     const std::optional<Event> first = read_event(database_, 0, 0);
     if (!first) refuse("its first event is missing; restore it from a backup");
-    commitment_ = body_of(*first, commitment_from_json);
+    commitment_ = body_of<StudyCommitment>(*first);
   }
   return *commitment_;
 }
@@ -41,7 +41,7 @@ StudyState StoredStudy::state() const {
   // Only a look before the end depends on the sessions so far.
   const bool is_final = std::ranges::all_of(decisions, [](const Event& event) {
     if (event.kind == EventKind::study_closed) return true;
-    const UnblindingBody body = body_of(event, unblinding_from_json);
+    const UnblindingBody body = body_of<UnblindingBody>(event);
     return !body.interim && !body.question_alone && body.participant.empty();
   });
   return state_of_chain(is_final ? decisions : chain_of({}));
@@ -198,7 +198,7 @@ void StoredStudy::append_to_file(EventKind kind, std::chrono::nanoseconds at,
 
 void StoredStudy::append_about(int session, EventKind kind, std::chrono::nanoseconds at,
                                const std::string& body) {
-  const SessionOpenedBody opened = body_of(opening_on_file(session), session_opened_from_json);
+  const SessionOpenedBody opened = body_of<SessionOpenedBody>(opening_on_file(session));
   PersonText text = sealed_person_text(kind, at, body, opened);
   append_to_file(kind, at, text.clear, std::move(text.sealed));
 }

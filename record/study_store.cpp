@@ -133,7 +133,7 @@ std::optional<std::string> StudyStore::heads_on_record() const {
   return impl_->run([&] {
     std::optional<std::string> also;
     for_each_event(impl_->database(), {.session = 0, .kinds = std::span(&kKind, 1)},
-                   [&](const Event& event) { also = body_of(event, heads_from_json).also; });
+                   [&](const Event& event) { also = body_of<HeadsBody>(event).also; });
     return also;
   });
 }
@@ -325,7 +325,7 @@ void StudyStore::look_at(const std::string& participant, std::chrono::nanosecond
                           " has withdrawn, and the data are erased; there is nothing to see");
     }
     for (const SessionRow& row : rows) {
-      if (!row.may_go_on()) continue;
+      if (!row.can_resume()) continue;
       impl_->study.refuse("session " + std::to_string(row.session) + " (" + whose +
                           ") may still continue; look at it when it has ended");
     }

@@ -6,7 +6,7 @@ import argparse, csv, json, math, os, sys
 import numpy as np
 from scipy import interpolate, optimize, special, stats
 
-# --- What docs/thresholds.md states ---
+# --- Definitions of docs/thresholds.md ---
 
 WIDTHS = (2.0, 60.0)  # dB, from F = .05 to .95
 USUAL_WIDTH = stats.lognorm(s=0.8, scale=10)
@@ -71,11 +71,11 @@ class Averages:
         return log([self.t[0], self.t[-1], *peaks]).max()
 
     def rise(self):
-        """How much more likelihood than LOSS usual observers lose who feel all levels, or none: the less of both."""
+        """The loss of log likelihood beyond LOSS for usual observers who feel all levels, or none: the smaller one."""
         return self.top(self.usual) - LOSS - max(self.usual([self.t[0], self.t[-1]]))
 
     def interval(self, log):
-        """The first and last threshold that lose no more than LOSS; infinite where the extended levels end."""
+        """The first and last threshold with a loss of at most LOSS; infinite at the end of the extended levels."""
         limit = self.top(log) - LOSS
         inside = np.flatnonzero(log(self.t) >= limit)
         first, last = inside[0], inside[-1]
@@ -87,22 +87,22 @@ class Averages:
                 math.inf if last == self.t.size - 1 else crossing(last))
 
     def border(self, number, first, last):
-        """The least of the differences in the likelihoods' logarithms that decide a state."""
+        """The smallest log-likelihood difference that decides a state."""
         limits = [(log, self.top(log) - LOSS) for log in (self.any, self.usual_lapses)]
         ends = [abs(log(x) - limit) for log, limit in limits for x in (first, last, self.t[0], self.t[-1])]
         numbers = [abs(self.usual(number) - self.usual(x)) for x in (first, last)]
         return min(abs(self.rise()), *ends, *numbers)
 
     def likeliest(self, low, high):
-        """The usual observers' threshold in between."""
+        """The usual observers' threshold between these."""
         low, high = max(low, self.t[0]), min(high, self.t[-1])
         peaks = self.usual.derivative().roots(extrapolate=False)
         return max([low, high, *peaks[(peaks > low) & (peaks < high)]], key=self.usual)
 
 
 def estimate(counts, levels, guess, shape):
-    """A track's number and interval, or its side; the bounds with which it counts in means; the likelihoods; and how
-    little of a likelihood's logarithm decides between two states."""
+    """A track's number and interval, or its side; its bounds for means; the likelihoods; and the smallest
+    log-likelihood difference that decides between two states."""
     averages = Averages(counts, levels, guess, shape)
     ends, usual_ends = averages.interval(averages.any), averages.interval(averages.usual_lapses)
     number = averages.likeliest(*ends)
@@ -157,7 +157,7 @@ class CensoredNormal:
         return value + (b + np.log(-np.expm1(np.minimum(a - b, -1e-300)))).sum()
 
     def ratio(self, mean):
-        """Twice the log-likelihood that the best SD for this mean loses."""
+        """Twice the loss of log likelihood of the best SD for this mean."""
         middle = math.log(math.hypot(self.sd, mean - self.mean))
         best = optimize.minimize_scalar(lambda log_sd: -self.at(mean, log_sd), bounds=(middle - 3, middle + 3),
                                         method="bounded", options={"xatol": 1e-10})
@@ -181,7 +181,7 @@ class CensoredNormal:
         return 2 * stats.t.sf(t, self.m - 1)
 
 
-# --- Estimates that the program prints ---
+# --- The program's printed estimates ---
 
 TOLERANCE = 0.02  # of a likelihood's logarithm: where it is flat, an end may lie far off
 MEAN_TOLERANCE_DB = 1e-4  # from the same thresholds
@@ -245,7 +245,7 @@ def table(folder, name):
 
 
 def stated_track(row):
-    """As `estimate` has it. Empty bounds are open."""
+    """In the form of `estimate`. Empty bounds are open."""
     at_least, at_most = number(row["at_least_db"]), number(row["at_most_db"])
     return {"level": number(row["threshold_db"]), "low": number(row["low_db"]), "high": number(row["high_db"]),
             "censored": row["censored"] or "no", "at_least": -math.inf if at_least is None else at_least,
@@ -253,7 +253,7 @@ def stated_track(row):
 
 
 class Task:
-    """What the study file says of levels and guessing."""
+    """Levels and guess rate of the study file."""
 
     def __init__(self, study):
         self.section = study["threshold"]
@@ -267,7 +267,7 @@ class Task:
         self.levels = levels
 
     def levels_of(self, standard):
-        """Those whose comparisons can be made: at most the ceiling, an order below 1, all of the second texture."""
+        """The levels with possible comparisons: at most the ceiling, an order below 1, all of the second texture."""
         along = self.section.get("along", "gain")
         if self.section["task"] == "detection":
             return self.levels
@@ -279,7 +279,7 @@ class Task:
 
 
 def counts_of(folder):
-    """Right and given answers by level of each participant's tracks, catch trials included."""
+    """Numbers of right answers and of answers by level for each participant's tracks, including catch trials."""
     counts = {}
     for row in table(folder, "tracks.csv"):
         if row["kind"] == "control" or row["track"] in ("", "0") or row["correct"] == "":
@@ -333,7 +333,7 @@ def check_mean(say, standard, people):
 def main():
     parser = argparse.ArgumentParser(prog="crosscheck-procedures --thresholds")
     parser.add_argument("folder", help="a `csv` export of a study of thresholds")
-    parser.add_argument("--report", help="what `report --json` printed")
+    parser.add_argument("--report", help="output of `report --json`")
     options = parser.parse_args()
     failed = []
 

@@ -1,6 +1,6 @@
-/// \file How a trial goes for a participant: how its planes are explored, and what is asked
-/// afterwards. Nothing here says what is presented: windows and participants know this file and not
-/// study/schedule.hpp. Source: docs/add-a-protocol.md.
+/// \file A trial as the participant experiences it: how planes are explored, and what is asked
+/// afterwards. Nothing here reveals what is presented: windows and participants include this file,
+/// but not study/schedule.hpp. Source: docs/add-a-protocol.md.
 #pragma once
 
 #include "core/answer.hpp"
@@ -12,19 +12,18 @@
 
 namespace touchtrial::study {
 
-/// Where a trial stands in a session. In clear: it follows from the participant's secret and from
-/// the number of earlier trials, never from what was answered.
+/// The position of a trial in a session. It is stored unencrypted, because it depends only on the
+/// participant's secret and the number of earlier trials, never on an answer.
 struct Place {
   int trial = 0;          ///< from 1
   int block = 0;          ///< from 0
-  bool hand_off = false;  ///< the device moves by itself, and is only heard
+  bool hand_off = false;  ///< the device moves by itself; the participant only hears it
 
   friend bool operator==(const Place&, const Place&) = default;
 };
 
-/// What the hand must do for a plane's clock to run. Speed and force are those of the hand: the
-/// force is what the wall without texture would answer, so that the clock tells nothing of the
-/// texture.
+/// The speed and force of the hand within which a plane's clock runs. The force is that of the wall
+/// without its texture, so that the clock reveals nothing about the texture.
 struct HandRange {
   double slowest_mm_s = 20.0;  ///< along the plane
   double fastest_mm_s = 300.0;
@@ -34,22 +33,22 @@ struct HandRange {
   friend bool operator==(const HandRange&, const HandRange&) = default;
 };
 
-/// A stylus that is so far above the plane has lifted off, mm.
+/// Height above the plane at which the stylus counts as lifted, mm.
 inline constexpr double kLiftedMm = 1.0;
 
-/// For as long as the participant wants, up to the study's explore_limit_s. A plane that is the
-/// trial's only one can be felt again before the answer.
+/// Exploration for as long as the participant wants, up to the study's explore_limit_s. If the
+/// trial has one plane, the participant may feel it again before answering.
 struct Free {};
 
-/// For a time that is counted only in contact and inside the range; then the hand lifts off. A
-/// trial with a plane whose clock has not run down within the study's explore_limit_s is repeated.
+/// Exploration for a fixed time, counted only in contact and within the range, after which the hand
+/// lifts off. A trial is repeated if a clock has not run down within the study's explore_limit_s.
 /// Source: docs/thresholds.md, "Intervals".
 struct InContact {
   double seconds = 2.5;  ///< > 0
   HandRange range{};
 };
 
-/// The device moves by itself, with the hand off.
+/// A recorded movement, which the device plays back while the hand is off it.
 struct Played {
   double seconds = 2.5;  ///< > 0
 };
@@ -62,9 +61,9 @@ struct Choice {
   std::optional<int> class_index{};  ///< the class whose picture is shown; empty: the label alone
 };
 
-/// Asks for one of several alternatives, at least two.
+/// Asks for one of two or more alternatives.
 struct Choose {
-  /// Key of the title in the texts' "screens", or the title itself; empty: which picture it is.
+  /// Key of the title in the texts' "screens", or the title itself; empty: "which picture is it?".
   std::string title{};
   std::vector<Choice> choices;
 
@@ -74,11 +73,11 @@ struct Choose {
   }
 };
 
-/// A scale between two ends, in the participant's language.
+/// A rating scale with two labelled ends, in the participant's language.
 struct Scale {
   std::string id;    ///< a plain name, unique in its question
   std::string text;  ///< what is rated
-  std::string low;   ///< the words at the ends
+  std::string low;   ///< labels of the ends
   std::string high;
   int points = 0;  ///< 0: a line from 0 to 1; else numbers from 1 to this
 
@@ -88,49 +87,52 @@ struct Scale {
   friend bool operator==(const Scale&, const Scale&) = default;
 };
 
-/// A line's answers are multiples of this, so that their sealed lengths say nothing.
+/// Answers on a line are rounded to this step, so that the length of a sealed answer reveals
+/// nothing.
 inline constexpr double kLineStep = 0.001;
 
-/// Asks for a number on each of one or several scales.
+/// Asks for a rating on each of one or more scales.
 struct Rate {
   std::string title{};  ///< key of the title in the texts' "screens", or the title itself
   std::vector<Scale> scales;
 };
 
-using Asked = std::variant<Choose, Rate>;
+using QuestionForm = std::variant<Choose, Rate>;
 
-/// What is asked of a participant in a trial.
+/// What a participant does and answers in one trial.
 struct Ask {
   Exploring exploring{};
   int planes = 1;  ///< presented one after the other
-  Asked question{};
+  QuestionForm question{};
   int confidence_levels = 0;  ///< 0: not asked
-  bool feedback = false;      ///< after each answer, whether it was right
+  bool feedback = false;      ///< whether each answer is followed by "right" or "wrong"
 
-  /// The alternatives; empty where none are asked for.
+  /// The alternatives; empty for a question with scales.
   [[nodiscard]] std::vector<Choice> choices() const {
     const auto* const choose = std::get_if<Choose>(&question);
     return choose == nullptr ? std::vector<Choice>() : choose->choices;
   }
-  /// Empty where none are asked for.
+  /// The scales; empty for a question with alternatives.
   [[nodiscard]] std::vector<Scale> scales() const {
     const auto* const rate = std::get_if<Rate>(&question);
     return rate == nullptr ? std::vector<Scale>() : rate->scales;
   }
-  /// Whether the alternatives are pictures, whose places are drawn for each participant.
+  /// Whether the alternatives are pictures, whose positions are randomised for each participant.
   [[nodiscard]] bool has_pictures() const noexcept {
     const auto* const choose = std::get_if<Choose>(&question);
     return choose != nullptr && !choose->choices.empty() &&
            choose->choices.front().class_index.has_value();
   }
-  /// Key of the question's title; empty: which picture it is.
+  /// Key of the question's title; empty: "which picture is it?".
   [[nodiscard]] const std::string& title() const noexcept {
     return std::visit([](const auto& asked) -> const std::string& { return asked.title; },
                       question);
   }
 };
 
-/// Why an answer is none to what is asked, in words that follow the trial's name; empty: it is one.
-[[nodiscard]] std::string misfit_of(const Answer& answer, const Ask& ask);
+/// Why an answer does not fit its question, as a predicate whose subject is the trial ("has 1
+/// ratings for 2 scales").
+/// \return empty if it fits
+[[nodiscard]] std::string mismatch_of(const Answer& answer, const Ask& ask);
 
 }  // namespace touchtrial::study

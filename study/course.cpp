@@ -37,13 +37,13 @@ std::ptrdiff_t Course::places_before_repeats(int block) const {
   return std::ranges::find_if_not(queue_, is_of_block) - queue_.begin();
 }
 
-void Course::spoil() {
-  const std::size_t spoilt = queue_.front();
+void Course::interrupt() {
+  const std::size_t interrupted = queue_.front();
   order_->interrupted(*current_);
   switch (policy_) {
     case OnInterruption::repeat:
       queue_.pop_front();
-      queue_.insert(queue_.begin() + places_before_repeats(current_->place.block), spoilt);
+      queue_.insert(queue_.begin() + places_before_repeats(current_->place.block), interrupted);
       choose();
       return;
     case OnInterruption::leave_out:

@@ -1,5 +1,5 @@
-/// \file A session's course through its schedule, which decides what is presented next, given how
-/// the earlier trials ended. The runner and `verify` follow the same course over the same events.
+/// \file A session's course through its schedule: what is presented next, given how the earlier
+/// trials ended. The runner and `verify` derive the same course from the same events.
 #pragma once
 
 #include "study/order.hpp"
@@ -32,7 +32,7 @@ class Course {
 
   /// The schedule with which the session began, followed by the restarted blocks.
   [[nodiscard]] const Schedule& schedule() const noexcept { return schedule_; }
-  /// The trial that is under way or is next; null when all are done.
+  /// The trial that is running or comes next; null when all are done.
   [[nodiscard]] const Trial* current() const noexcept { return current_ ? &*current_ : nullptr; }
   /// The number of remaining trials, including the current one.
   [[nodiscard]] int left() const noexcept { return static_cast<int>(queue_.size()); }
@@ -40,20 +40,20 @@ class Course {
   [[nodiscard]] bool is_adaptive() const noexcept { return order_->is_adaptive(); }
 
   /// Marks the current trial as done.
-  /// \param answer  nothing: it ended without one, of which an order is not notified
+  /// \param answer  nothing if the trial ended without one; the order is then not notified
   /// \pre there is a current trial
   void finish(const std::optional<Answer>& answer);
-  /// Marks the current trial as interrupted. Depending on the policy, it is repeated at the end (of
-  /// an adaptive order, at the end of its block), is left out, or waits for its block's restart.
+  /// Marks the current trial as interrupted. Depending on the policy, it is left out, waits for its
+  /// block's restart, or is repeated at the end (in an adaptive order, at the end of its block).
   /// \pre there is a current trial
-  void spoil();
+  void interrupt();
 
   /// The block that must be restarted before anything else is presented.
   [[nodiscard]] std::optional<int> block_to_restart() const noexcept { return to_restart_; }
-  /// Draws the next restart of a block without changing the course. The new trials get the numbers
+  /// Draws the next restart of a block without changing the course. The new trials are numbered
   /// after all existing ones.
   [[nodiscard]] BlockRestart redrawn_block(int block) const;
-  /// Replaces the rest of the block by the restarted block, which comes before everything else.
+  /// Replaces the rest of the block by the restarted block, which is presented next.
   void restart(const BlockRestart& again);
   /// Whether a trial's number became invalid when its block was restarted.
   [[nodiscard]] bool is_void(int trial) const;
@@ -61,9 +61,9 @@ class Course {
   [[nodiscard]] bool has(int trial) const;
 
  private:
-  /// Asks the order what the next place presents.
+  /// Lets the order choose what the next trial presents.
   void choose();
-  /// How many of the queue come before an interrupted trial of this block is repeated.
+  /// The number of queued trials that precede the repetition of an interrupted trial of this block.
   [[nodiscard]] std::ptrdiff_t places_before_repeats(int block) const;
 
   std::unique_ptr<Order> order_;

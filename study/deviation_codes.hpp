@@ -1,4 +1,4 @@
-/// \file The codes of deviations from the protocol that the program gives.
+/// \file The codes of the protocol deviations that the program records.
 /// Docs: docs/data-dictionary.md.
 #pragma once
 
@@ -8,8 +8,8 @@
 
 namespace touchtrial::study {
 
-/// Recorded in place of a certificate's hash: the experimenter let the session run on a device with
-/// force that had no valid one.
+/// Recorded in place of a certificate's hash if the experimenter ran the session on a
+/// force-feedback device without a valid certificate.
 inline constexpr const char* kUnverifiedDevice = "UNVERIFIED DEVICE";
 /// The code of that deviation.
 inline constexpr const char* kUnverifiedDeviceCode = "unverified-device";
@@ -47,7 +47,8 @@ inline constexpr auto kDeviationCodes = std::to_array<std::string_view>({"answer
                                                                          "visit-late",
                                                                          "wrong-clock"});
 
-/// Whether a code is one of them, or names an item of a study's own day sheet: "no-day-sheet-3".
+/// Whether a code is one of these, or names an item of the study's own day sheet
+/// ("no-day-sheet-3").
 [[nodiscard]] constexpr bool is_deviation_code(std::string_view code) noexcept {
   constexpr std::string_view kItem = "no-day-sheet-";
   const bool is_of_day_sheet =

@@ -15,10 +15,10 @@ namespace {
 
 constexpr std::string_view kProtectedFormat = "touchtrial-protected";
 constexpr int kProtectedVersion = 1;
-/// A protected file has two digits a byte of a plain one, which has at most 64 MiB.
+/// A protected file has two digits for each byte of a plain one, which has at most 64 MiB.
 constexpr std::uintmax_t kMaxSecretFileBytes = std::uintmax_t{129} << 20U;
 
-/// What stands in a protected file.
+/// The content of a protected file.
 struct Envelope {
   PublicKey signer{};
   Salt salt{};
@@ -26,11 +26,11 @@ struct Envelope {
   Bytes box;
 };
 
-/// What the program learned of passphrases.
+/// The source of passphrases, and the keys derived from those that were right.
 struct Passphrases {
   std::mutex mutex;
   AskPassphrase ask;
-  std::map<Salt, SecretKey> keys;  ///< that opened a file; each file has a salt of its own
+  std::map<Salt, SecretKey> keys;  ///< keys that opened a file; each file has its own salt
 };
 
 Passphrases& passphrases() {
@@ -42,7 +42,7 @@ Passphrases& passphrases() {
   throw FileError(one_line(path.string() + ": " + what));
 }
 
-/// The first three lines, which the box is bound to.
+/// The first three lines, which the encryption of the box authenticates.
 std::string head_of(const Envelope& envelope) {
   return std::string(kProtectedFormat) + " " + std::to_string(kProtectedVersion) + "\nsigns " +
          to_hex(ByteView(envelope.signer)) + "\nargon2id " + to_hex(ByteView(envelope.salt)) + " " +
@@ -67,7 +67,7 @@ std::vector<std::string> words_of(std::string_view text) {
   return words;
 }
 
-/// \return nothing unless the words are those of an envelope
+/// \return nothing if the words do not form an envelope
 std::optional<Envelope> envelope_of(const std::vector<std::string>& words) {
   // Format, version, who signs in two words, argon2id with three numbers, box, hash, end.
   constexpr std::size_t kWords = 11;
@@ -89,7 +89,7 @@ std::optional<Envelope> envelope_of(const std::vector<std::string>& words) {
 }
 
 /// \return nothing if the text is not that of a protected file
-/// \throws FileError if it is one of another version, or was altered
+/// \throws FileError if it has another version or was altered
 std::optional<Envelope> envelope_in(const std::string& text, const std::filesystem::path& path) {
   if (!text.starts_with(kProtectedFormat)) return std::nullopt;
   const std::vector<std::string> words = words_of(text);
@@ -97,16 +97,16 @@ std::optional<Envelope> envelope_in(const std::string& text, const std::filesyst
   if (envelope && !is_in_range(envelope->cost)) {
     refuse_file(path, "asks for " + std::to_string(envelope->cost.passes) + " passes over " +
                           std::to_string(envelope->cost.memory_bytes) +
-                          " bytes of Argon2id, which no file of this program does; restore it from "
-                          "a backup");
+                          " bytes of Argon2id, outside the range that this program writes; restore "
+                          "the file from a backup");
   }
-  // The bytes follow from the content, so any altered byte is found.
+  // The content determines the bytes, so any altered byte is detected.
   if (envelope && text_of_envelope(*envelope) == text) return envelope;
   const bool is_newer = words.size() > 1 && number_in<int>(words[1]).value_or(0) > 1;
-  if (is_newer) refuse_file(path, "is protected by a newer Touchtrial; use the program that did");
-  refuse_file(path,
-              "the protected file is altered or damaged since it was written; restore it from a "
-              "backup");
+  if (is_newer) {
+    refuse_file(path, "was protected by a newer version of Touchtrial; open it with that version");
+  }
+  refuse_file(path, "the protected file has been altered or damaged; restore it from a backup");
 }
 
 /// The text of a protected file.
@@ -138,7 +138,7 @@ OpenedEnvelope opened_envelope(const Envelope& envelope, const std::filesystem::
     const auto passphrase = known.ask ? known.ask(path, attempt) : std::nullopt;
     if (!passphrase && attempt == 1) {
       refuse_file(path,
-                  "is protected by a passphrase; name a file that holds it with "
+                  "is protected by a passphrase; give a file that holds it with "
                   "--passphrase-file, or run this command at a terminal, which asks for it");
     }
     if (!passphrase) refuse_file(path, "the passphrase is wrong; try again with the right one");
@@ -218,9 +218,10 @@ void write_secret_text(const std::filesystem::path& path, const std::string& tex
     replace_file(path, text, FileMode::owner_only);
     return;
   }
-  if (passphrase->size() < kShortestPassphrase) {
-    throw UsageError("the new passphrase of " + one_line(path.string()) + " is too short; take " +
-                     std::to_string(kShortestPassphrase) + " characters or more, best four words");
+  if (passphrase->size() < kMinPassphraseBytes) {
+    throw UsageError("the new passphrase of " + one_line(path.string()) + " is too short; use " +
+                     std::to_string(kMinPassphraseBytes) +
+                     " characters or more, preferably four words");
   }
   const Salt salt = fresh_salt();
   const SecretKey key = key_of_passphrase(*passphrase, salt, cost);

@@ -1,6 +1,6 @@
-/// \file Passphrases of the files of secrets. A protected file holds the text of a key or of a
-/// station's file, sealed under a key that Argon2id makes of the passphrase. Everything that loads
-/// or saves keys goes through here, so nothing else knows of passphrases. Format:
+/// \file Passphrase protection of secret files. A protected file holds the text of a key or station
+/// file, encrypted with a key that Argon2id derives from the passphrase. Everything that loads or
+/// saves keys calls these functions, so no other code handles passphrases. Format:
 /// docs/data-dictionary.md, "Protected file". All functions are thread-safe.
 #pragma once
 
@@ -16,25 +16,25 @@
 
 namespace touchtrial::study {
 
-/// Gives the passphrase of a protected file. It is called again while what it gave was wrong.
+/// Returns the passphrase of a protected file. It is called again after each wrong passphrase.
 /// \param attempt  from 1
 /// \return nothing if there is no (further) passphrase to try
 using AskPassphrase =
     std::function<std::optional<std::string>(const std::filesystem::path& file, int attempt)>;
 
-/// Who is asked from now on, in the whole program. Unless somebody is, protected files are refused.
-/// A file that was opened since is not asked for again.
+/// Sets the source of passphrases for the whole program. Without one, protected files are refused.
+/// The passphrase of a file is asked for once.
 void ask_passphrases_with(AskPassphrase ask);
 
-/// The fewest bytes of a new passphrase.
-inline constexpr std::size_t kShortestPassphrase = 8;
+/// The minimum length of a new passphrase, bytes.
+inline constexpr std::size_t kMinPassphraseBytes = 8;
 
-/// Who signs with a protected file: the public half that its clear part names. A file can therefore
-/// be told from another's before anybody is asked for a passphrase.
+/// The public signing key named in the unencrypted part of a protected file. It identifies the
+/// file's owner before a passphrase is asked for.
 /// \return nothing if no passphrase protects the file
 /// \throws FileError if it is missing or cannot be read, or is protected and damaged
 [[nodiscard]] std::optional<PublicKey> signer_in_clear(const std::filesystem::path& file);
-/// The same of a file's text.
+/// The same for a file's text.
 /// \param source  the file's name, for errors
 [[nodiscard]] std::optional<PublicKey> signer_in_clear(const std::string& text,
                                                        const std::filesystem::path& source);
@@ -43,34 +43,34 @@ inline constexpr std::size_t kShortestPassphrase = 8;
 /// \throws FileError if it is missing or cannot be read, or is protected and damaged
 [[nodiscard]] bool is_protected(const std::filesystem::path& file);
 
-/// Gives a key or a station's file another passphrase, its first one, or none.
+/// Sets, changes or removes the passphrase of a key or station file.
 /// \throws UsageError if the new passphrase is too short
 /// \throws FileError as load_study_key and load_station_key do
 void protect(const std::filesystem::path& file, const std::optional<std::string>& passphrase,
              const PassphraseCost& cost = {});
 
-/// Writes a key under a passphrase, as save_study_key does without.
+/// Like save_study_key, but protects the file with a passphrase.
 /// \throws UsageError if the passphrase is too short
 /// \throws FileError if the file cannot be written
 void save_study_key(const std::filesystem::path& path, const StudyKey& key,
                     const std::string& passphrase, const PassphraseCost& cost = {});
 
-/// \name The texts of files of secrets
+/// \name Texts of secret files
 ///@{
 
-/// The text of a file, opened if it is protected.
-/// \throws FileError if the file is missing, can be read by others, is damaged although protected,
-///   or its passphrase is wrong or not known
+/// The text of a file, decrypted if it is protected.
+/// \throws FileError if the file is missing or readable by others, if it is protected and damaged,
+///   or if its passphrase is wrong or unknown
 [[nodiscard]] std::string read_secret_text(const std::filesystem::path& path);
 
-/// Writes a text durably with mode 0600. Where it replaces a protected file, the text is protected
-/// by the same passphrase.
-/// \param signer  who signs with the file
+/// Writes a text durably with mode 0600. If it replaces a protected file, the same passphrase
+/// protects the text.
+/// \param signer  the public signing key of the file
 /// \throws FileError as read_secret_text does, or if the file cannot be written
 void save_secret_text(const std::filesystem::path& path, const std::string& text,
                       const PublicKey& signer);
 
-/// Writes a text durably with mode 0600, under this passphrase, or in clear without one.
+/// Writes a text durably with mode 0600, encrypted with this passphrase or unencrypted without one.
 /// \param signer  as for save_secret_text
 /// \throws UsageError if the passphrase is too short
 /// \throws FileError if the file cannot be written

@@ -11,7 +11,7 @@
 namespace touchtrial::study {
 namespace {
 
-constexpr std::size_t kLongestText = 4000;  // bytes
+constexpr std::size_t kMaxTextBytes = 4000;  // bytes
 constexpr std::string_view kBold = "**";
 constexpr std::string_view kPictureBegins = "![](";
 constexpr std::string_view kDrawings = "drawing:";
@@ -19,7 +19,7 @@ constexpr std::string_view kDrawings = "drawing:";
 /// Whether a file must have all texts.
 enum class Extent { all, some };
 
-/// The English texts, against which all others are read.
+/// The English texts, whose keys and marks all other languages must match.
 const Texts& english_texts() {
   static const Texts texts = [] {
     Texts read;
@@ -32,12 +32,11 @@ const Texts& english_texts() {
   return texts;
 }
 
-/// Calls `see` with each line of a text.
-template <typename See>
-void for_each_line(std::string_view text, See see) {
+template <typename Visit>
+void for_each_line(std::string_view text, Visit visit) {
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
-    see(text.substr(at, end - at));
+    visit(text.substr(at, end - at));
     at = end + 1;
   }
 }
@@ -70,13 +69,15 @@ void check_marks(const JsonValue& place, const std::vector<std::string>& marks,
   }
   std::ranges::set_difference(marks, english, std::back_inserter(other));
   if (!other.empty()) {
-    place.refuse("has " + in_quotes(other.front()) + ", which the English text does not have" +
-                 (english.empty() ? "" : " so often") + "; remove it");
+    place.refuse("has " + in_quotes(other.front()) +
+                 (english.empty() ? ", which the English text does not have"
+                                  : " more often than the English text") +
+                 "; remove it");
   }
 }
 
 std::string read_text(const JsonValue& place, const std::string& english, Extent extent) {
-  std::string text = read_paragraphs(place, kLongestText);
+  std::string text = read_paragraphs(place, kMaxTextBytes);
   if (text.empty()) place.refuse("is empty; write the text");
   check_markup(place, text);
   check_marks(place, words_in_braces(text), words_in_braces(english));
@@ -122,12 +123,12 @@ void check_markup(const JsonValue& place, const std::string& text) {
   int marks = 0;
   for (std::size_t at = text.find(kBold); at != text.npos; at = text.find(kBold, at + 2)) ++marks;
   if (marks % 2 != 0) {
-    place.refuse("begins bold words with \"**\" and does not end them; write \"**\" after them");
+    place.refuse("opens bold text with \"**\" but does not close it; add the closing \"**\"");
   }
   for (const std::string& name : pictures_of(text)) {
     if (name.starts_with(kDrawings) && name != kHandDrawing) {
-      place.refuse(in_quotes(name) + " is not a drawing; there is " + in_quotes(kHandDrawing) +
-                   ", or give the path of a picture");
+      place.refuse(in_quotes(name) + " is not a known drawing; use " + in_quotes(kHandDrawing) +
+                   " or the path of a picture");
     }
   }
 }
@@ -138,7 +139,7 @@ Language parse_language(std::string_view text, const std::string& source) {
   const JsonObject file = parse_strict_json(text, source).object(keys);
   Language language;
   language.code = read_plain_name(file.at("language"));
-  language.name = read_line(file.at("name"), kLongestText);
+  language.name = read_line(file.at("name"), kMaxTextBytes);
   language.draft = file.at("draft").truth();
   language.texts = read_sections(file, Extent::all);
   return language;

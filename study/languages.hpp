@@ -1,5 +1,5 @@
-/// \file The texts that people read in a session, in each language of the program: the files of
-/// config/texts, built in and read strictly, and what a study puts in their place.
+/// \file The texts that people read in a session, in each language of the program. They come from
+/// the files of config/texts, which are built in and read strictly; a study can replace some.
 /// Format: docs/running-sessions.md, "Texts and languages".
 #pragma once
 
@@ -26,43 +26,42 @@ struct Language {
 /// The codes of the built-in languages: the names of their files, in the same order.
 [[nodiscard]] const std::vector<std::string_view>& language_codes();
 
-/// Parsed when it is first asked for; thread-safe.
+/// Parsed on first use; thread-safe.
 /// \param code  "de", "de-AT"
-/// \return English if the program does not have the language
+/// \return the language, or English if the program does not have it
 [[nodiscard]] const Language& language_of(std::string_view code);
 
 /// Whether the language writes numbers with a comma ("0,5").
 [[nodiscard]] bool has_decimal_comma(std::string_view code) noexcept;
 
-/// Reads a language file, which must have the keys of the English one and no other. A text must
-/// have the same words in braces and the same pictures as the English one, and "**" in pairs.
+/// Reads a language file, which must have exactly the keys of the English one. Each text must have
+/// the same words in braces and the same pictures as the English one, and "**" in pairs.
 /// \param text  JSON
 /// \throws StudyError with the source, the JSON pointer of the key, and the remedy
 [[nodiscard]] Language parse_language(std::string_view text, const std::string& source);
 
-/// Reads texts that replace some of a language's. They need not have its pictures.
+/// Reads texts that replace some of a language's. They may omit its pictures.
 /// \throws StudyError as parse_language
 [[nodiscard]] Texts read_texts(const JsonValue& place);
 
-/// Checks the bold words and pictures of a page: "**" in pairs, and drawings that exist.
+/// Checks that "**" comes in pairs and that each drawing exists.
 /// \throws StudyError with the remedy
 void check_markup(const JsonValue& place, const std::string& text);
 
-/// The texts of a study in its language: the language's, with the study's own in their place.
+/// The texts of a study in its language: the built-in ones, with the study's own replacements.
 [[nodiscard]] Texts texts_of(const SessionPlan& session);
 
-/// The pictures of a page, each on a line of its own: "![](NAME)".
-/// \return the name in such a line; empty if the line is text
+/// The name of the picture in a line "![](NAME)". Each picture of a page has a line of its own.
+/// \return empty if the line is text
 [[nodiscard]] std::string_view picture_in(std::string_view line) noexcept;
 
-/// A picture of this name is one of the program's drawings; other names are paths.
+/// The name of the program's built-in drawing; all other names are paths.
 inline constexpr std::string_view kHandDrawing = "drawing:hand";
 
-/// Files of the pictures that the study's own pages of instructions show, as written there, each
-/// once.
+/// Paths of the pictures in the study's own instructions, as written there, without duplicates.
 [[nodiscard]] std::vector<std::string> picture_files(const SessionPlan& session);
 
-/// What has to be said of a study whose texts are a draft; empty if they are not.
+/// A notice that the study's texts are a draft; empty if they are not.
 /// \param code  the study's language
 [[nodiscard]] std::string draft_notice(std::string_view code);
 

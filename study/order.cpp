@@ -30,7 +30,7 @@ std::vector<Trial> Order::restarted(int block, int restarts_before, int first_tr
   return again;
 }
 
-double drawn_rove_db(double range_db, RandomStream& random) {
+double draw_rove_db(double range_db, RandomStream& random) {
   return range_db * (random.uniform() - 0.5);
 }
 

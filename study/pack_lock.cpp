@@ -16,7 +16,8 @@
 namespace touchtrial::study {
 namespace {
 
-/// Whether the file that is open still has this name: whoever made the folder may have removed it.
+/// Whether the open file still has this name: the process that created the folder may have removed
+/// it.
 bool has_name(int descriptor, const std::filesystem::path& file) {
   struct stat open {};
   struct stat named {};
@@ -36,20 +37,22 @@ int lock(int descriptor, int operation) {
   const std::string place = one_line(what.string());
   if (reason == EWOULDBLOCK) {
     throw FileError(place +
-                    ": is being prepared, or read for a session, by another process; wait for it "
-                    "to end");
+                    ": is in use by another process, which prepares it or runs a session; wait "
+                    "until that process ends");
   }
   throw FileError(place + ": cannot be locked (" + std::generic_category().message(reason) +
-                  "); check the folder's permissions and the free space");
+                  "); check the folder's permissions and the free disk space");
 }
 
-/// \param what  that is locked, for the message
-/// \param make_folder_again  called before each attempt, because others remove what they made
+/// \param what  path named in the error message
+/// \param make_folder_again  called before each attempt, because another process may have removed
+///   the folder
 /// \return the descriptor of the file that holds the lock
 template <typename MakeFolder>
 int locked(const std::filesystem::path& file, const std::filesystem::path& what, int operation,
            MakeFolder make_folder_again) {
-  constexpr int kMaxAttempts = 100;  // a folder goes once for each process that found nothing to do
+  // Each process that found nothing to do removes the folder once.
+  constexpr int kMaxAttempts = 100;
   for (int attempt = 0;; ++attempt) {
     make_folder_again();
     const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);

@@ -1,4 +1,4 @@
-/// \file The lock of a pack's folder: one process prepares the pack, or any number read it.
+/// \file The lock of a pack's folder: one process writes the pack, or any number of them read it.
 #pragma once
 
 #include <filesystem>
@@ -11,20 +11,21 @@ class PackLock {
   enum class Use { prepare, read };
   enum class Wait { no, yes };
 
-  /// To prepare, makes the folder if it is missing. To read, makes nothing: where there is no
-  /// `prepare.lock`, nobody has prepared, and nothing is locked.
+  /// For Use::prepare, creates the folder if it is missing. For Use::read, creates nothing: without
+  /// a `prepare.lock` the pack was never prepared, and nothing is locked.
   /// \param wait  whether to wait for other processes and threads
-  /// \throws FileError if another one holds it and is not waited for, or the file cannot be made
+  /// \throws FileError if another one holds the lock and `wait` is no, or if the file cannot be
+  ///   created
   explicit PackLock(std::filesystem::path folder, Use use = Use::prepare, Wait wait = Wait::no);
-  /// Unlocks all. Removes the folder again if this lock made it and nothing was put into it.
+  /// Releases all locks. Removes the folder if this lock created it and it is still empty.
   ~PackLock();
   PackLock(const PackLock&) = delete;
   PackLock& operator=(const PackLock&) = delete;
 
   [[nodiscard]] const std::filesystem::path& folder() const noexcept { return folder_; }
 
-  /// Locks the place of a key too, which two packs may share, with `<key>.lock` beside it.
-  /// \throws FileError if another process holds it, or the file cannot be made
+  /// Locks a key as well, which two packs may share, with `<key>.lock` beside it.
+  /// \throws FileError if another process holds that lock, or if the file cannot be created
   void lock_key(const std::filesystem::path& key);
 
  private:

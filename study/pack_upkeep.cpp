@@ -38,12 +38,12 @@ bool has_bytes_of(const engine::PackEntry& entry, const std::filesystem::path& f
   try {
     return is_there(file) && sha256_of_file(file) == entry.checksum;
   } catch (const FileError&) {
-    return false;  // unreadable, so it is written again
+    return false;  // an unreadable field is rebuilt
   }
 }
 
-/// Another study's codes are other random numbers: a list that has one of the key's is this
-/// study's, whatever identity it states.
+/// Codes are random, so a manifest that names one of the key's codes belongs to this study,
+/// whatever identity it states.
 bool is_of_other(const engine::PackManifest& manifest, const StudyKey& key) {
   return manifest.study_id != key.study_id &&
          std::ranges::none_of(key.stimuli, [&](const KeyedStimulus& keyed) {
@@ -73,8 +73,8 @@ EarlierFields::EarlierFields(const std::filesystem::path& folder, const StudyKey
     if (damage_.empty() && is_of_other(pack_, key)) {
       if (!key.simulated) {
         throw FileError(one_line(folder.string()) +
-                        ": holds the pack of another key; prepare into another folder with --pack, "
-                        "or remove this one if its key is lost");
+                        ": holds the pack of another key; choose another folder with --pack, or "
+                        "delete this one if its key is lost");
       }
       pack_ = {};
     } else if (damage_.empty() && !is_signed(pack_, key.investigator_signature)) {
@@ -86,7 +86,7 @@ EarlierFields::EarlierFields(const std::filesystem::path& folder, const StudyKey
     drafts_ = engine::Pack(draft_folder(folder)).manifest();
     if (!is_signed(drafts_, key.investigator_signature)) drafts_ = {};
   } catch (const FileError&) {
-    // Nothing was broken off, or so early that nothing is lost.
+    // There was no interrupted run, or it ended before it had finished a field.
   }
 }
 

@@ -1,5 +1,5 @@
-/// \file Upkeep of a pack's folder: reuse of what earlier runs left, drafts, and removal of
-/// leftovers. Private to study. Call all of it only while the pack is locked.
+/// \file Maintenance of a pack's folder: reuse of fields from earlier runs, drafts, and removal of
+/// leftovers. Private to study. Call these functions only while the pack is locked.
 #pragma once
 
 #include "engine/pack/pack.hpp"
@@ -16,23 +16,22 @@ namespace touchtrial::study {
 [[nodiscard]] std::filesystem::path field_path(const std::filesystem::path& folder,
                                                const std::string& code);
 
-/// Where fields and a list of them lie until all is complete: in the pack's folder, so that they
-/// can be renamed into their places. The list has no seal while it is not complete, so that nothing
-/// is presented from there.
+/// The folder of unfinished fields and their manifest. It lies in the pack's folder, so that fields
+/// can be moved by renaming. Its manifest has no seal, so that no session presents these fields.
 [[nodiscard]] std::filesystem::path draft_folder(const std::filesystem::path& folder);
 
-/// A field that need not be built.
+/// A field from an earlier run, which need not be rebuilt.
 struct FoundField {
   engine::PackEntry entry;
   bool is_draft = false;  ///< whether it lies among the drafts
 };
 
-/// What earlier runs left of a study's pack: the pack, and drafts of a run that was broken off, at
-/// whatever point. Only lists that the key signed are believed.
+/// Fields of a study from earlier runs: those of its pack, and drafts of an interrupted run. Only
+/// manifests signed with the key are used.
 class EarlierFields {
  public:
-  /// A simulated study ignores and replaces another study's pack, because simulated packs can be
-  /// made again from the study file.
+  /// A simulated study ignores and replaces another study's pack, because a simulated pack can be
+  /// rebuilt from its study file.
   /// \throws FileError if the study is not simulated and the folder holds another study's pack
   EarlierFields(const std::filesystem::path& folder, const StudyKey& key);
 
@@ -44,7 +43,7 @@ class EarlierFields {
   [[nodiscard]] const std::vector<engine::PackEntry>& drafts() const noexcept {
     return drafts_.entries;
   }
-  /// Why nothing of the pack was believed; empty if it was, or there was none.
+  /// Why the pack was not used; empty if it was used or there was none.
   [[nodiscard]] const std::string& damage() const noexcept { return damage_; }
 
  private:
@@ -54,8 +53,8 @@ class EarlierFields {
   std::string damage_;
 };
 
-/// Removes the drafts, fields that the manifest does not name, and what interrupted writers left.
-/// Keeps all other files.
+/// Removes the drafts, fields that the manifest does not name, and temporary files of interrupted
+/// runs. Keeps all other files.
 void remove_leftovers(const std::filesystem::path& folder, const engine::PackManifest& manifest);
 
 }  // namespace touchtrial::study

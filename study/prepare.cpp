@@ -40,10 +40,9 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// An image of the study or of its practice. Its fields, one for each method, are adjacent in the
-/// key.
+/// An image of the study or of its practice. Its fields, one per method, are adjacent in the key.
 struct ImageOfStudy {
-  StimulusIndex stimulus;  ///< of the first of them
+  StimulusIndex stimulus;  ///< of the first field
   std::filesystem::path path;
   std::size_t first_field = 0;
   std::size_t fields = 0;
@@ -54,12 +53,12 @@ struct ImageOfStudy {
   std::exception_ptr failure;
 };
 
-/// What follows from all fields together.
+/// Results that depend on all fields together.
 struct MeasuredFields {
   engine::StudyGains gains;             ///< of the study's own fields
   std::vector<engine::Gains> of_field;  ///< of all, practice last
   std::vector<std::string> remarks;     ///< on gains by level
-  std::vector<std::uint8_t> flat;       ///< whether nothing of a field can be felt
+  std::vector<std::uint8_t> flat;       ///< whether a field has no texture to feel
 };
 
 bool is_of_same_image(const StimulusIndex& one, const StimulusIndex& other) {
@@ -87,8 +86,8 @@ std::string fault_of(const Study& study, const ImageOfStudy& image, const std::s
   return study.source + ": " + place_of_image(study, image.stimulus) + ": " + what;
 }
 
-bool is_practised(const Study& study, const ImageOfStudy& image) {
-  return study.is_practised(image.stimulus.class_index);
+bool is_practice_class(const Study& study, const ImageOfStudy& image) {
+  return study.is_practice_class(image.stimulus.class_index);
 }
 
 [[noreturn]] void refuse_image(const Study& study, const ImageOfStudy& image,
@@ -96,18 +95,18 @@ bool is_practised(const Study& study, const ImageOfStudy& image) {
   throw StudyError(fault_of(study, image, what));
 }
 
-/// A practice picture may be larger than the plane.
+/// Refuses a practice picture that is smaller than the plane; it may be larger.
 void require_large_enough(const Study& study, const ImageOfStudy& image, int width, int height,
                           const PlaneGeometry& plane) {
   if (width >= plane.width_px && height >= plane.height_px) return;
   refuse_image(study, image,
                one_line(image.path.string()) + ": has fewer pixels than the study's plane, " +
                    std::to_string(plane.width_px) + " x " + std::to_string(plane.height_px) +
-                   "; take a larger image");
+                   "; use a larger image");
 }
 
-/// Names all pictures that cannot be read, so that a set of many is mended in one go.
-/// \param faults  with their places; nothing happens if there are none
+/// Reports all unreadable pictures at once, so that one run suffices to find them.
+/// \param faults  messages with their places; may be empty
 void refuse_images(std::vector<std::string> faults) {
   constexpr std::size_t kMaxNamed = 20;
   if (faults.empty()) return;
@@ -142,7 +141,7 @@ class Preparation {
   PrepareReport run() {
     check_images_exist(key_.study);
     if (!key_.practice.empty()) plane_ = plane_of(key_.study);
-    // Before the fields: of a picture that changes meanwhile, sessions are refused.
+    // Hashed before the fields are built: if a picture changes in between, sessions are refused.
     pictures_ = picture_digests(key_.study);
     provide_fields();
     measure();
@@ -185,8 +184,8 @@ class Preparation {
     refuse_images(std::move(faults));
   }
 
-  /// The images sorted by code, which is the order of work. The times of the files therefore reveal
-  /// nothing about the order of classes.
+  /// The images sorted by code. They are processed in this order, so that the times of the files
+  /// reveal nothing about the order of classes.
   [[nodiscard]] std::vector<ImageOfStudy*> images_by_code() {
     std::vector<ImageOfStudy*> order;
     for (ImageOfStudy& image : images_) order.push_back(&image);
@@ -202,9 +201,9 @@ class Preparation {
     image.size_px = static_cast<std::int64_t>(grey.size());
     if (image.size_px > options_.large_image_px && !large_too) return;
     image.pixels = FieldHasher().add(std::int64_t{grey.width()}).add(grey.samples()).finish();
-    std::optional<TakenTexture> taken;
+    std::optional<ExtractedTexture> cache;
     for (std::size_t i = 0; i < image.fields; ++i) {
-      provide_field(image.first_field + i, grey, taken);
+      provide_field(image.first_field + i, grey, cache);
     }
     image.is_done = true;
   }
@@ -227,7 +226,7 @@ class Preparation {
     try {
       engine::Picture picture = engine::read_picture(image.path);
       image.remarks = engine::remarks_on(picture.notes);
-      if (!is_practised(key_.study, image)) return std::move(picture.grey);
+      if (!is_practice_class(key_.study, image)) return std::move(picture.grey);
       require_large_enough(key_.study, image, picture.grey.width(), picture.grey.height(), plane_);
       return middle_of(picture.grey, plane_);
     } catch (const FileError& error) {
@@ -235,7 +234,8 @@ class Preparation {
     }
   }
 
-  void provide_field(std::size_t i, const GreyImage& image, std::optional<TakenTexture>& taken) {
+  void provide_field(std::size_t i, const GreyImage& image,
+                     std::optional<ExtractedTexture>& cache) {
     const Clock::time_point start = Clock::now();
     const engine::ExtractionOptions method = method_of(key_.study, fields_[i].stimulus);
     const Digest tag = input_tag(key_.master, image, method, key_.study.rendering);
@@ -246,17 +246,17 @@ class Preparation {
     } else {
       is_damaged_[i] = earlier_.names(code, tag) ? 1 : 0;
       announce_building();
-      build(i, image, method, tag, taken);
+      build(i, image, method, tag, cache);
     }
     is_draft_[i] = !earlier || earlier->is_draft ? 1 : 0;
     note_provided(i, earlier.has_value(), start);
   }
 
   void build(std::size_t i, const GreyImage& image, const engine::ExtractionOptions& method,
-             const Digest& tag, std::optional<TakenTexture>& taken) {
+             const Digest& tag, std::optional<ExtractedTexture>& cache) {
     const auto& [code, stimulus] = fields_[i];
     const BuiltField built =
-        build_field(image, method, key_.study.rendering, taken, is_needed_again(i));
+        build_field(image, method, key_.study.rendering, cache, is_needed_again(i));
     entries_[i] = {
         code, engine::write_field(draft_folder(folder_), code, built.field.view()), tag, {}};
     solver_warnings_[i] = solver_warning(key_.study, stimulus, built);
@@ -298,7 +298,7 @@ class Preparation {
     recorded_ = Clock::now();
   }
 
-  /// Where a stimulus's field lies until all are in their places.
+  /// The path of a field before publish() moves the drafts.
   [[nodiscard]] std::filesystem::path field_of(std::size_t i) const {
     return field_path(is_draft_[i] != 0 ? draft_folder(folder_) : folder_, entries_[i].code);
   }
@@ -339,7 +339,7 @@ class Preparation {
       measured_.gains = engine::choose_gains(views, key_.study.rendering);
       return;
     }
-    if (!options_.level_gains) throw std::logic_error("prepare_pack: nobody knows levels");
+    if (!options_.level_gains) throw std::logic_error("prepare_pack: level_gains is not set");
     std::tie(measured_.gains, measured_.remarks) = options_.level_gains(views);
   }
 
@@ -361,9 +361,9 @@ class Preparation {
     return error ? 0 : bytes;
   }
 
-  /// Puts everything into its place. The list comes last: until then it does not agree with the
-  /// fields that were replaced, or was signed for another seal, so that nothing is presented from a
-  /// mixture, and what is still among the drafts is found by the next run.
+  /// Moves the drafts into the pack, the manifest last. Until then the old manifest matches neither
+  /// the replaced fields nor the new seal, so no session presents a mixture of old and new fields.
+  /// After an interruption, the next run finds the remaining drafts.
   void finish() {
     engine::PackManifest manifest{key_.study_id, entries_};
     sign(manifest, key_, pictures_);
@@ -387,7 +387,7 @@ class Preparation {
       rename_file(field_of(i), field_path(folder_, entries_[i].code));
     }
     rename_file(draft_folder(folder_) / "pack.json", folder_ / "pack.json");
-    // Otherwise a field's time would tell which picture's it is.
+    // Equal times, so that the time of a field does not reveal its picture.
     const auto now = std::filesystem::file_time_type::clock::now();
     for (const engine::PackEntry& entry : manifest.entries) {
       std::error_code ignored;
@@ -398,7 +398,7 @@ class Preparation {
   void advise() {
     std::uintmax_t pixels_of_study = 0;
     for (const ImageOfStudy& image : images_) {
-      if (is_practised(key_.study, image)) continue;
+      if (is_practice_class(key_.study, image)) continue;
       pixels_of_study += static_cast<std::uintmax_t>(image.size_px);
     }
     report_.skipped = skipped_work(key_.study, pixels_of_study);
@@ -406,15 +406,16 @@ class Preparation {
     std::ranges::copy(measured_.remarks, std::back_inserter(report_.warnings));
     if (const std::string draft = draft_notice(key_.study.session.language); !draft.empty()) {
       report_.warnings.push_back(
-          draft + ": have its speakers check every screen, and say so where you report the study");
+          draft +
+          ": have native speakers check every screen, and state this when you report the study");
     }
     if (!earlier_.damage().empty()) {
-      report_.warnings.push_back(earlier_.damage() + ": all fields were built anew");
+      report_.warnings.push_back(earlier_.damage() + ": all fields were rebuilt");
     }
-    // Not which: `run` may have named a code.
+    // Does not name them: together with a code that `run` named, that would break the blinding.
     if (const auto damaged = std::ranges::count(is_damaged_, 1); damaged > 0) {
       report_.warnings.push_back(counted(damaged, "field") +
-                                 " of the pack, damaged or gone: built anew");
+                                 " of the pack damaged or missing: rebuilt");
     }
     for (auto& warning : validity_warnings(key_.study)) {
       report_.warnings.push_back(std::move(warning));
@@ -438,22 +439,22 @@ class Preparation {
     for (std::size_t i = 0; i < fields_.size(); ++i) {
       if (!solver_warnings_[i].empty()) report_.warnings.push_back(solver_warnings_[i]);
       if (measured_.flat[i] == 0) continue;
-      report_.warnings.push_back(described(key_.study, fields_[i].stimulus) +
-                                 ": is flat, nothing of it can be felt; take another picture");
+      report_.warnings.push_back(stimulus_words(key_.study, fields_[i].stimulus) +
+                                 ": is flat and cannot be felt; use another picture");
     }
   }
 
   const StudyKey& key_;
-  std::vector<KeyedStimulus> fields_;  ///< the key's
+  std::vector<KeyedStimulus> fields_;  ///< of the key
   std::filesystem::path folder_;
   const Progress& progress_;
   PrepareOptions options_;
   EarlierFields earlier_;
   std::vector<ImageOfStudy> images_;
-  PlaneGeometry plane_;  ///< where there is practice
+  PlaneGeometry plane_;  ///< set only if there is practice
   std::vector<Digest> pictures_;
   std::vector<engine::PackEntry> entries_;
-  std::vector<std::uint8_t> is_draft_;  ///< whether a field is to be put into its place
+  std::vector<std::uint8_t> is_draft_;  ///< whether publish() must move a field
   std::vector<std::uint8_t> is_damaged_;
   std::vector<std::string> solver_warnings_;
   MeasuredFields measured_;
@@ -485,7 +486,7 @@ PackPlace simulated_pack_place(const std::filesystem::path& study_file) {
 }
 
 PackPlace pack_place_at(const std::filesystem::path& pack_folder) {
-  // The key lies beside the folder whatever it is called by: "name.pack/", "name.pack/.", ".".
+  // The key lies beside the folder, however its path is written: "name.pack/", "name.pack/.", ".".
   auto pack = pack_folder.lexically_normal();
   if (!pack.has_filename()) pack = pack.parent_path();
   if (pack == "." || pack.filename() == "..") {
@@ -498,8 +499,7 @@ PackPlace pack_place_at(const std::filesystem::path& pack_folder) {
   return {pack, key};
 }
 
-std::filesystem::path pack_in_reach(const StudyCodes& codes,
-                                    const std::filesystem::path& database) {
+std::filesystem::path find_pack(const StudyCodes& codes, const std::filesystem::path& database) {
   const std::filesystem::path& named = codes.pack_folder;
   if (named.empty() || is_there(named)) return named;
   for (const std::filesystem::path& folder :
@@ -510,7 +510,7 @@ std::filesystem::path pack_in_reach(const StudyCodes& codes,
         return place;
       }
     } catch (const FileError&) {
-      // No pack, or a damaged one; another place may have it.
+      // There is no pack here, or it is damaged; the next folder may have one.
     }
   }
   return named;
@@ -543,7 +543,7 @@ PlaneGeometry plane_of(const Study& study) {
     });
   };
   note_faults([&](std::size_t i) { sizes[i] = engine::size_of_image(images[i].path); });
-  // Headers do not tell of all damage, and one run should name every picture.
+  // A header does not show all damage, and one run should name every faulty picture.
   if (std::ranges::any_of(faults, [](const std::string& fault) { return !fault.empty(); })) {
     note_faults([&](std::size_t i) { static_cast<void>(engine::read_grey_image(images[i].path)); });
   }
@@ -557,15 +557,14 @@ PlaneGeometry plane_of(const Study& study) {
   refuse_images(std::move(faults));
   const PlaneGeometry plane{study.rendering.pitch_mm, sizes[0].second, sizes[0].first};
   for (std::size_t i = 0; i < images.size(); ++i) {
-    if (is_practised(study, images[i])) {
+    if (is_practice_class(study, images[i])) {
       require_large_enough(study, images[i], sizes[i].first, sizes[i].second, plane);
     } else if (sizes[i] != sizes[0]) {
-      refuse_image(
-          study, images[i],
-          one_line(images[i].path.string()) + ": has " + words(sizes[i]) + ", and " +
-              one_line(images[0].path.string()) + " has " + words(sizes[0]) +
-              "; all must be as large as the plane that is felt: crop them to one size with "
-              "`touchtrial stimuli import`");
+      refuse_image(study, images[i],
+                   one_line(images[i].path.string()) + ": has " + words(sizes[i]) + ", but " +
+                       one_line(images[0].path.string()) + " has " + words(sizes[0]) +
+                       "; all pictures must have the size of the plane: crop them to one size with "
+                       "`touchtrial stimuli import`");
     }
   }
   return plane;
@@ -579,10 +578,10 @@ PrepareReport prepare_pack(const PackLock& lock, const StudyKey& key, const Prog
   };
   try {
     return Preparation(key, lock.folder(), progress, options).run();
-  } catch (const StudyError&) {  // the next run, with another picture, uses what is finished
+  } catch (const StudyError&) {  // the next run, with a corrected picture, reuses finished fields
     if (options.is_new_key) discard_drafts();
     throw;
-  } catch (...) {  // what is finished may fill the disk
+  } catch (...) {  // the finished fields may have filled the disk
     discard_drafts();
     throw;
   }

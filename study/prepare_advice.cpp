@@ -18,7 +18,7 @@ std::string image_in_words(const Study& study, int class_index, int exemplar) {
 
 }  // namespace
 
-std::string described(const Study& study, const StimulusIndex& stimulus) {
+std::string stimulus_words(const Study& study, const StimulusIndex& stimulus) {
   const auto& method = study.methods[static_cast<std::size_t>(stimulus.method)];
   return image_in_words(study, stimulus.class_index, stimulus.exemplar) + ", method " +
          method.label;
@@ -45,23 +45,22 @@ std::vector<std::string> rendering_warnings(const engine::RenderingOptions& rend
   if (gains.over_budget) {
     warnings.push_back("/rendering/gains: the explicit gains exceed the stiffness budget of " +
                        number_text(rendering.texture_stiffness_n_per_mm) +
-                       " N/mm, where devices may buzz; lower them or give \"budget\"");
+                       " N/mm, at which devices may buzz; lower them or set \"budget\"");
   }
   const auto is_nothing = [](const engine::Gains& of_field) { return of_field == engine::Gains{}; };
   if (!rendering.gains && std::ranges::all_of(gains.of_field, is_nothing)) {
     warnings.emplace_back(
-        "/rendering/gains: all are 0, and nothing will be felt: every picture is flat, or has a "
-        "side "
-        "of less than 3 pixels, too thin for a stiffness budget; take other pictures");
+        "/rendering/gains: all gains are 0, so no texture can be felt: every picture is flat, or a "
+        "side has fewer than 3 pixels, too few for a stiffness budget; use other pictures");
   }
   if (rendering.gains && rendering.equalise == engine::Equalise::rms) {
     warnings.emplace_back(
-        "/rendering/equalise: rms has no effect beside explicit gains; give gains \"budget\"");
+        "/rendering/equalise: rms has no effect on explicit gains; set gains to \"budget\"");
   }
   if (rendering.model == engine::ModelKind::paper && rendering.reference_grey == 0.0) {
     warnings.emplace_back(
-        "/rendering/reference_grey: 0 is the paper's literal reading, a step of force at the "
-        "surface from which a hand bounces; 128 has none");
+        "/rendering/reference_grey: 0 is the paper's literal reading, with a step of force at the "
+        "surface that makes the stylus bounce; 128 avoids the step");
   }
   return warnings;
 }
@@ -72,25 +71,25 @@ std::vector<std::string> validity_warnings(const Study& study) {
   std::vector<std::string> warnings;
   const auto warn = [&warnings](const std::string& key, const std::string& what) {
     warnings.push_back("/trials/validity/" + key + ": " + what +
-                       ", so that no trial can be valid; lower it, or change the study");
+                       ", so no trial can be valid; lower it, or change the study");
   };
-  const auto warn_of_time = [&](const char* key, double least_s) {
-    if (least_s <= limit_s) return;
-    warn(key, number_text(least_s) + " s, and a presentation can be explored for " +
+  const auto warn_of_time = [&](const char* key, double min_s) {
+    if (min_s <= limit_s) return;
+    warn(key, number_text(min_s) + " s, but a presentation can be explored for only " +
                   number_text(limit_s) + " s (/trials/explore_limit_s)");
   };
-  warn_of_time("exploring_s", rule.least_exploring_s);
-  warn_of_time("contact_s", rule.least_contact_s);
-  if (rule.least_path_mm > kFastestMmS * limit_s) {
-    warn("path_mm", number_text(rule.least_path_mm) +
-                        " mm, more than the fastest stroke that "
-                        "participants are asked for goes in " +
+  warn_of_time("exploring_s", rule.min_exploring_s);
+  warn_of_time("contact_s", rule.min_contact_s);
+  if (rule.min_path_mm > kMaxStrokeMmS * limit_s) {
+    warn("path_mm", number_text(rule.min_path_mm) +
+                        " mm, more than the fastest stroke that participants are asked for covers "
+                        "in " +
                         number_text(limit_s) + " s");
   }
-  const double largest_n = std::min(rule.largest_median_n, study.rendering.max_force_n);
-  if (rule.least_median_n > largest_n) {
-    warn("least_median_n", number_text(rule.least_median_n) + " N, and the force may be " +
-                               number_text(largest_n) + " N at most");
+  const double max_n = std::min(rule.max_median_n, study.rendering.max_force_n);
+  if (rule.min_median_n > max_n) {
+    warn("least_median_n", number_text(rule.min_median_n) + " N, but the force is limited to " +
+                               number_text(max_n) + " N");
   }
   return warnings;
 }
@@ -99,7 +98,7 @@ std::string solver_warning(const Study& study, const StimulusIndex& stimulus,
                            const BuiltField& built) {
   if (built.converged) return {};
   const auto& options = study.methods[static_cast<std::size_t>(stimulus.method)].tv_gabor;
-  return described(study, stimulus) + ": stopped after " + std::to_string(built.steps) +
+  return stimulus_words(study, stimulus) + ": stopped after " + std::to_string(built.steps) +
          " steps at a relative gap of " + number_text(built.gap) + ", not " +
          number_text(options.gap) + "; raise max_steps";
 }
@@ -115,7 +114,7 @@ std::vector<std::string> twin_warnings(const Study& study, std::span<const Diges
       const auto [first, is_new] = seen.emplace(pixels[image++], words);
       if (is_new) continue;
       warnings.push_back(words + ": has the same pixels as " + first->second +
-                         ", and nobody can tell them apart; take another picture");
+                         ", so nobody can tell them apart; use another picture");
     }
   }
   return warnings;

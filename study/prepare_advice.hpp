@@ -1,5 +1,4 @@
-/// \file Descriptions and warnings that `prepare` prints about a study. Private to
-/// study.
+/// \file Descriptions and warnings that `prepare` prints about a study. Private to study.
 #pragma once
 
 #include "engine/rendering/gains.hpp"
@@ -12,14 +11,14 @@
 
 namespace touchtrial::study {
 
-/// A stimulus in words: class, image and method.
-[[nodiscard]] std::string described(const Study& study, const StimulusIndex& stimulus);
+/// Describes a stimulus by class, image and method.
+[[nodiscard]] std::string stimulus_words(const Study& study, const StimulusIndex& stimulus);
 
 /// Methods of the study file that the protocol does not present.
 /// \param pixels  number of pixels of all the study's images together
 [[nodiscard]] std::vector<SkippedWork> skipped_work(const Study& study, std::uintmax_t pixels);
 
-/// Warnings about options that are allowed but probably unintended.
+/// Warnings about options that are permitted but probably unintended.
 [[nodiscard]] std::vector<std::string> rendering_warnings(const engine::RenderingOptions& rendering,
                                                           const engine::StudyGains& gains);
 

@@ -29,7 +29,7 @@ Fields Task::fields(const Study& study) const {
 void add_protocol(const Protocol& protocol) {
   auto& all = known_protocols();
   if (find_protocol(protocol.name) != nullptr) {
-    throw std::invalid_argument("add_protocol: there are two protocols " +
+    throw std::invalid_argument("add_protocol: the name is already registered: " +
                                 std::string(protocol.name));
   }
   all.push_back(&protocol);
@@ -61,9 +61,10 @@ bool chooses_classes(const Study& study) {
 void require_choice_of_classes(const Study& study, const std::string& command) {
   if (chooses_classes(study)) return;
   throw StudyError(one_line("study " + study.name + ": " + command +
-                            " needs participants who choose between the study's classes, which the "
-                            "protocol " +
-                            study.protocol_name() + " does not ask; give a study of another"));
+                            " needs a question that lets participants choose between the study's "
+                            "classes, which the protocol " +
+                            study.protocol_name() +
+                            " does not ask; use a study with another protocol"));
 }
 
 std::unique_ptr<Order> make_order(const Study& study, const ScheduleDraw& draw) {
@@ -95,7 +96,7 @@ std::vector<StimulusIndex> presented_fields(const Study& study) {
 }
 
 std::string place_of_image(const Study& study, const StimulusIndex& field) {
-  const bool practised = study.is_practised(field.class_index);
+  const bool practised = study.is_practice_class(field.class_index);
   const int before = practised ? static_cast<int>(study.classes.size()) : 0;
   return (practised ? "/practice/classes/" : "/classes/") +
          std::to_string(field.class_index - before) + "/images/" + std::to_string(field.exemplar);

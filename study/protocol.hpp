@@ -1,5 +1,5 @@
-/// \file The interface of a protocol, which decides its part of the study file, what is presented,
-/// and what is asked. The runner, the store, the window and the exports know a protocol only by
+/// \file The interface of a protocol, which defines its part of the study file, what is presented,
+/// and what is asked. The runner, the store, the window and the exports use a protocol only through
 /// this interface. How to write one: docs/add-a-protocol.md.
 #pragma once
 
@@ -21,24 +21,24 @@ namespace touchtrial::study {
 struct Practice {
   std::vector<std::string> labels;  ///< of the alternatives, by position
   std::vector<Trial> trials;        ///< their `right` is a position; empty: no practice
-  int criterion = 0;                ///< right answers that end practice; 0: a whole round does
-  int rounds = 0;                   ///< maximum
+  int criterion = 0;  ///< right answers that end practice; 0: practice ends after a whole round
+  int rounds = 0;     ///< maximum
 };
 
 /// The fields that trials may present.
 struct Fields {
-  /// In place of the study file's. There is a field of each image with each of those presented.
+  /// Replace those of the study file. Each image has a field for each presented method.
   std::vector<StudyMethod> methods;
   std::vector<StimulusIndex> practice{};  ///< fields of practice classes
   std::vector<Plane> mixtures{};          ///< every mix of two fields
-  /// Planes are compared with each other and with blank ones: their walls all lie at one height,
-  /// and their gains are applied to forces.
+  /// Whether planes are compared with each other and with blank ones. Their walls then all lie at
+  /// the same height, and their gains scale forces.
   bool levelled = false;
 };
 
-/// What the participants of a study do. A protocol makes it from its own section of the study file,
-/// and it owns the options that it read there. Immutable and thread-safe: every function depends
-/// only on these options and its arguments, of which `study` is the study that owns the task.
+/// What the participants of a study do. A protocol creates it from its own section of the study
+/// file, and it owns the options of that section. Immutable and thread-safe: every function depends
+/// only on these options and its arguments. The argument `study` is the study that owns the task.
 class Task {
  public:
   virtual ~Task() = default;
@@ -47,32 +47,33 @@ class Task {
   /// \param file  the whole study file, used to locate errors
   /// \throws StudyError with the place of the error and the remedy
   virtual void check(const JsonValue& file, const Study& study) const = 0;
-  /// The options as a database stores them in clear: compact JSON that reveals nothing about a
-  /// stimulus. The seal commits to it. Empty: the database stores nothing.
+  /// The options that a database stores unencrypted: compact JSON that reveals nothing about a
+  /// stimulus. The seal commits to it. Empty: the database stores none.
   [[nodiscard]] virtual std::string in_clear() const { return {}; }
-  /// The name and version of the rule that makes orders; the seal commits to it.
+  /// The name and version of the rule that generates orders; the seal commits to it.
   [[nodiscard]] virtual std::string rule(const Study& study) const = 0;
-  /// What `prepare` warns of: options that are allowed but probably unintended, each after its
+  /// Warnings of `prepare` about options that are permitted but probably unintended, each with its
   /// place in the study file.
   [[nodiscard]] virtual std::vector<std::string> advice(const Study& /*study*/) const { return {}; }
-  /// The number of scored trials of one participant at one visit, or of all visits that divide the
-  /// methods.
+  /// The number of scored trials of one participant at one visit; if the visits divide the methods,
+  /// at all visits together.
   [[nodiscard]] virtual int scored_trials(const Study& study) const = 0;
-  /// The number of one session's catch trials that have a right answer.
+  /// The number of catch trials with a right answer in a session.
   [[nodiscard]] virtual int answered_catches(const Study& /*study*/) const { return 0; }
-  /// By default every practice class with the first method, if there is practice.
+  /// The default has every practice class with the first method, if there is practice.
   [[nodiscard]] virtual Fields fields(const Study& study) const;
 
-  /// How the trial at a place goes. All trials of a study ask the same question.
+  /// What the participant does in the trial at a place. All trials of a study ask the same
+  /// question.
   [[nodiscard]] virtual Ask ask(const Study& study, const Place& place) const = 0;
   /// \param study  must outlive the order
-  /// \throws StudyError if the order is impossible for the study
+  /// \throws StudyError if the study does not permit the order
   [[nodiscard]] virtual std::unique_ptr<Order> order(const Study& study,
                                                      const ScheduleDraw& draw) const = 0;
   /// \param round  from 1; each has the same number of trials
   [[nodiscard]] virtual Practice practice(const Study& study, const ScheduleDraw& draw,
                                           int round) const;
-  /// The field that a step of a track is about, for tables and exports.
+  /// The field whose threshold a track measures, for tables and exports.
   [[nodiscard]] virtual StimulusIndex about(const Study& /*study*/, const Level& /*level*/) const {
     return {};
   }
@@ -83,14 +84,14 @@ struct Protocol {
   std::string_view name;     ///< as in the study file's "protocol"
   std::string_view section;  ///< key of its own object in the study file; empty: it has none
   /// Reads that object.
-  /// \param section  nothing: the file omits it
+  /// \param section  empty if the file omits it
   /// \throws StudyError with the place of a value that is not accepted
   std::shared_ptr<const Task> (*read)(const std::optional<JsonValue>& section);
   int min_classes = 2;
   int min_methods = 1;
-  bool adaptive = false;    ///< answers decide what comes next
+  bool adaptive = false;    ///< whether answers determine later trials
   bool all_methods = true;  ///< participants get all of the study's methods; if not, only the first
-  /// The schema of that object, as annotated_section() makes it; null: it has none.
+  /// Returns the schema of that object, in the form of annotated_section(); null: it has none.
   std::string (*section_schema)() = nullptr;
   /// The registered questions that its analysis answers; a study cannot register another.
   std::span<const Estimand> estimands{};
@@ -98,7 +99,7 @@ struct Protocol {
 
 /// Registers a protocol under its name. Call before the first study is read. Not thread-safe.
 /// \param protocol  must outlive the program's use of studies
-/// \throws std::invalid_argument if the name is taken
+/// \throws std::invalid_argument if the name is already registered
 void add_protocol(const Protocol& protocol);
 
 /// \return the protocol of this name, or null if there is none
@@ -110,34 +111,33 @@ void add_protocol(const Protocol& protocol);
 /// The order of one participant. It depends only on the study's classes, methods and trial options
 /// and on the draw, and is the same on every platform.
 /// \param study  must outlive the order
-/// \throws StudyError if the order is impossible for the study
+/// \throws StudyError if the study does not permit the order
 [[nodiscard]] std::unique_ptr<Order> make_order(const Study& study, const ScheduleDraw& draw);
 /// The schedule of that order.
-/// \throws StudyError if the order is impossible for the study
+/// \throws StudyError if the study does not permit the order
 [[nodiscard]] Schedule make_schedule(const Study& study, const ScheduleDraw& draw);
 
-/// Every field that a study may present, which `prepare` makes and the key names: by class, image
-/// and method, then those of practice.
+/// Every field that a study may present, ordered by class, image and method, then the fields of
+/// practice. `prepare` builds these fields, and the key has a code for each.
 [[nodiscard]] std::vector<StimulusIndex> presented_fields(const Study& study);
 /// The place in the study file of a field's image, for errors.
 [[nodiscard]] std::string place_of_image(const Study& study, const StimulusIndex& field);
 
-/// What the trials of a study ask, but for controls.
+/// What participants do in the trials of a study other than controls.
 [[nodiscard]] Ask ask_of(const Study& study);
-/// The alternatives of the question; empty where none are asked for.
+/// The alternatives of the question; empty for a question with scales.
 [[nodiscard]] std::vector<Choice> choices_of(const Study& study);
 /// A round of the study's practice.
 [[nodiscard]] Practice practice_of(const Study& study, const ScheduleDraw& draw = {},
                                    int round = 1);
 
-/// The label of the picture that is shown with a trial's question; empty: none.
+/// The label of the picture shown with a trial's question; empty if there is none.
 [[nodiscard]] std::string picture_of(const Study& study, const Trial& trial);
 
 /// Whether the choices of a study are its classes in the same order, as a confusion matrix
 /// requires.
 [[nodiscard]] bool chooses_classes(const Study& study);
-/// Requires that the choices of a study are its classes.
-/// \param command  the command that requires it, for the message
+/// \param command  the command that needs this, for the message
 /// \throws StudyError if chooses_classes is false
 void require_choice_of_classes(const Study& study, const std::string& command);
 

@@ -35,7 +35,8 @@ BigCount draw_below(const BigCount& bound, RandomStream& random) {
   }
 }
 
-/// How many symbols have 0, 1, .. copies left, then 1 + the copies left of the last symbol.
+/// The number of symbols with 0, 1, .. remaining copies, then 1 + the remaining copies of the last
+/// symbol.
 using State = std::u16string;
 
 /// Counts sequences of runs. A run is a symbol and its number of repetitions; adjacent runs have
@@ -71,7 +72,7 @@ class RunCounter {
   }
 
   /// Counts completions from the current state.
-  /// \param last  copies left of the symbol before; negative if there is none
+  /// \param last  remaining copies of the preceding symbol; negative if there is none
   const BigCount& count(int last) {
     State state = histogram_;
     state.push_back(static_cast<char16_t>(last + 1));
@@ -104,7 +105,7 @@ class RunCounter {
   std::unordered_map<State, BigCount> counts_;
 };
 
-/// The largest number of copies of the symbol before that may come first, >= 0.
+/// The maximum number of copies of the preceding symbol that may come first, >= 0.
 int longest_continuation(const RunCounter& counter, int max_run, RunBefore before) {
   return std::min(max_run - before.length, counter.left(before.symbol));
 }
@@ -126,9 +127,9 @@ class Descent {
  public:
   Descent(RunCounter& counter, BigCount number) : counter_(counter), number_(std::move(number)) {}
 
-  /// Appends a run if the order continues with it.
-  /// \return whether it does
-  bool takes(int symbol, int run) {
+  /// Appends a run if the order with this number continues with it.
+  /// \return whether the run was appended
+  bool append_if_next(int symbol, int run) {
     counter_.take(symbol, run);
     const BigCount below = counter_.completions(symbol);
     if (number_ >= below) {
@@ -142,12 +143,12 @@ class Descent {
 
   /// Appends the next run.
   /// \return the run's symbol
-  int take_next_run(int last) {
+  int append_next_run(int last) {
     for (int symbol = 0; symbol < counter_.symbols(); ++symbol) {
       if (symbol == last) continue;
       const int longest = counter_.longest(counter_.left(symbol));
       for (int run = 1; run <= longest; ++run) {
-        if (takes(symbol, run)) return symbol;
+        if (append_if_next(symbol, run)) return symbol;
       }
     }
     return last;
@@ -161,8 +162,8 @@ class Descent {
   std::vector<int> order_;
 };
 
-/// The number of sequences with fewer than `m` symbols whose first symbol differs from the symbol
-/// before, for m = 0 .. length + 1. These are cumulative sums, so that one difference gives the
+/// For m = 0 .. length + 1, the number of sequences with fewer than `m` symbols whose first symbol
+/// differs from the preceding one. These are cumulative sums, so that one difference gives the
 /// number for a range of lengths.
 std::vector<BigCount> sequences_below(int symbols, int length, int max_run) {
   std::vector<BigCount> below = {0, 1};
@@ -209,8 +210,8 @@ std::vector<int> random_arborescence(int vertices, RandomStream& random) {
   return exit;
 }
 
-/// The exits of one vertex in the order in which they are taken.
-/// \param last  the exit that is taken last; negative: any
+/// The exits of one vertex in the order in which the circuit uses them.
+/// \param last  the exit that is used last; negative: any
 std::vector<int> ordered_exits(int vertices, int last, RandomStream& random) {
   std::vector<int> exits(static_cast<std::size_t>(vertices));
   std::iota(exits.begin(), exits.end(), 0);
@@ -242,20 +243,20 @@ std::vector<int> joined(int symbols, std::span<const int> rows) {
   return order;
 }
 
-bool keeps_limit(const std::vector<int>& order, int max_run, RunBefore before) {
+bool respects_limit(const std::vector<int>& order, int max_run, RunBefore before) {
   return std::ranges::all_of(order, [&](int symbol) {
     before = run_at_end({symbol}, before);
     return before.length <= max_run;
   });
 }
 
-/// Draws `rows` rows of the square that starts at row `first`, in an order that keeps the limit.
+/// Draws `rows` rows of the square that starts at row `first`, in an order that respects the limit.
 std::vector<int> square_rows(int symbols, int first, int rows, int max_run, RunBefore before,
                              RandomStream& random) {
   while (true) {
     const std::vector<int> all = shuffled_numbers(first, symbols, random);
     std::vector<int> order = joined(symbols, std::span(all).first(static_cast<std::size_t>(rows)));
-    if (max_run == 0 || keeps_limit(order, max_run, before)) return order;
+    if (max_run == 0 || respects_limit(order, max_run, before)) return order;
   }
 }
 
@@ -265,10 +266,10 @@ bool limited_order_exists(const std::vector<int>& counts, int max_run, RunBefore
   const int total = std::accumulate(counts.begin(), counts.end(), 0);
   for (int symbol = 0; symbol < static_cast<int>(counts.size()); ++symbol) {
     const int copies = counts[static_cast<std::size_t>(symbol)];
-    // The run before uses up part of the first place.
-    const int taken = symbol == before.symbol ? before.length : 0;
+    // The preceding run uses part of the first place.
+    const int used = symbol == before.symbol ? before.length : 0;
     const std::int64_t places = std::int64_t{total} - copies + 1;
-    if (copies + taken > places * max_run) return false;
+    if (copies + used > places * max_run) return false;
   }
   return true;
 }
@@ -295,12 +296,12 @@ std::optional<std::vector<int>> draw_limited_order(const std::vector<int>& count
   if (before.symbol >= 0) {
     const int longest = longest_continuation(counter, max_run, before);
     for (int run = 0; run <= longest; ++run) {
-      if (descent.takes(before.symbol, run)) break;
+      if (descent.append_if_next(before.symbol, run)) break;
     }
   }
   const auto length = static_cast<std::size_t>(std::accumulate(counts.begin(), counts.end(), 0));
   int last = before.symbol;
-  while (descent.order().size() < length) last = descent.take_next_run(last);
+  while (descent.order().size() < length) last = descent.append_next_run(last);
   return descent.order();
 }
 
@@ -339,11 +340,11 @@ std::vector<int> random_de_bruijn_cycle(int symbols, RandomStream& random) {
     exits.push_back(ordered_exits(symbols, v == kRoot ? -1 : last_exit[v], random));
   }
   const std::size_t length = exits.size() * exits.size();
-  std::vector<std::size_t> taken(exits.size(), 0);
+  std::vector<std::size_t> used(exits.size(), 0);
   std::vector<int> cycle;
   for (int v = kRoot; cycle.size() < length;) {
     cycle.push_back(v);
-    v = exits[v][taken[v]++];
+    v = exits[v][used[v]++];
   }
   const auto start = static_cast<std::ptrdiff_t>(random.below(length));
   std::rotate(cycle.begin(), cycle.begin() + start, cycle.end());

@@ -1,7 +1,7 @@
-/// \file Random orders of symbols under a rule: limited runs, every transition equally often (de
-/// Bruijn), or rows of a Williams design. All orders that keep the rule are equally likely. Orders
-/// with limited runs are drawn by exact counts in whole numbers of any size, never by trial and
-/// error.
+/// \file Random orders of symbols under a constraint: limited runs, every transition equally often
+/// (de Bruijn), or rows of a Williams design. All orders that satisfy the constraint are equally
+/// likely. Orders with limited runs are drawn by exact counting with big integers, not by
+/// rejection.
 #pragma once
 
 #include "core/random.hpp"
@@ -11,7 +11,7 @@
 
 namespace touchtrial::study {
 
-/// The symbol before an order begins, and the length of its run.
+/// The run that precedes an order.
 struct RunBefore {
   int symbol = -1;  ///< negative: nothing came before
   int length = 0;   ///< at most the limit on runs
@@ -72,13 +72,14 @@ struct RunBefore {
 /// \param max_run  at least 1
 [[nodiscard]] bool williams_order_exists(int symbols, int rows, int max_run);
 
-/// Draws rows of Williams squares, one after the other, and permutes the symbols at random. The
-/// rows of a square come in random order, each once before any repeats. An odd number of symbols
-/// has two squares, which alternate; a random one comes first. All such orders that keep the limit
-/// on runs are equally likely. If two rows break the limit, the square's rows are drawn again (more
-/// than a fifth of all orders keep it). The number of orders of later squares that keep the limit
-/// does not depend on the symbol before them, because a square's rows are translations of each
-/// other.
+/// Draws rows of Williams squares, one square after the other, and permutes the symbols at random.
+/// The rows of a square come in random order, each once before any repeats. An odd number of
+/// symbols has two squares, which alternate; a random one comes first.
+///
+/// All such orders that respect the limit on runs are equally likely. If two rows break the limit,
+/// the square's rows are redrawn; more than a fifth of all orders respect it. The number of valid
+/// orders of later squares does not depend on the preceding symbol, because a square's rows are
+/// translations of each other.
 /// \param symbols  at least 2
 /// \param max_run  0: no limit
 /// \pre williams_order_exists(symbols, rows, max_run) if max_run > 0

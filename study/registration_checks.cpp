@@ -1,4 +1,4 @@
-// What the study file's "registration" may say of its study.
+// Checks that the study file's "registration" is consistent with the study.
 #include "core/text.hpp"
 #include "study/protocol.hpp"
 #include "study/study_sections.hpp"
@@ -28,12 +28,12 @@ void check_methods(const JsonValue& file, const Study& study) {
       std::span(study.methods).first(static_cast<std::size_t>(study.presented_methods()));
   for (std::size_t i = 0; i < methods.size(); ++i) {
     if (std::ranges::count(presented, methods[i], &StudyMethod::label) == 0) {
-      file.refuse_below(
-          place(i), in_quotes(methods[i]) + " is no method that the study presents; use its label");
+      file.refuse_below(place(i), in_quotes(methods[i]) +
+                                      " is not the label of a method that the study presents");
     }
   }
   if (methods.size() == 2 && methods[0] == methods[1]) {
-    file.refuse_below(place(1), "is the same method twice; name two");
+    file.refuse_below(place(1), "repeats the first method; name two different ones");
   }
   if (methods.empty() && presented.size() > 2) {
     file.refuse_below("/registration/estimand", "is a difference, but the study presents " +
@@ -83,27 +83,28 @@ void check_margin(const JsonValue& file, const RegisteredAnalysis& analysis) {
   }
   if (analysis.test == RegisteredTest::sign_flip) {
     file.refuse_below("/registration/test",
-                      "flips signs about 0, not about a margin; use \"crossover\" for blocks by "
-                      "method, else \"t\"");
+                      "tests a difference against 0, not against a margin; use \"crossover\" for "
+                      "blocks by method, else \"t\"");
   }
 }
 
-/// Whether the protocol answers what is registered. Which standards there are is its own matter.
+/// Checks that the protocol can answer the registered question. The protocol itself checks the
+/// standards.
 void check_protocol(const JsonValue& file, const Study& study) {
   const Estimand estimand = study.registration.analysis->estimand;
-  const std::span<const Estimand> kept = study.protocol->estimands;
-  if (std::ranges::find(kept, estimand) != kept.end()) return;
-  const std::string what = in_quotes(name_of(estimand)) + " is no question that the protocol " +
-                           study.protocol_name() + " answers";
+  const std::span<const Estimand> supported = study.protocol->estimands;
+  if (std::ranges::find(supported, estimand) != supported.end()) return;
+  const std::string what =
+      in_quotes(name_of(estimand)) + " is not supported by the protocol " + study.protocol_name();
   const char* const place = "/registration/estimand";
-  if (kept.empty()) {
+  if (supported.empty()) {
     file.refuse_below(place, what +
-                                 "; leave estimand and what belongs to it out, and state the test "
-                                 "in primary_test");
+                                 "; remove the estimand with its keys, and describe the test in "
+                                 "primary_test");
   }
   std::vector<std::string> names;
-  for (const Estimand one : kept) names.emplace_back(name_of(one));
-  file.refuse_below(place, what + "; register one that it does: " + listed(names));
+  for (const Estimand one : supported) names.emplace_back(name_of(one));
+  file.refuse_below(place, what + "; use one of: " + listed(names));
 }
 
 void check_estimand(const JsonValue& file, const Study& study) {
@@ -112,13 +113,13 @@ void check_estimand(const JsonValue& file, const Study& study) {
   if (is_of_thresholds(analysis.estimand)) {
     if (analysis.test == RegisteredTest::t) return;
     file.refuse_below("/registration/test",
-                      "is about right answers; use \"t\" for thresholds, or leave it out");
+                      "does not apply to thresholds; use \"t\", or remove it");
   }
   const bool several = study.presented_methods() > 1;
   if (analysis.estimand == Estimand::difference) {
     if (!several) {
       file.refuse_below(place,
-                        "is a difference of methods, but the study presents one; use "
+                        "is a difference of methods, but the study presents only one; use "
                         "\"mean-accuracy\"");
     }
     check_methods(file, study);
@@ -135,15 +136,14 @@ void check_estimand(const JsonValue& file, const Study& study) {
   }
   if (analysis.test != RegisteredTest::t) {
     file.refuse_below("/registration/test",
-                      "is about differences, but the study compares no methods; use "
-                      "\"t\"");
+                      "tests a difference, but the study does not compare methods; use \"t\"");
   }
   const double chance = 1.0 / static_cast<double>(choices_of(study).size());
   if (analysis.smallest_effect && *analysis.smallest_effect <= chance) {
     file.refuse_below("/registration/smallest_effect",
                       "is " + number_text(*analysis.smallest_effect) +
                           ", not above chance, which is " + number_text(chance) +
-                          "; give the smallest accuracy worth having");
+                          "; give the smallest accuracy of interest");
   }
 }
 
@@ -155,12 +155,12 @@ void check_day_sheet(const JsonValue& file, const Study& study) {
     const std::optional<int> item = day_sheet_item(rules->deviations[i]);
     if (!item || static_cast<std::size_t>(*item) <= items) continue;
     file.refuse_below("/registration/exclusion_rules/deviations/" + std::to_string(i),
-                      "is about item " + std::to_string(*item) + " of \"day_sheet\", which has " +
-                          std::to_string(items) + "; name an item that it has, or add this one");
+                      "refers to item " + std::to_string(*item) + " of \"day_sheet\", which has " +
+                          std::to_string(items) + "; name an existing item, or add this one");
   }
 }
 
-/// Nobody can miss more catch trials than there are.
+/// Checks that a session has more catch trials than the limit.
 void check_missed_catch(const JsonValue& file, const Study& study) {
   const auto& rules = study.registration.analysis->exclusion_rules;
   if (!rules || !rules->missed_catch) return;
@@ -168,13 +168,13 @@ void check_missed_catch(const JsonValue& file, const Study& study) {
   const int trials = study.task->answered_catches(study);
   if (trials == 0) {
     file.refuse_below(place,
-                      "is about catch trials with a right answer, of which the study has "
-                      "none; remove it");
+                      "needs catch trials with a right answer, of which the study has none; remove "
+                      "it");
   }
   if (*rules->missed_catch >= trials) {
     file.refuse_below(place, "is " + std::to_string(*rules->missed_catch) + ", but a session has " +
                                  counted(trials, "catch trial") +
-                                 ", so that nobody misses more; lower it, or remove it");
+                                 ", so nobody can miss more; lower it, or remove it");
   }
 }
 
@@ -183,11 +183,11 @@ void check_looks(const JsonValue& file, const Registration& registration) {
   if (looks.empty() || looks.back() < registration.participants) return;
   const char* const place = "/registration/looks";
   if (registration.participants == 0) {
-    file.refuse_below(place, "is given without \"participants\"; state the planned number");
+    file.refuse_below(place, "needs \"participants\"; state the planned number");
   }
   file.refuse_below(place, "has a look at " + std::to_string(looks.back()) + " participants, but " +
                                std::to_string(registration.participants) +
-                               " are planned; look earlier, or state more \"participants\"");
+                               " are planned; choose earlier looks, or raise \"participants\"");
 }
 
 }  // namespace
@@ -201,10 +201,10 @@ void check_registration(const JsonValue& file, const Study& study) {
   if (registration.analysis->visits != RegisteredVisits::all) {
     const char* const place = "/registration/visits";
     if (study.visits.count < 2) {
-      file.refuse_below(place, "chooses a visit, but the study has one; remove it");
+      file.refuse_below(place, "selects a visit, but the study has only one; remove it");
     }
     if (study.visits.methods == VisitMethods::divided) {
-      file.refuse_below(place, "must be \"all\": each visit has other methods");
+      file.refuse_below(place, "must be \"all\", because each visit presents different methods");
     }
   }
   check_looks(file, registration);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMaxParticipants = 100'000;
 constexpr std::size_t kMaxCodes = 64;
-constexpr std::size_t kLongestCode = 64;  // bytes
+constexpr std::size_t kMaxCodeBytes = 64;  // bytes
 constexpr NumberRange kShare{.low = 0.0, .high = 1.0, .open_low = true};
 constexpr NumberRange kDecibels{0.0, 200.0, true};
 constexpr double kMinAlpha = 1e-6;
@@ -21,15 +21,16 @@ constexpr TextRule kStatement = kParagraphs<4000>;
 constexpr TextRule kDeviation{
     .check =
         [](const JsonValue& place) {
-          if (is_deviation_code(read_line(place, kLongestCode))) return;
-          place.refuse("is no code that the program records, which are " + listed(kDeviationCodes) +
-                       " and no-day-sheet-1, ..; a code that experimenters enter belongs in "
+          if (is_deviation_code(read_line(place, kMaxCodeBytes))) return;
+          place.refuse("is not a code that the program records; use one of " +
+                       listed(kDeviationCodes) +
+                       " and no-day-sheet-1, .., or list a code that experimenters enter under "
                        "\"own_deviations\"");
         },
     .min_length = 1,
-    .max_length = kLongestCode};
+    .max_length = kMaxCodeBytes};
 
-/// The codes of a list, of which `deviations` has the program's first.
+/// Describes a list of deviation codes.
 void describe_codes(ObjectIo& io, std::string_view key, const TextRule& rule, bool is_written,
                     std::vector<std::string>& codes, std::string_view meaning) {
   io.list(key, codes, {.most = kMaxCodes},
@@ -44,7 +45,7 @@ void describe_exclusion_rules(ObjectIo& io, ExclusionRules& rules) {
   describe_codes(io, "deviations", kDeviation, true, programs,
                  "a session with one of these [deviations](data-dictionary.md) is left out; a code "
                  "that the program does not record is refused");
-  describe_codes(io, "own_deviations", kLine<kLongestCode>, !laboratory.empty(), laboratory,
+  describe_codes(io, "own_deviations", kLine<kMaxCodeBytes>, !laboratory.empty(), laboratory,
                  "the same for codes of your own, which experimenters enter during a session or "
                  "with `note --deviation`");
   rules.deviations = programs;
@@ -76,7 +77,7 @@ constexpr std::string_view kAnalysisKeys[] = {
     "smallest_effect", "margin",    "looks",          "spending", "smallest_effect_db",
     "margin_db",       "visits",    "exclusion_rules"};
 
-/// The keys of some estimands alone.
+/// Keys that apply only to some estimands.
 constexpr std::string_view kKeysOfAccuracies[] = {"methods", "smallest_effect", "margin"};
 constexpr std::string_view kKeysOfThresholds[] = {"standards", "smallest_effect_db", "margin_db"};
 constexpr std::string_view kKeysOfTests[] = {"test",     "sides",     "looks",
@@ -89,30 +90,33 @@ void refuse_keys(const JsonObject& object, std::span<const std::string_view> key
   }
 }
 
-/// Refuses keys that mean nothing for the estimand.
+/// Refuses keys that do not apply to the estimand.
 void check_keys(const JsonObject& object, Estimand estimand) {
-  const std::string of = " \"" + std::string(name_of(estimand)) + "\"; remove it";
+  const std::string of = ", not to \"" + std::string(name_of(estimand)) + "\"; remove it";
   if (!is_of_thresholds(estimand)) {
-    return refuse_keys(object, kKeysOfThresholds, "is about thresholds, and not about" + of);
+    return refuse_keys(object, kKeysOfThresholds, "applies to thresholds" + of);
   }
-  refuse_keys(object, kKeysOfAccuracies, "is about right answers, and not about" + of);
+  refuse_keys(object, kKeysOfAccuracies, "applies to right answers" + of);
   if (estimand == Estimand::mean_threshold) {
     return refuse_keys(
         object, kKeysOfTests,
-        "belongs to a test; \"mean-threshold\" is an estimate without one: remove it");
+        "belongs to a test, which the estimate \"mean-threshold\" does not have; remove it");
   }
   const auto refuse = [&](const char* key, const char* what) {
     if (const auto member = object.find(key)) member->refuse(what);
   };
   if (estimand == Estimand::threshold_difference) {
-    return refuse("margin_db", "belongs to \"threshold-equality\"; remove it, or register that");
+    return refuse("margin_db",
+                  "belongs to \"threshold-equality\"; remove it, or register that estimand");
   }
-  refuse("sides", "belongs to no equality, which is two one-sided tests; remove it");
-  refuse("smallest_effect_db", "is given for an equality, whose size is \"margin_db\"; remove it");
+  refuse("sides",
+         "does not apply to an equality, which is tested by two one-sided tests; remove it");
+  refuse("smallest_effect_db",
+         "does not apply to an equality, which needs \"margin_db\"; remove it");
   static_cast<void>(object.at("margin_db"));
 }
 
-/// The usual test of an estimand. Flips of signs are about 0, so a margin needs a t test.
+/// The default analysis of an estimand. Sign flips test against 0, so a margin needs a t test.
 RegisteredAnalysis usual_analysis(Estimand estimand, bool has_margin, RegisteredTest usual_test) {
   RegisteredAnalysis analysis;
   analysis.estimand = estimand;
@@ -127,7 +131,7 @@ RegisteredAnalysis usual_analysis(Estimand estimand, bool has_margin, Registered
   return analysis;
 }
 
-/// A number that has one key of right answers, and one of thresholds.
+/// Describes a number that has one key for accuracies and another for thresholds.
 void describe_size(ObjectIo& io, std::string_view key, std::optional<double>& size,
                    const NumberRange& range, bool is_here, const About& about) {
   std::optional<double> own = is_here ? size : std::nullopt;
@@ -178,7 +182,7 @@ void describe_test(ObjectIo& io, RegisteredAnalysis& analysis) {
     const auto falling = std::ranges::adjacent_find(analysis.looks, std::greater_equal<>());
     if (falling == analysis.looks.end()) return;
     place.refuse_below("/looks/" + std::to_string(falling + 1 - analysis.looks.begin()),
-                       "is not more than the look before; list looks in ascending order");
+                       "is not greater than the previous look; list looks in ascending order");
   });
   io.choice("spending", analysis.spending, kSpendingNames,
             {.meaning = "how alpha is spent over the looks (Lan and DeMets)", .written = has_test});
@@ -261,7 +265,7 @@ void describe(ObjectIo& io, Registration& registration, RegisteredTest usual_tes
   io.rule([&](const JsonValue& /*place*/, const JsonObject& object) {
     if (!estimand) {
       return refuse_keys(object, kAnalysisKeys,
-                         "is given without \"estimand\"; say what is estimated, or remove it");
+                         "needs \"estimand\"; state what is estimated, or remove this key");
     }
     check_keys(object, *estimand);
     registration.analysis =

@@ -11,12 +11,12 @@ namespace {
 
 using Field = std::pair<std::string, std::string>;
 
-/// A hundred times the share, without the binary digits of 7.000000000000001.
+/// The share in per cent, rounded so that 7.000000000000001 is written as 7.
 std::string per_cent_text(double share) {
   return number_text(std::round(1e10 * share) / 1e8);
 }
 
-/// "bark at -18", or what of it is named.
+/// "bark at -18", or the part of it that the registration names.
 std::string standard_words(const RegisteredStandard& standard) {
   if (!standard.value) return standard.label;
   return standard.label + (standard.label.empty() ? "" : " at ") + number_text(*standard.value);

@@ -1,5 +1,5 @@
-/// \file The registered analysis in words: noun phrases that the preregistration page, the report's
-/// table of what was registered and its methods share. Thread-safe.
+/// \file The registered analysis in words: noun phrases shared by the preregistration page, the
+/// report's table of the registration, and its methods. Thread-safe.
 #pragma once
 
 #include "study/session_plan.hpp"
@@ -15,9 +15,9 @@ namespace touchtrial::study {
 [[nodiscard]] std::string test_words(const RegisteredAnalysis& analysis);
 /// "at 6 participants; levels by ..."; "none" without looks.
 [[nodiscard]] std::string looks_words(const RegisteredAnalysis& analysis);
-/// What leaves a session out: "a session with a deviation ..."; "none, besides ..." without rules.
+/// Why sessions are excluded: "a session with a deviation ..."; "none, besides ..." without rules.
 [[nodiscard]] std::string rules_words(const ExclusionRules& rules);
-/// The margin, or the smallest effect worth having, with its name; the value is "not stated" if
+/// The margin, or the smallest effect of interest, with its name; the value is "not stated" if
 /// there is neither.
 [[nodiscard]] std::pair<std::string, std::string> size_field(const RegisteredAnalysis& analysis);
 

@@ -1,6 +1,6 @@
-/// \file The trials of one participant and their order. Hidden from app/windows and
-/// protocols/session/participant.hpp, but for app/windows/participant/preview_screens.cpp: what a
-/// participant sees follows from study/ask.hpp alone.
+/// \file The trials of one participant and their order. app/windows (except
+/// app/windows/participant/preview_screens.cpp) and protocols/session/participant.hpp must not
+/// include it: what a participant sees depends only on study/ask.hpp.
 #pragma once
 
 #include "core/cipher.hpp"
@@ -25,22 +25,22 @@ struct StimulusIndex {
   friend auto operator<=>(const StimulusIndex&, const StimulusIndex&) = default;
 };
 
-/// What a trial is for.
+/// The purpose of a trial.
 enum class Role {
   scored,
-  lead_in,      ///< begins a block, and is not scored
-  catch_trial,  ///< shows whether the participant attends
-  control,      ///< without the hand: whether the answer can be heard
-  practice,     ///< before the first trial; not in a schedule
+  lead_in,      ///< an unscored trial at the start of a block
+  catch_trial,  ///< tests whether the participant attends
+  control,      ///< with the hand off: tests whether the answer can be heard
+  practice,     ///< before the first trial; not part of a schedule
 };
 
 /// "scored", "lead-in", "catch", "control" or "practice"
 [[nodiscard]] std::string_view name_of(Role role);
 
-/// A texture that is mixed into another.
+/// A texture mixed into another.
 struct Mix {
   StimulusIndex other;
-  double share = 0.0;  ///< of the other, 0 .. 1
+  double share = 0.0;  ///< share of the other texture, 0 .. 1
 
   friend bool operator==(const Mix&, const Mix&) = default;
 };
@@ -50,14 +50,14 @@ struct Plane {
   StimulusIndex field;
   bool blank = false;    ///< the wall of the field without its texture
   double gain_db = 0.0;  ///< re the pack's gain of the field
-  double pitch = 1.0;    ///< factor of the texture's millimetres a pixel, >= 1
+  double pitch = 1.0;    ///< factor by which the texture's pixel pitch is stretched, >= 1
   std::optional<Mix> mix{};
 
   friend bool operator==(const Plane&, const Plane&) = default;
 };
 
-/// The step of a track that an adaptive order presents. Catch trials are steps of tracks too, which
-/// choose nothing.
+/// The level of a track that an adaptive order presents. Catch trials belong to tracks too, but do
+/// not influence them.
 struct Level {
   int track = 0;  ///< from 1; 0: none
   int level = 0;  ///< index into the track's levels
@@ -68,7 +68,7 @@ struct Level {
 struct Trial {
   Place place{};
   Role role = Role::scored;
-  /// Empty: chosen when the trial's turn comes (Order::at).
+  /// Empty: chosen when the trial is due (Order::at).
   std::vector<Plane> planes{};
   std::optional<int> right{};  ///< index of the right choice; empty: no choice is right
   std::optional<Level> level{};
@@ -84,10 +84,10 @@ struct Trial {
 
 struct Schedule {
   std::vector<Trial> trials;
-  /// The choice at each position of the answer screen.
+  /// The index of the choice at each position of the answer screen.
   std::vector<int> layout;
 
-  /// \return nothing for an answer that is no choice
+  /// \return nothing if the answer is a rating
   /// \pre the layout has the position
   [[nodiscard]] std::optional<int> choice_of(const Answer& answer) const {
     const auto* const chosen = std::get_if<Chosen>(&answer);
@@ -98,17 +98,17 @@ struct Schedule {
   friend bool operator==(const Schedule&, const Schedule&) = default;
 };
 
-/// What one participant's schedule is drawn from. See draw_for in study/station.hpp.
+/// The random input of one participant's schedule. See draw_for in study/station.hpp.
 struct ScheduleDraw {
-  SecretKey secret{};    ///< this participant's alone
+  SecretKey secret{};    ///< unique to this participant
   int method_order = 0;  ///< row of the Williams design of methods, from 0
-  /// Of a study that divides its methods between visits: whose methods, from 1; 0: all visits'.
+  /// In a study that divides its methods between visits: the visit, from 1; 0: all visits together.
   int visit = 0;
 };
 
-/// Draws how far a gain is roved, uniformly in decibels.
+/// Draws a gain's random offset, uniformly in decibels.
 /// \param range_db  width of the range, >= 0
 /// \return from -range_db / 2 to range_db / 2
-[[nodiscard]] double drawn_rove_db(double range_db, RandomStream& random);
+[[nodiscard]] double draw_rove_db(double range_db, RandomStream& random);
 
 }  // namespace touchtrial::study

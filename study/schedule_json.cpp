@@ -25,20 +25,20 @@ constexpr auto kRoles = std::to_array<Named<Role>>({{"scored", Role::scored},
 
 StimulusIndex meaning_of(const json& code, const StudyCodes& codes) {
   const auto stimulus = codes.stimulus_of(code.get<std::string>());
-  if (!stimulus) refuse("names a code that this key does not have");
+  if (!stimulus) refuse("contains a code that this key does not have");
   return *stimulus;
 }
 
 Role role_of(const std::string& word) {
   if (const auto role = value_in(kRoles, word)) return *role;
-  refuse("has a presentation of an unknown kind");
+  refuse("contains a presentation of unknown kind " + in_quotes(word));
 }
 
-/// The wall of a field says nothing, and so blank planes share one code.
+/// All fields have the same wall, so blank planes share one code.
 json json_of(const Plane& plane, const StudyCodes& codes) {
   const bool is_anywhere = plane == Plane{.field = {}, .blank = true};
   json object = {{"code", is_anywhere ? codes.catch_code : codes.code_of(plane.field)}};
-  // Left out where they say nothing.
+  // Default values are omitted.
   if (plane.blank && !is_anywhere) object["blank"] = true;
   if (plane.gain_db != 0.0) object["gain_db"] = plane.gain_db;
   if (plane.pitch != 1.0) object["pitch"] = plane.pitch;
@@ -123,7 +123,7 @@ void check_layout(const std::vector<int>& layout, std::size_t choices) {
   const bool each_once = std::ranges::adjacent_find(sorted) == sorted.end();
   const auto in_range = [&](int choice) { return choice >= 0 && choice < std::ssize(sorted); };
   if (!each_once || sorted.size() != choices || !std::ranges::all_of(sorted, in_range)) {
-    refuse("its layout does not have every choice once");
+    refuse("its layout does not contain every choice exactly once");
   }
 }
 
@@ -161,7 +161,7 @@ Schedule schedule_from_json(const std::string& text, const StudyCodes& codes) {
   try {
     return schedule_of(document, codes);
   } catch (const json::exception&) {
-    refuse("does not have the form of a schedule");
+    refuse("is not a valid schedule");
   }
 }
 
@@ -174,7 +174,7 @@ std::vector<Trial> block_from_json(const std::string& text, const StudyCodes& co
   try {
     return trials_from(document, codes);
   } catch (const json::exception&) {
-    refuse("does not have the form of a block");
+    refuse("is not a valid block");
   }
 }
 

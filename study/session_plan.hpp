@@ -22,16 +22,16 @@ struct StudyClass {
   friend bool operator==(const StudyClass&, const StudyClass&) = default;
 };
 
-/// A text in several languages, by their codes ("en", "de").
+/// A text by language code ("en", "de").
 using Translated = std::map<std::string, std::string>;
 
 /// Texts by section ("screens") and key ("next"), as in a language file.
 using Texts = std::map<std::string, std::map<std::string, std::string>>;
 
-/// What participants see of the pictures and of their hand.
+/// What participants can see.
 enum class Sight {
-  curtain,    ///< pictures, but neither hand nor device
-  blindfold,  ///< nothing: labels are learnt by heart, and the experimenter enters spoken answers
+  curtain,    ///< the pictures, but neither hand nor device
+  blindfold,  ///< nothing: they memorise labels, and the experimenter enters their spoken answers
 };
 
 enum class QuestionKind { choice, number, text };
@@ -59,7 +59,7 @@ struct Questionnaire {
 struct PracticePlan {
   std::vector<StudyClass> classes;  ///< one image each
   int criterion = 4;                ///< correct answers that end practice, <= trials.practice
-  int rounds = 2;  ///< maximum; participants who never reach the criterion are flagged
+  int rounds = 2;  ///< maximum; participants who do not reach the criterion are flagged
 
   friend bool operator==(const PracticePlan&, const PracticePlan&) = default;
 };
@@ -72,26 +72,26 @@ struct MaskingPlan {
   friend bool operator==(const MaskingPlan&, const MaskingPlan&) = default;
 };
 
-/// The largest letters for which every screen has room.
+/// The maximum text scale at which every screen still fits.
 inline constexpr double kMaxTextScale = 1.5;
 
 /// The study file's "session".
 struct SessionPlan {
   std::string language = "en";  ///< of the participant's texts; one of language_codes()
-  /// Pages of instructions by language; empty: the program's own.
+  /// Pages of instructions by language; empty: the built-in ones.
   std::map<std::string, std::vector<std::string>> instructions;
-  std::map<std::string, Texts> texts;  ///< by language; in place of the program's own
-  double text_scale = 1.0;     ///< of the letters on the participant's screens, 1 to kMaxTextScale
-  bool high_contrast = false;  ///< whether these screens are black on white
+  std::map<std::string, Texts> texts;  ///< by language; replace built-in texts
+  double text_scale = 1.0;             ///< of the participant's screens, 1 to kMaxTextScale
+  bool high_contrast = false;          ///< whether these screens are black on white
   Sight sight = Sight::curtain;
   MaskingPlan masking;
   bool handedness = true;                   ///< whether to ask the handedness inventory
   int confidence_levels = 0;                ///< 2 to 9; 0: confidence is not asked
-  std::vector<std::string> day_sheet;       ///< items in addition to the program's own
+  std::vector<std::string> day_sheet;       ///< items in addition to the built-in ones
   std::string consent_version;              ///< version that participants sign; may be empty
   std::string ethics_number;                ///< may be empty
-  std::vector<Question> closing_questions;  ///< in addition to the program's own
-  bool closing = true;                      ///< whether to ask the program's own closing questions
+  std::vector<Question> closing_questions;  ///< in addition to the built-in ones
+  bool closing = true;                      ///< whether to ask the built-in closing questions
 
   friend bool operator==(const SessionPlan&, const SessionPlan&) = default;
 };
@@ -99,30 +99,30 @@ struct SessionPlan {
 /// What each visit presents.
 enum class VisitMethods {
   all,     ///< every method, in the participant's one order
-  divided  ///< as many of the methods at each visit, in that order
+  divided  ///< an equal share of the methods at each visit, in that order
 };
 
-/// The study file's "visits": how often a participant comes. A day has 24 hours, from the opening
-/// of one visit's session to that of the next.
+/// The study file's "visits". Days are periods of 24 hours between the starts of two visits'
+/// sessions.
 struct VisitPlan {
   int count = 1;
-  double least_days = 0.0;            ///< between visits; an earlier one is refused
-  std::optional<double> most_days{};  ///< between visits; a later one is a deviation
+  double min_days = 0.0;             ///< between visits; an earlier one is refused
+  std::optional<double> max_days{};  ///< between visits; a later one is a deviation
   VisitMethods methods = VisitMethods::all;
 
   friend bool operator==(const VisitPlan&, const VisitPlan&) = default;
 };
 
-/// From one visit's opening to the next one's; negative if a clock went back.
+/// Time from the start of one visit to the start of the next; negative if the clock was set back.
 [[nodiscard]] inline double days_between(std::chrono::nanoseconds first,
                                          std::chrono::nanoseconds next) noexcept {
   return std::chrono::duration<double, std::ratio<86'400>>(next - first).count();
 }
 
-/// The study file's "groups": participants are dealt into them at random, as many in each.
+/// The study file's "groups", to which participants are assigned at random in equal numbers.
 struct GroupPlan {
-  std::vector<std::string> labels;  ///< >= 2, unique; empty: there are no groups
-  bool open = false;                ///< the experimenter may know who is in which
+  std::vector<std::string> labels;  ///< >= 2, unique; empty: the study has no groups
+  bool open = false;                ///< whether the experimenter may know the assignment
 
   friend bool operator==(const GroupPlan&, const GroupPlan&) = default;
 };
@@ -135,11 +135,11 @@ enum class Estimand {
   mean_accuracy,  ///< mean over participants of the share of right answers, against chance
   difference,     ///< mean over participants of the accuracy with one method less that with another
   mean_threshold,  ///< mean over participants of the threshold at one standard, without a test
-  threshold_difference,  ///< the same at one standard less that at another, against 0
-  threshold_equality,    ///< whether all differences of standards lie within a margin
+  threshold_difference,  ///< the same at one standard minus that at another, against 0
+  threshold_equality,    ///< whether all differences between standards lie within a margin
 };
 
-/// Whether its unit is dB, the unit of a threshold; otherwise it is a share of right answers.
+/// Whether the estimand is in dB, the unit of thresholds; otherwise it is a share of right answers.
 [[nodiscard]] constexpr bool is_of_thresholds(Estimand estimand) noexcept {
   return estimand != Estimand::mean_accuracy && estimand != Estimand::difference;
 }
@@ -160,18 +160,18 @@ enum class Spending { obrien_fleming, pocock };
 /// "obrien-fleming" or "pocock"
 [[nodiscard]] std::string_view name_of(Spending spending);
 
-/// The registered reasons for leaving a session out, besides that it was stopped or its participant
-/// withdrew.
+/// The registered reasons for excluding a session, in addition to an early stop or the
+/// participant's withdrawal.
 struct ExclusionRules {
-  std::vector<std::string> deviations{};   ///< codes, the program's first, that leave one out
-  std::optional<double> invalid_trials{};  ///< share of its trials; a session with more is left out
-  /// Catch trials that somebody may answer wrongly; a session with more of them is left out.
+  std::vector<std::string> deviations{};   ///< codes, built-in ones first, that exclude a session
+  std::optional<double> invalid_trials{};  ///< maximum share of invalid trials of a session
+  /// Maximum number of missed catch trials in a session.
   std::optional<int> missed_catch{};
 
   friend bool operator==(const ExclusionRules&, const ExclusionRules&) = default;
 };
 
-/// A standard of thresholds as a registration names it. What the study has once need not be named.
+/// A standard of a threshold study. A label or value that is unique in the study may be omitted.
 struct RegisteredStandard {
   std::string label;  ///< of a class; may be empty
   std::optional<double> value{};
@@ -179,20 +179,21 @@ struct RegisteredStandard {
   friend bool operator==(const RegisteredStandard&, const RegisteredStandard&) = default;
 };
 
-/// The part of a registration that the program holds a study against.
+/// The part of a registration that the program checks and analyses.
 struct RegisteredAnalysis {
   Estimand estimand = Estimand::mean_accuracy;
-  /// Labels: the first less the second; empty: the study's two.
+  /// Labels; the difference is the first minus the second. Empty: the study's two methods.
   std::vector<std::string> methods{};
-  /// Of thresholds: a difference is the first less the second; empty: all that the study has.
+  /// Of thresholds; a difference is the first minus the second. Empty: all standards of the study.
   std::vector<RegisteredStandard> standards{};
   RegisteredTest test = RegisteredTest::t;
   bool one_sided = true;  ///< against larger values
   double alpha = 0.05;    ///< 1e-6 .. 0.5
-  /// Worth having: an accuracy, a difference of accuracies, or one of thresholds, in dB.
+  /// Smallest effect of interest: an accuracy, a difference of accuracies, or one of thresholds,
+  /// dB.
   std::optional<double> smallest_effect{};
-  /// Of non-inferiority: by how much the first method may be worse and still be as good; in (0, 1].
-  /// Of threshold_equality: by how much two thresholds may differ and still be the same, in dB.
+  /// Of non-inferiority: by how much the first method may be worse, in (0, 1].
+  /// Of threshold_equality: by how much two thresholds may differ, dB.
   std::optional<double> margin{};
   std::vector<int> looks{};  ///< numbers of participants at interim looks, ascending
   Spending spending = Spending::obrien_fleming;
@@ -209,15 +210,15 @@ struct Registration {
   std::string stopping_rule;
   std::string exclusions;
   std::string primary_test;
-  /// That stops, faults, largest forces, reasons and deviations of somebody whose data were erased
-  /// are kept, from the session on.
+  /// Years after the session for which the safety record of an erased participant is kept: stops,
+  /// faults, maximum forces, reasons and deviations.
   int safety_record_years = 10;
   std::optional<RegisteredAnalysis> analysis{};
 
   friend bool operator==(const Registration&, const Registration&) = default;
 };
 
-/// The fields of the registered analysis as names and values in words; empty without one.
+/// The registered analysis as pairs of name and value in words; empty if nothing is registered.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> fields_of(
     const Registration& registration);
 

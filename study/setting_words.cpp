@@ -17,7 +17,7 @@ namespace {
 using engine::ExtractionOptions;
 using engine::RenderingOptions;
 
-/// More methods than these are described together if they differ in their order alone.
+/// A larger number of methods is summarised in one line if they differ only in their order.
 constexpr std::size_t kMethodsByName = 4;
 
 std::string mask_words(const ExtractionOptions& method) {
@@ -49,7 +49,7 @@ std::string component_words(const engine::GaborComponent& component) {
          number_text(component.direction_deg) + "°";
 }
 
-/// Directions of one frequency stand together.
+/// Lists the directions after their frequency if all components share it.
 std::string kernel_words(const engine::TvGaborOptions& options) {
   if (options.automatic) return "the image's strongest oscillation";
   const auto& components = options.components;
@@ -72,7 +72,7 @@ std::string tv_gabor_words(const engine::TvGaborOptions& options) {
       options.max_steps);
 }
 
-/// Whether methods are of fixed orders and have all else in common.
+/// Whether all methods have a fixed order and differ in nothing else.
 bool differ_in_order(std::span<const StudyMethod> methods) {
   return std::ranges::all_of(methods, [&](const StudyMethod& one) {
     ExtractionOptions same = one;
@@ -88,7 +88,7 @@ std::string orders_words(std::span<const StudyMethod> methods) {
   return fmt::format("{:.3g} to {:.3g}", low.order, high.order);
 }
 
-/// A method without its control.
+/// Describes a method without its control.
 std::string texture_words(const ExtractionOptions& method) {
   using enum engine::Method;
   switch (method.method) {
@@ -222,18 +222,18 @@ SettingFields fields_of_rendering(const Study& study) {
 }
 
 SettingFields fields_of(const ValidityRule& rule) {
-  return {{"exploration from landing", "at least " + number_text(rule.least_exploring_s) + " s"},
-          {"contact", "at least " + number_text(rule.least_contact_s) + " s"},
-          {"path in contact", "at least " + number_text(rule.least_path_mm) + " mm"},
-          {"median force in contact", "from " + number_text(rule.least_median_n) + " to " +
-                                          number_text(rule.largest_median_n) + " N"},
+  return {{"exploration from landing", "at least " + number_text(rule.min_exploring_s) + " s"},
+          {"contact", "at least " + number_text(rule.min_contact_s) + " s"},
+          {"path in contact", "at least " + number_text(rule.min_path_mm) + " mm"},
+          {"median force in contact", "from " + number_text(rule.min_median_n) + " to " +
+                                          number_text(rule.max_median_n) + " N"},
           {"samples at the force limit",
            "less than " + number_text(100 * rule.saturated_share) + " % of those in contact"},
           {"servo", "no tick missed in contact"}};
 }
 
-std::string touch_words(const LeastTouch& touch) {
-  if (touch == LeastTouch{0.0, 0.0}) return "no touch needed";
+std::string touch_words(const MinTouch& touch) {
+  if (touch == MinTouch{0.0, 0.0}) return "no touch needed";
   return "at least " + number_text(touch.contact_s) + " s at the plane and " +
          number_text(touch.path_mm) + " mm along it, unless time is up";
 }
@@ -259,8 +259,8 @@ std::string practice_words(const Study& study) {
 
 std::string visits_words(const VisitPlan& visits) {
   if (visits.count == 1) return "";
-  std::string days = "at least " + number_text(visits.least_days);
-  if (visits.most_days) days += " and at most " + number_text(*visits.most_days);
+  std::string days = "at least " + number_text(visits.min_days);
+  if (visits.max_days) days += " and at most " + number_text(*visits.max_days);
   const bool divided = visits.methods == VisitMethods::divided;
   return std::to_string(visits.count) + ", " + days + " days between them, " +
          (divided ? "the methods divided between them" : "all methods at each");

@@ -76,29 +76,28 @@ void require_signed(const engine::Pack& pack, const std::string& study_id, const
                     const PublicKey& investigator) {
   const engine::PackManifest& manifest = pack.manifest();
   if (manifest.study_id != study_id) {
-    refuse_pack(
-        pack.folder(),
-        "is another study's pack; name the pack and the file of secrets that were made together "
-        "(--pack, --station-file, --key)");
+    refuse_pack(pack.folder(),
+                "is the pack of another study; give a pack and a key or station file that were "
+                "made together "
+                "(--pack, --station-file, --key)");
   }
   if (!is_signed(manifest, investigator)) {
     refuse_pack(
         pack.folder() / "pack.json",
-        "is not signed by the study's investigator: it was altered, or the file of secrets is "
-        "another investigator's; copy pack and station's file anew from the investigator's "
+        "is not signed by the study's investigator: it was altered, or the key or station file is "
+        "another investigator's; copy pack and station file again from the investigator's "
         "machine, or run `touchtrial prepare` there");
   }
   if (manifest.seal != seal) {
-    refuse_pack(
-        pack.folder(),
-        "was made for this study before or after a change of its file, or is not complete; run "
-        "`touchtrial prepare`, and copy pack and station's file together");
+    refuse_pack(pack.folder(),
+                "was made from another version of this study's file, or is incomplete; run "
+                "`touchtrial prepare`, and copy pack and station file together");
   }
   for (const engine::PackEntry& entry : manifest.entries) {
     if (is_intact(pack, entry.code)) continue;
     refuse_pack(pack.folder(),
                 "field " + entry.code +
-                    " is not what was prepared; copy the pack anew, or run `touchtrial "
+                    " differs from the prepared one; copy the pack again, or run `touchtrial "
                     "prepare`");
   }
 }
@@ -115,27 +114,26 @@ std::vector<fs::path> require_pictures(const engine::Pack& pack, const Study& st
                                            picture_digest(name, *folder / name))) {
       refuse_pack(
           *folder / name,
-          "participants would see another picture than the one that was there at `touchtrial "
-          "prepare`; restore it, or, only if nobody has taken part yet, run `touchtrial prepare` "
-          "again");
+          "has changed since `touchtrial prepare`, and participants would see it; restore the "
+          "picture, or, only if nobody has taken part yet, run `touchtrial prepare` again");
     }
   }
   return absent;
 }
 
-void require_whole(const engine::Pack& pack, const StudyCodes& codes) {
+void require_complete_pack(const engine::Pack& pack, const StudyCodes& codes) {
   require_signed(pack, codes.study_id, codes.seal, codes.investigator_signature);
   if (pack.manifest().investigator_box != codes.investigator_box) {
     refuse_pack(
         pack.folder(),
-        "the file of secrets seals for another investigator than the one who signed the pack; "
-        "copy the station's file anew from the investigator's machine");
+        "the key or station file encrypts for another investigator than the one who signed the "
+        "pack; copy the station file again from the investigator's machine");
   }
   const std::array<fs::path, 1> folders = {codes.study.folder};
   const std::vector<fs::path> absent = require_pictures(pack, codes.study, folders);
   if (absent.empty()) return;
   refuse_pack(codes.study.folder / absent.front(),
-              "does not exist, and participants are to see it; copy it here");
+              "does not exist, but participants must see it; copy it here");
 }
 
 }  // namespace touchtrial::study

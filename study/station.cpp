@@ -15,7 +15,7 @@
 namespace touchtrial::study {
 namespace {
 
-constexpr std::size_t kLongestStation = 32;
+constexpr std::size_t kMaxStationName = 32;
 
 bool is_name_letter(char letter) {
   return (letter >= '0' && letter <= '9') || (letter >= 'A' && letter <= 'Z') ||
@@ -23,19 +23,19 @@ bool is_name_letter(char letter) {
 }
 
 void require_station_name(const std::string& name) {
-  if (!name.empty() && name.size() <= kLongestStation &&
+  if (!name.empty() && name.size() <= kMaxStationName &&
       std::ranges::all_of(name, is_name_letter)) {
     return;
   }
   throw UsageError(in_quotes(name) +
-                   " is no name of a station; use 1 to 32 of 0-9, A-Z, a-z, '+', '-', '_'");
+                   " is not a valid station name; use 1 to 32 of 0-9, A-Z, a-z, '+', '-', '_'");
 }
 
-/// How many more numbers each station gets. Each number goes to the station with the fewest, and
-/// among equals to the first.
+/// The number of enrolment numbers that each station gets. Each goes to the station with the fewest
+/// numbers, or to the first of several.
 std::vector<int> shares(std::span<const Station> stations, int numbers) {
-  using Standing = std::pair<int, std::size_t>;  // numbers so far, index of the station
-  std::priority_queue<Standing, std::vector<Standing>, std::greater<>> smallest;
+  using SizeAndIndex = std::pair<int, std::size_t>;  // of a station
+  std::priority_queue<SizeAndIndex, std::vector<SizeAndIndex>, std::greater<>> smallest;
   for (std::size_t i = 0; i < stations.size(); ++i) smallest.emplace(stations[i].size(), i);
   std::vector<int> more(stations.size(), 0);
   for (int i = 0; i < numbers; ++i) {
@@ -51,13 +51,13 @@ SecretKey secret_for(const Station& station, Draws draws) {
   return derive_key(station.secret, draws == Draws::people ? "schedules" : "rehearsed schedules");
 }
 
-/// A number's group, and its place among the group's numbers at its station.
-struct Dealt {
+/// The group of an enrolment number, and its place among the group's numbers at its station.
+struct GroupAssignment {
   int group = 0;
   int place = 0;
 };
 
-Dealt dealt(const GroupPlan& plan, const SecretKey& secret, int place) {
+GroupAssignment assign_group(const GroupPlan& plan, const SecretKey& secret, int place) {
   if (plan.labels.empty()) return {0, place};
   const std::size_t groups = plan.labels.size();
   std::vector<int> members(groups, 0);
@@ -111,16 +111,17 @@ ScheduleDraw draw_for(const Study& study, const Station& station, int enrolment,
   if (!place) {
     throw UsageError("enrolment number " + std::to_string(enrolment) + " is not one of station " +
                      station.name +
-                     "'s; take one of its own, or hand out more with `touchtrial "
-                     "plan --extend`");
+                     "'s; use one of its own numbers, or hand out more with `touchtrial plan "
+                     "--extend`");
   }
   if (visit < 1 || visit > study.visits.count) {
-    throw UsageError("visit " + std::to_string(visit) + " is not in the study, which has " +
+    throw UsageError("visit " + std::to_string(visit) +
+                     " does not exist; the study has visits 1 to " +
                      std::to_string(study.visits.count));
   }
   const SecretKey secret = secret_for(station, draws);
-  const Dealt own = dealt(study.groups, secret, *place);
-  // A visit that presents all methods has its own orders of trials.
+  const GroupAssignment own = assign_group(study.groups, secret, *place);
+  // If every visit presents all methods, each visit has its own trial order.
   const bool is_again = visit > 1 && study.visits.methods == VisitMethods::all;
   return {.secret = derive_key(secret, "participant " + std::to_string(enrolment) +
                                            (is_again ? ", visit " + std::to_string(visit) : "")),
@@ -135,7 +136,7 @@ std::optional<int> group_for(const Study& study, const Station& station, int enr
                              Draws draws) {
   const std::optional<int> place = station.place_of(enrolment);
   if (!place || study.groups.labels.empty()) return std::nullopt;
-  return dealt(study.groups, secret_for(station, draws), *place).group;
+  return assign_group(study.groups, secret_for(station, draws), *place).group;
 }
 
 int order_block_of(const Study& study, std::span<const Station> stations, int enrolment,
@@ -145,7 +146,7 @@ int order_block_of(const Study& study, std::span<const Station> stations, int en
   int before = 0;  // blocks of earlier stations
   for (const Station& station : stations) {
     if (const auto place = station.place_of(enrolment)) {
-      const Dealt own = dealt(study.groups, secret_for(station, draws), *place);
+      const GroupAssignment own = assign_group(study.groups, secret_for(station, draws), *place);
       return before + own.place / rows * groups + own.group;
     }
     before += (station.size() / rows + 1) * groups;
@@ -155,14 +156,15 @@ int order_block_of(const Study& study, std::span<const Station> stations, int en
 
 std::vector<Station> stations_named(std::span<const std::string> names) {
   if (names.empty() || names.size() > kMaxStations) {
-    throw UsageError("a plan is for 1 to " + std::to_string(kMaxStations) + " stations");
+    throw UsageError("a plan must have 1 to " + std::to_string(kMaxStations) + " stations, not " +
+                     std::to_string(names.size()));
   }
   std::vector<Station> stations;
   std::set<std::string> known;
   for (const std::string& name : names) {
     require_station_name(name);
     if (!known.insert(name).second) {
-      throw UsageError("station " + name + " is named twice; give every station its own name");
+      throw UsageError("station " + name + " occurs twice; give every station its own name");
     }
     stations.push_back({.name = name, .ranges = {}});
   }
@@ -200,10 +202,10 @@ int next_enrolment_of(const Station& station, const std::set<int>& taken) {
       if (!taken.contains(number)) return number;
     }
   }
-  throw StudyError(
-      "all enrolment numbers of station " + station.name +
-      " are taken; hand out more with `touchtrial plan --extend`, and give the station "
-      "its new file");
+  throw StudyError("all enrolment numbers of station " + station.name +
+                   " are in use; hand out more with `touchtrial plan --extend`, and copy the new "
+                   "station file to "
+                   "the station");
 }
 
 const Station* station_of(std::span<const Station> stations, int enrolment) noexcept {

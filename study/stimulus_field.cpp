@@ -10,12 +10,11 @@
 namespace touchtrial::study {
 namespace {
 
-/// Raise this number with every change of the engine that changes fields; all packs are then
-/// rebuilt.
+/// Increment this number whenever a change of the engine changes fields, so that packs are rebuilt.
 constexpr std::string_view kComputation = "touchtrial field 3";
 
-/// The rendering options that the field's bytes depend on. Gains are not among them, because they
-/// are applied when the field is felt.
+/// The rendering options that affect a field's bytes. Gains do not, because they are applied when
+/// the field is felt.
 std::string rendering_text(const engine::RenderingOptions& rendering) {
   nlohmann::json text{{"model", name_in(kModelNames, rendering.model)},
                       {"pitch_mm", rendering.pitch_mm},
@@ -40,11 +39,11 @@ BuiltField flat_field(const GreyImage& image, const engine::ExtractionOptions& m
   return {engine::make_texture_field(flat_texture(image, method), rendering)};
 }
 
-void take_texture(const GreyImage& image, const engine::ExtractionOptions& method,
-                  std::optional<TakenTexture>& taken) {
-  if (taken && taken->method == method) return;
-  taken.reset();
-  taken = TakenTexture{method, engine::extract_texture<double>(image, method)};
+void ensure_extracted(const GreyImage& image, const engine::ExtractionOptions& method,
+                      std::optional<ExtractedTexture>& cache) {
+  if (cache && cache->method == method) return;
+  cache.reset();
+  cache = ExtractedTexture{method, engine::extract_texture<double>(image, method)};
 }
 
 }  // namespace
@@ -74,7 +73,7 @@ engine::ExtractionOptions method_of(const Study& study, const StimulusIndex& sti
   engine::ExtractionOptions options = method;
   if (options.control == engine::Control::none) return options;
   const StudyClass& shown = study.class_at(stimulus.class_index);
-  if (study.is_practised(stimulus.class_index)) {
+  if (study.is_practice_class(stimulus.class_index)) {
     options.control_seed = RandomStream(study.seed, "control of practice " + shown.label).bits();
     return options;
   }
@@ -93,15 +92,15 @@ engine::ExtractionOptions without_control(engine::ExtractionOptions method) {
 
 BuiltField build_field(const GreyImage& image, const engine::ExtractionOptions& method,
                        const engine::RenderingOptions& rendering,
-                       std::optional<TakenTexture>& taken, bool keep) {
+                       std::optional<ExtractedTexture>& cache, bool keep) {
   if (is_flat(image)) return flat_field(image, method, rendering);
-  take_texture(image, without_control(method), taken);
+  ensure_extracted(image, without_control(method), cache);
   engine::Extraction<double> extraction;
   if (keep) {
-    extraction = taken->extraction;
+    extraction = cache->extraction;
   } else {
-    extraction = std::move(taken->extraction);
-    taken.reset();
+    extraction = std::move(cache->extraction);
+    cache.reset();
   }
   engine::apply_control(method, extraction.texture);
   return {engine::make_texture_field(extraction.texture, rendering), extraction.gap,

@@ -1,5 +1,5 @@
-/// \file Makes the field of one stimulus from its image, and checks that a field of a pack was made
-/// in this way.
+/// \file Makes the field of one stimulus from its image, and checks whether a pack's field was made
+/// from it.
 #pragma once
 
 #include "core/cipher.hpp"
@@ -12,9 +12,9 @@
 
 namespace touchtrial::study {
 
-/// A stimulus's method with the stimulus's own seed for its control. The seed is derived from the
-/// study's seed and from the stimulus's label, image and method, so that exemplars and methods
-/// differ, and a stimulus keeps its phases when others are added or removed.
+/// The method of a stimulus, with a seed of its own for its control. The seed is derived from the
+/// study's seed and from the stimulus's label, image and method. Exemplars and methods therefore
+/// have different phases, and a stimulus keeps its phases when others are added or removed.
 [[nodiscard]] engine::ExtractionOptions method_of(const Study& study,
                                                   const StimulusIndex& stimulus);
 
@@ -32,7 +32,7 @@ namespace touchtrial::study {
 [[nodiscard]] bool is_made_from(const engine::PackEntry& entry, const StudyKey& key,
                                 const GreyImage& image, const StimulusIndex& stimulus);
 
-/// A field with the solver's report on it.
+/// A field, and how the solver ended.
 struct BuiltField {
   engine::TextureField field;
   double gap = 0.0;
@@ -43,21 +43,20 @@ struct BuiltField {
 /// Removes the control from a method.
 [[nodiscard]] engine::ExtractionOptions without_control(engine::ExtractionOptions method);
 
-/// A texture extracted from an image, for reuse by stimuli of the same image that differ only in
-/// their control.
-struct TakenTexture {
+/// A texture extracted from an image, reused by stimuli that differ only in their control.
+struct ExtractedTexture {
   engine::ExtractionOptions method;  ///< without its control
   engine::Extraction<double> extraction;
 };
 
 /// Makes a stimulus's field.
-/// \param taken  a texture to reuse if it is of this method, and replaced otherwise; may be empty.
+/// \param cache  a texture, reused if it is of this method and replaced otherwise; may be empty.
 ///   A flat image neither uses nor changes it.
-/// \param keep  whether to leave the texture in `taken` because another stimulus needs it
+/// \param keep  whether to keep the texture in `cache` because another stimulus needs it
 [[nodiscard]] BuiltField build_field(const GreyImage& image,
                                      const engine::ExtractionOptions& method,
                                      const engine::RenderingOptions& rendering,
-                                     std::optional<TakenTexture>& taken, bool keep);
+                                     std::optional<ExtractedTexture>& cache, bool keep);
 
 /// Whether the field feels like a smooth wall without texture.
 [[nodiscard]] bool is_flat(engine::FieldView field) noexcept;

@@ -21,26 +21,26 @@ constexpr auto kBlindingNames =
 }  // namespace
 
 std::string read_plain_name(const JsonValue& place) {
-  constexpr std::size_t kLongest = 64;
+  constexpr std::size_t kMaxLength = 64;
   const std::string& name = place.text();
   const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
     return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_' ||
            c == '-';
   });
-  if (name.empty() || name.size() > kLongest || !plain) {
+  if (name.empty() || name.size() > kMaxLength || !plain) {
     place.refuse(in_quotes(name) + " must have 1 to 64 of the characters 0-9 A-Z a-z _ -");
   }
   if (is_read_as_missing(name)) {
-    place.refuse(in_quotes(name) +
-                 " is what other programs take for a missing or truth value; give another " +
-                 "name");
+    place.refuse(
+        in_quotes(name) +
+        " is read by other programs as a missing value or a truth value; give another name");
   }
   return name;
 }
 
 namespace {
 
-/// Reads the sections of protocols, of which the study's own makes its task.
+/// Describes the sections of all protocols; the section of the study's protocol creates its task.
 void describe_tasks(ObjectIo& io, Study& study) {
   for (const Protocol* one : protocols()) {
     const auto same = [one](const Protocol* other) { return other->section == one->section; };
@@ -66,7 +66,7 @@ void check_trials(const JsonValue& place, const Study& study) {
   place.refuse_below("/trials/repeats", "makes " + std::to_string(study.scored_trials()) +
                                             " trials for a participant, more than " +
                                             std::to_string(kMaxScoredTrials) +
-                                            "; give fewer repeats");
+                                            "; lower the number of repeats");
 }
 
 void check_size(const JsonValue& place, const Study& study) {
@@ -76,7 +76,7 @@ void check_size(const JsonValue& place, const Study& study) {
     place.refuse_below("/classes", "has " + std::to_string(images) + " images for " +
                                        std::to_string(study.methods.size()) +
                                        " methods, more than " + std::to_string(kMaxStimuli) +
-                                       " stimuli; list fewer");
+                                       " stimuli; remove images or methods");
   }
 }
 
@@ -96,17 +96,17 @@ void check_practice_class(const JsonValue& place, const Study& study, std::size_
   if (std::ranges::any_of(study.classes, has_label)) {
     place.refuse_below(
         at + "/label",
-        in_quotes(learnt.label) + " is a class of the study; practise with another texture");
+        in_quotes(learnt.label) + " is also a class of the study; practise with another texture");
   }
   if (std::ranges::any_of(study.classes, has_image)) {
     place.refuse_below(at + "/images/0", in_quotes(learnt.images.front().string()) +
-                                             " is an image of the study; practise with another");
+                                             " is also an image of the study; use another image");
   }
   const std::span<const StudyClass> before(study.practice.classes.data(), index);
   if (std::ranges::any_of(before, has_image)) {
     place.refuse_below(at + "/images/0", in_quotes(learnt.images.front().string()) +
-                                             " is the image of another practice class; choose "
-                                             "another");
+                                             " is the image of another practice class; use another "
+                                             "image");
   }
 }
 
@@ -130,24 +130,24 @@ void check_practice(const JsonValue& place, const Study& study) {
   }
 }
 
-/// Whether the methods can be divided between the visits.
+/// Checks that the methods can be divided between the visits.
 void check_visits(const JsonValue& place, const Study& study) {
   if (study.visits.methods != VisitMethods::divided) return;
   if (study.trials.blocks == Blocks::mixed) {
     place.refuse_below(
         "/visits/methods",
-        "is \"divided\", but the trials' blocks are \"mixed\", so that no method has "
-        "a block of its own; set /trials/blocks to \"by-method\"");
+        "is \"divided\", which needs a block for each method, but the trials' blocks are "
+        "\"mixed\"; set /trials/blocks to \"by-method\"");
   }
   if (study.presented_methods() % study.visits.count != 0) {
     place.refuse_below("/visits/methods",
                        "is \"divided\", but " + std::to_string(study.presented_methods()) +
-                           " methods are not a multiple of " + std::to_string(study.visits.count) +
-                           " visits; change either number");
+                           " methods cannot be divided evenly between " +
+                           std::to_string(study.visits.count) + " visits; change either number");
   }
 }
 
-/// Sections that say what participants do besides trials.
+/// Describes the sections with settings of trials, sessions and participants.
 void describe_plans(ObjectIo& io, Study& study) {
   const auto describe_plan = [](ObjectIo& keys, auto& plan) { describe(keys, plan); };
   io.part("trials", study.trials, {"the trials of a participant, see below"}, describe_plan);
@@ -264,11 +264,11 @@ std::string Study::presented_labels() const {
 }
 
 const StudyClass& Study::class_at(int class_index) const {
-  if (!is_practised(class_index)) return classes.at(static_cast<std::size_t>(class_index));
+  if (!is_practice_class(class_index)) return classes.at(static_cast<std::size_t>(class_index));
   return practice.classes.at(static_cast<std::size_t>(class_index) - classes.size());
 }
 
-bool Study::is_practised(int class_index) const noexcept {
+bool Study::is_practice_class(int class_index) const noexcept {
   return class_index >= static_cast<int>(classes.size());
 }
 
@@ -282,7 +282,7 @@ int Study::visits_needed() const {
   return first_alone ? 1 : visits.count;
 }
 
-bool Study::decides(int visit) const {
+bool Study::enters_analysis(int visit) const {
   switch (registration.analysis ? registration.analysis->visits : RegisteredVisits::all) {
     case RegisteredVisits::first:
       return visit == 1;

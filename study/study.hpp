@@ -33,42 +33,43 @@ enum class TrialOrder { shuffled, de_bruijn, uniform, williams };
 enum class OnTimeout { fade, no_response };
 enum class Blocks { by_method, mixed };
 [[nodiscard]] std::string_view name_of(Blocks blocks);
-/// The study file's word for a rendering model.
+/// The name of a rendering model in the study file.
 [[nodiscard]] std::string_view name_of(engine::ModelKind model);
-/// What follows a presentation that was interrupted by a fault, a comfort stop, or the program's
-/// end.
+/// What follows a presentation that was interrupted by a fault, a comfort stop or the end of the
+/// program.
 enum class OnInterruption { repeat, leave_out, restart_block };
 
-/// The speeds of strokes that the instructions ask for, mm/s. Source: docs/running-sessions.md.
-inline constexpr double kSlowestMmS = 50.0;
-inline constexpr double kFastestMmS = 150.0;
-/// The forces across the plane that they ask for, N.
-inline constexpr double kLightestN = 0.5;
-inline constexpr double kStrongestN = 0.8;
+/// The range of stroke speeds that the instructions ask for, mm/s. Source:
+/// docs/running-sessions.md.
+inline constexpr double kMinStrokeMmS = 50.0;
+inline constexpr double kMaxStrokeMmS = 150.0;
+/// The range of forces normal to the plane that they ask for, N.
+inline constexpr double kMinPressureN = 0.5;
+inline constexpr double kMaxPressureN = 0.8;
 
-/// When a trial is valid: fixed before outcomes are seen. Forces differ between textures, and so do
-/// the path and the contact that forces bend. Whether these are within their limits is therefore
-/// known only after unblinding; whether the exploration was long enough is stored in clear, and so
-/// is what the hand did by itself (record::HandWindows).
+/// The conditions for a valid trial, fixed before outcomes are seen. Force, path and contact depend
+/// on the texture, so whether they are within their limits is revealed only after unblinding. The
+/// duration of the exploration and what the hand did by itself (record::HandWindows) are stored
+/// unencrypted.
 struct ValidityRule {
-  double least_exploring_s = 5.0;  ///< from landing to the last sample
-  double least_contact_s = 5.0;
-  double least_path_mm = 300.0;   ///< in contact
-  double least_median_n = 0.2;    ///< of the norm of the force in contact
-  double largest_median_n = 2.0;  ///< of the same
+  double min_exploring_s = 5.0;  ///< from landing to the last sample
+  double min_contact_s = 5.0;
+  double min_path_mm = 300.0;     ///< in contact
+  double min_median_n = 0.2;      ///< of the norm of the force in contact
+  double max_median_n = 2.0;      ///< of the same
   double saturated_share = 0.01;  ///< of the samples in contact; exclusive
 
   friend bool operator==(const ValidityRule&, const ValidityRule&) = default;
 };
 
-/// What the hand does at the plane before its presentation can be answered. The usual one is half a
-/// second at the slowest stroke that the instructions ask for. Source:
-/// docs/decisions/README.md, decision 63.
-struct LeastTouch {
+/// Minimum contact with the plane before its presentation can be answered. The default is half a
+/// second at the slowest stroke that the instructions ask for. Source: docs/decisions/README.md,
+/// decision 63.
+struct MinTouch {
   double contact_s = 0.5;
   double path_mm = 25.0;  ///< along the plane
 
-  friend bool operator==(const LeastTouch&, const LeastTouch&) = default;
+  friend bool operator==(const MinTouch&, const MinTouch&) = default;
 };
 
 /// The study file's "trials" object.
@@ -79,31 +80,32 @@ struct TrialOptions {
   OnTimeout on_timeout = OnTimeout::fade;
   int practice = 0;              ///< presentations in a practice round
   int break_every = 0;           ///< trials between breaks; 0: none
-  double break_after_min = 0.0;  ///< time between breaks, ended by the next trial's end; 0: none
-  int catch_trials = 0;  ///< unscored presentations of a plane without texture, among the others
+  double break_after_min = 0.0;  ///< time after which a break follows the current trial; 0: none
+  int catch_trials = 0;  ///< unscored presentations of a plane without texture, at random places
   int lead_in = 0;       ///< unscored presentations at the start of each block
   Blocks blocks = Blocks::by_method;
   int max_run = 0;  ///< maximum number of presentations of one class in a row; 0: no limit
-  /// Each presentation's gain is drawn from a range so wide, which ends at the pack's; 0: not.
+  /// Width of the range from which each presentation's gain is drawn. The range ends at the pack's
+  /// gain; 0: no roving.
   double rove_db = 0.0;
   OnInterruption on_interruption = OnInterruption::repeat;
-  double resume_within_h = 24.0;  ///< how long an interrupted session can still be resumed, > 0
+  double resume_within_h = 24.0;  ///< time within which an interrupted session can be resumed, > 0
   ValidityRule validity{};
-  LeastTouch answer_after{};  ///< zeros: an answer needs no touch
+  MinTouch answer_after{};  ///< zeros: an answer needs no touch
 
-  /// A stimulus's own gain, about which presentations are roved, dB re the pack's.
+  /// The centre of the roved range, dB re the pack's gain.
   [[nodiscard]] double own_gain_db() const noexcept { return -rove_db / 2.0; }
 
   friend bool operator==(const TrialOptions&, const TrialOptions&) = default;
 };
 
-/// How strong the weakest stimulus is to be; with Equalise::level, every one.
-struct WantedLevel {
+/// The intended level of the weakest stimulus or, with Equalise::level, of every stimulus.
+struct TargetLevel {
   static constexpr double kMaxDb = 40.0;
   double db = 0.0;    ///< above the detection threshold on the study's device, 0 .. kMaxDb
   std::string curve;  ///< name of a curve of thresholds, or a database of pilots; not empty
 
-  friend bool operator==(const WantedLevel&, const WantedLevel&) = default;
+  friend bool operator==(const TargetLevel&, const TargetLevel&) = default;
 };
 
 /// A study as read from its file.
@@ -114,15 +116,16 @@ struct Study {
   std::vector<StudyClass> classes;     ///< >= 1, labels unique
   std::vector<StudyMethod> methods;    ///< >= 1, labels unique
   engine::RenderingOptions rendering;
-  std::string device;  ///< model of the device that the forces are for, or its file; may be empty
-  std::optional<WantedLevel> level;  ///< from which the gains follow; nothing: from `rendering`
+  std::string
+      device;  ///< device model for which the forces are computed, or its file; may be empty
+  std::optional<TargetLevel> level;  ///< determines the gains; nothing: `rendering` does
   TrialOptions trials;
   PracticePlan practice;
   SessionPlan session;
   VisitPlan visits;
   GroupPlan groups;
   Registration registration;
-  /// Whether the experimenter must not know what is presented either.
+  /// Whether the experimenter is blinded, too.
   bool double_blind = true;
   std::uint64_t seed = 0;
   std::filesystem::path folder;  ///< image paths are relative to this folder
@@ -133,24 +136,24 @@ struct Study {
   [[nodiscard]] std::string protocol_name() const;
   /// The number of methods that are presented; these are the first ones in the file.
   [[nodiscard]] int presented_methods() const;
-  /// Their labels with commas between them.
+  /// The labels of the presented methods, separated by commas.
   [[nodiscard]] std::string presented_labels() const;
   /// The class of an index. Practice classes follow the study's.
   /// \throws std::out_of_range if there is no such class
   [[nodiscard]] const StudyClass& class_at(int class_index) const;
-  /// Whether a class is one of practice.
-  [[nodiscard]] bool is_practised(int class_index) const noexcept;
+  /// Whether an index is that of a practice class.
+  [[nodiscard]] bool is_practice_class(int class_index) const noexcept;
   /// The number of scored presentations of one participant, over all visits.
   [[nodiscard]] int scored_trials() const;
-  /// The number of visits without which a participant does not count: all, or the first if the
-  /// registered analysis has that alone.
+  /// The number of visits that a participant must complete to count: all, or only the first if the
+  /// registered analysis uses no other.
   [[nodiscard]] int visits_needed() const;
-  /// Whether a visit enters the analysis that decides.
-  [[nodiscard]] bool decides(int visit) const;
+  /// Whether a visit enters the registered analysis.
+  [[nodiscard]] bool enters_analysis(int visit) const;
 };
 
-/// The usual test of a difference of methods: crossover if two methods are presented one after the
-/// other, else sign flips.
+/// The default test of a difference between methods: crossover if two methods are presented one
+/// after the other, else sign flips.
 [[nodiscard]] RegisteredTest usual_test_of(const Study& study);
 
 /// Reads a study file strictly: refuses unknown keys, wrong types and impossible values.

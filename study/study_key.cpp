@@ -19,11 +19,11 @@ std::string first_hex(const Digest& digest, std::size_t bytes) {
   return to_hex(ByteView(digest).first(bytes));
 }
 
-/// The code of a stimulus. It depends only on the stimulus itself, so that a stimulus keeps its
-/// code when others are added or removed.
+/// The code of a stimulus. It depends on no other stimulus, so that it stays the same when others
+/// are added or removed.
 std::string code_for(const SecretKey& code_key, const Study& study, const StimulusIndex& stimulus) {
   const StudyClass& shown = study.class_at(stimulus.class_index);
-  const bool practised = study.is_practised(stimulus.class_index);
+  const bool practised = study.is_practice_class(stimulus.class_index);
   const auto& image = shown.images[static_cast<std::size_t>(stimulus.exemplar)];
   const auto& method = study.methods[static_cast<std::size_t>(stimulus.method)];
   const Digest identity = FieldHasher()
@@ -36,17 +36,17 @@ std::string code_for(const SecretKey& code_key, const Study& study, const Stimul
 }
 
 /// Makes the codes of all fields of the key's study.
-void give_codes(StudyKey& key) {
+void assign_codes(StudyKey& key) {
   const SecretKey code_key = derive_key(key.master, "codes");
   key.stimuli.clear();
   key.practice.clear();
   std::set<std::string> codes;
   for (const StimulusIndex& field : presented_fields(key.study)) {
-    auto& list = key.study.is_practised(field.class_index) ? key.practice : key.stimuli;
+    auto& list = key.study.is_practice_class(field.class_index) ? key.practice : key.stimuli;
     list.push_back({code_for(code_key, key.study, field), field});
     if (codes.insert(list.back().code).second) continue;
     throw StudyError("study " + key.study.name + ": " + place_of_image(key.study, field) +
-                     ": has the code of another stimulus; rename the image or the label");
+                     ": has the same code as another stimulus; rename the image or the label");
   }
 }
 
@@ -63,8 +63,8 @@ Signer station_signer(const SecretKey& secret) {
   return Signer(derive_key(secret, "signature"));
 }
 
-/// A keyed hash of all sections with texts, which only the key's holder can check. The texts
-/// include names of textures, so they do not appear in clear.
+/// A keyed hash of all sections with texts, which only the holder of the key can verify. The texts
+/// include names of textures, so they are not stored unencrypted.
 std::string texts_tag(const StudyKey& key) {
   const Study& study = key.study;
   const nlohmann::json texts = {{"practice", to_json(study.practice)},
@@ -74,8 +74,8 @@ std::string texts_tag(const StudyKey& key) {
   return to_hex(keyed_hash(derive_key(key.master, "texts"), ByteView(hash)));
 }
 
-/// Adds the sections that older studies do not have. A section that equals its default adds
-/// nothing, so that the configuration of an older study stays the same.
+/// Adds the sections that older studies do not have. A section with default values is omitted, so
+/// that the configuration of an older study stays the same.
 void add_plans(nlohmann::json& configuration, const StudyKey& key) {
   const Study& study = key.study;
   if (study.practice != PracticePlan{}) {
@@ -117,13 +117,14 @@ std::optional<StimulusIndex> StudyCodes::stimulus_of(const std::string& code) co
 }
 
 const std::string& StudyCodes::code_of(const StimulusIndex& stimulus) const {
-  const auto& list = study.is_practised(stimulus.class_index) ? practice : stimuli;
+  const auto& list = study.is_practice_class(stimulus.class_index) ? practice : stimuli;
   const auto found = std::ranges::find(list, stimulus, &KeyedStimulus::stimulus);
   if (found == list.end()) {
-    throw StudyError("study " + study.name + ": does not present class " +
+    throw StudyError("study " + study.name + ": the key has no code for class " +
                      std::to_string(stimulus.class_index) + ", image " +
                      std::to_string(stimulus.exemplar) + ", method " +
-                     std::to_string(stimulus.method) + "; use the key that was made for it");
+                     std::to_string(stimulus.method) +
+                     "; use the key that was made for this study");
   }
   return found->code;
 }
@@ -132,8 +133,8 @@ ScheduleDraw StudyKey::draw_of(int enrolment, Draws draws, int visit) const {
   const Station* const own = station_of(stations, enrolment);
   if (own == nullptr) {
     throw UsageError("study " + study.name + ": enrolment number " + std::to_string(enrolment) +
-                     " is no station's; hand out more with `touchtrial plan --extend`, as many as "
-                     "then if the key is from before it");
+                     " belongs to no station of this key; hand out more with `touchtrial plan "
+                     "--extend`, or use the key that `plan --extend` wrote last");
   }
   return draw_for(study, *own, enrolment, draws, visit);
 }
@@ -179,7 +180,7 @@ StudyKey simulated_study_key(const Study& study) {
 StudyKey rekeyed(const StudyKey& key, const Study& study) {
   StudyKey changed = key;
   changed.study = study;
-  give_codes(changed);
+  assign_codes(changed);
   changed.configuration = blinded_configuration(changed);
   changed.seal = study_seal(changed);
   return changed;
@@ -262,13 +263,13 @@ bool are_same(const Study& one, const Study& other) {
   return parts_of(one) == parts_of(other);
 }
 
-std::string misfit_of(const Study& study, const StudyCodes& key, const std::filesystem::path& file,
-                      const std::string& option) {
+std::string mismatch_of(const Study& study, const StudyCodes& key,
+                        const std::filesystem::path& file, const std::string& option) {
   const std::string what = option == "--key" ? "key" : "file";
   const std::string text = file.string() + ": is not the " + what + " of " + study.source;
   if (study.name != key.study.name) {
-    return one_line(text + ", which is study " + in_quotes(study.name) + ": it is of study " +
-                    in_quotes(key.study.name) + "; name the right one with " + option);
+    return one_line(text + ", which is study " + in_quotes(study.name) + ", but of study " +
+                    in_quotes(key.study.name) + "; give the right one with " + option);
   }
   const nlohmann::json ours = parts_of(study);
   const nlohmann::json theirs = parts_of(key.study);
@@ -276,10 +277,11 @@ std::string misfit_of(const Study& study, const StudyCodes& key, const std::file
   for (const auto& [part, content] : ours.items()) {
     if (content != theirs.at(part)) differing.push_back(part);
   }
-  const std::string parts = differing.empty() ? "its seal" : listed(differing, ", ");
-  return one_line(text + " as it is now, which has changed since it was prepared: " + parts +
-                  " differ from study " + in_quotes(key.study.name) + " of that " + what +
-                  "; take the change back, name the right " + what + " with " + option +
+  const std::string parts = differing.empty() ? "seal" : listed(differing, ", ");
+  return one_line(text + ", which has changed since it was prepared: its " + parts +
+                  (differing.size() > 1 ? " differ" : " differs") + " from study " +
+                  in_quotes(key.study.name) + " of that " + what +
+                  "; undo the change, give the right " + what + " with " + option +
                   ", or, only if nobody has taken part yet, run `touchtrial prepare`");
 }
 

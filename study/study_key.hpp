@@ -1,6 +1,6 @@
-/// \file The files of a study's secrets. `<study>.key` is the investigator's: it opens everything.
-/// `<study>.station` is one station's: it presents the station's own participants, and opens no
-/// session that has ended. Formats: docs/data-dictionary.md, "Key" and "Station file".
+/// \file The secret files of a study. The investigator's `<study>.key` decrypts everything. A
+/// station's `<study>.station` suffices to run sessions with the station's participants, but cannot
+/// decrypt sessions that have ended. Formats: docs/data-dictionary.md, "Key" and "Station file".
 #pragma once
 
 #include "core/public_keys.hpp"
@@ -21,25 +21,25 @@ struct KeyedStimulus {
   StimulusIndex stimulus;
 };
 
-/// What both files know: the study, the meaning of its codes, and its public identity.
+/// The content common to both files: the study, the meaning of its codes, and its public identity.
 struct StudyCodes {
-  std::string study_id;  ///< hexadecimal; derived from the master secret, reveals nothing about it
+  std::string study_id;  ///< hexadecimal; derived from the master secret without revealing it
   Study study;           ///< as sealed: labels, image names, methods
   std::vector<KeyedStimulus> stimuli;   ///< every presented class x exemplar x method
-  std::vector<KeyedStimulus> practice;  ///< those of practice, which no schedule names
-  /// The code of the plane without texture. It looks like the code of a stimulus; no pack has a
+  std::vector<KeyedStimulus> practice;  ///< of practice textures, which no schedule contains
+  /// The code of the plane without texture. It looks like the code of a stimulus, but no pack has a
   /// field with this code.
   std::string catch_code;
   std::string configuration;           ///< see blinded_configuration
   Digest seal{};                       ///< see study_seal
-  PublicKey investigator_box{};        ///< seals for the investigator
-  PublicKey investigator_signature{};  ///< verifies what the investigator signed
+  PublicKey investigator_box{};        ///< encrypts for the investigator
+  PublicKey investigator_signature{};  ///< verifies the investigator's signatures
   std::filesystem::path pack_folder;   ///< the pack's place when the file was written
   bool simulated = false;
 
   /// All fields of the study's pack: `stimuli`, then `practice`.
   [[nodiscard]] std::vector<KeyedStimulus> fields() const;
-  /// \return the one of `stimuli` with this code, or nothing if there is none
+  /// \return the stimulus with this code, or nothing if there is none
   [[nodiscard]] std::optional<StimulusIndex> stimulus_of(const std::string& code) const;
   /// The code of a field.
   /// \throws StudyError if the study does not present the stimulus
@@ -51,10 +51,10 @@ struct StudyKey : StudyCodes {
   SecretKey master{};
   std::vector<Station> stations;  ///< with their secrets; never empty
 
-  /// What a participant's schedule is drawn from, whichever station the number belongs to.
-  /// \throws UsageError if the number is no station's, or the study has no such visit
+  /// The random input of a participant's schedule, for a number of any station.
+  /// \throws UsageError if no station has the number, or the study has no such visit
   [[nodiscard]] ScheduleDraw draw_of(int enrolment, Draws draws, int visit = 1) const;
-  /// As group_for; empty also if the number is no station's.
+  /// As group_for; empty also if no station has the number.
   [[nodiscard]] std::optional<int> group_of(int enrolment, Draws draws) const;
   [[nodiscard]] BoxKeys box() const;
   [[nodiscard]] Signer signer() const;
@@ -72,26 +72,26 @@ struct StationKey : StudyCodes {
 };
 
 /// Makes a new key with one station. `entropy` supplies the master secret, for the purpose
-/// "touchtrial study key master", from which all other secrets and the codes are derived. A code
-/// depends only on the master secret, the class label, the image path as written and the method
-/// label, so a stimulus keeps its code when others are added or removed, and on whether it is of
-/// practice, so that the code of a texture tells nothing when practice becomes a class.
+/// "touchtrial study key master"; all other secrets and the codes are derived from it. A code
+/// depends only on the master secret, the class label, the image path as written, the method label,
+/// and whether the stimulus is of practice. A stimulus therefore keeps its code when others are
+/// added or removed, and a practice texture that becomes a class gets a new code.
 /// \throws StudyError if two stimuli get the same code (probability 2^-64 for each pair)
 [[nodiscard]] StudyKey make_study_key(const Study& study, Entropy& entropy, bool simulated);
 
-/// The key of a study's simulations and rehearsals. Its secrets follow from the study's seed, so
-/// that simulated databases of one study belong together and can be made again; no real study uses
-/// them.
+/// The key of a study's simulations and rehearsals. Its secrets are derived from the study's seed,
+/// so that simulated databases of one study belong together and can be reproduced. No real study
+/// uses them.
 [[nodiscard]] StudyKey simulated_study_key(const Study& study);
 
-/// Makes a key with the same secrets and stations for a study file that has changed since.
+/// Makes a key with the same secrets and stations for a changed study file.
 [[nodiscard]] StudyKey rekeyed(const StudyKey& key, const Study& study);
 
-/// Divides the study between stations: they replace those of the key, with secrets of their own.
+/// Replaces the stations of the key, and derives a secret for each new station.
 void divide(StudyKey& key, std::vector<Station> stations);
 
 /// The file of one of the key's stations.
-/// \throws UsageError, naming the stations that there are, if there is none of this name
+/// \throws UsageError with the names of the existing stations, if there is none of this name
 [[nodiscard]] StationKey station_key(const StudyKey& key, const std::string& name);
 
 /// Writes the file durably with mode 0600. The folders of study and pack are stored relative to the
@@ -116,27 +116,26 @@ void save_station_key(const std::filesystem::path& path, const StationKey& key);
 /// \throws StoreError if the text is not a block, or names a code that the key does not have
 [[nodiscard]] std::vector<Trial> block_from_json(const std::string& text, const StudyCodes& codes);
 
-/// The study as a database stores it in clear: with codes instead of labels and image names, sorted
-/// by code, and without the seed. It has the settings of
-/// practice and session without their texts, and a keyed hash of practice, session and registration
-/// as a whole. Compact JSON.
+/// The study as a database stores it unencrypted: with codes instead of labels and image names,
+/// sorted by code, and without the seed. It has the settings of practice and session without their
+/// texts, and a keyed hash of practice, session and registration as a whole. Compact JSON.
 [[nodiscard]] std::string blinded_configuration(const StudyKey& key);
 
-/// Whether two studies say the same, wherever their files lie and however these are laid out.
+/// Whether two studies are equal, regardless of the place and layout of their files.
 [[nodiscard]] bool are_same(const Study& one, const Study& other);
 
-/// Says why a file of secrets does not fit a study, with the remedy. Names the study that the file
-/// was made for, or, if that has the same name, the parts of the study file that differ.
-/// \param study  newly read from its file
-/// \param file  that of `key`
-/// \param option  of the command line that names another file, for instance "--key"
-[[nodiscard]] std::string misfit_of(const Study& study, const StudyCodes& key,
-                                    const std::filesystem::path& file, const std::string& option);
+/// Explains why a key or station file does not belong to a study, with the remedy. The message
+/// names the study that the file was made for or, if that has the same name, the parts that differ.
+/// \param study  as read from its file
+/// \param file  the file of `key`
+/// \param option  command-line option that selects the file, for instance "--key"
+[[nodiscard]] std::string mismatch_of(const Study& study, const StudyCodes& key,
+                                      const std::filesystem::path& file, const std::string& option);
 
-/// The study's seal, which is written before trial 1: SHA-256 over key (master secret, whether it
-/// is simulated, meaning of each code), schedule rule, seed and blinded configuration. The codes of
-/// practice follow from the secret and from the practice section, of which the configuration has a
-/// keyed hash. The study's folder, the layout of its file and its stations do not enter.
+/// The study's seal, which is recorded before trial 1: SHA-256 over key (master secret, whether it
+/// is simulated, meaning of each code), schedule rule, seed and blinded configuration. It covers
+/// the codes of practice through the master secret and the keyed hash of the practice section. It
+/// does not depend on the study's folder, the layout of its file or its stations.
 [[nodiscard]] Digest study_seal(const StudyKey& key);
 
 }  // namespace touchtrial::study

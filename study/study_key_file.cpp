@@ -1,5 +1,5 @@
-/// \file The files of key and station. Their bytes follow entirely from their content and one
-/// checksum over it, so that a change of any byte is detected.
+/// \file Key and station files. Their bytes are determined by their content and a checksum over it,
+/// so that a change of any byte is detected.
 #include "core/errors.hpp"
 #include "study/key_protection.hpp"
 #include "study/protocol.hpp"
@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Supplies a stored secret, so that the same code makes and rebuilds a key.
+/// Supplies a stored secret, so that make_study_key also rebuilds a stored key.
 class StoredEntropy final : public Entropy {
  public:
   explicit StoredEntropy(const SecretKey& master) : master_(master) {}
@@ -25,20 +25,20 @@ class StoredEntropy final : public Entropy {
   SecretKey master_;
 };
 
-/// One kind of file and its words.
+/// A file format, and the parts of its error messages.
 struct Kind {
   std::string_view format;
   int version;
   std::string_view title;
-  std::string_view remedy;   ///< where such a file comes from
-  std::string_view renewal;  ///< what to do with a file of another version
+  std::string_view remedy;   ///< for another kind of file
+  std::string_view renewal;  ///< for a file of another version
 };
 constexpr Kind kKey{"touchtrial-key", 3, "key", "give the .key file that `prepare` wrote",
-                    "use the program that wrote it"};
+                    "use the version of Touchtrial that wrote it"};
 constexpr Kind kStation{"touchtrial-station", 4, "station file",
                         "give the .station file that `prepare` or `plan` wrote",
-                        "run `touchtrial prepare`, which writes it anew with the pack, or use the "
-                        "program that wrote it"};
+                        "run `touchtrial prepare` to write it again with the pack, or use the "
+                        "version of Touchtrial that wrote it"};
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& what) {
   throw FileError(one_line(path.string() + ": " + what));
@@ -46,7 +46,7 @@ constexpr Kind kStation{"touchtrial-station", 4, "station file",
 
 [[noreturn]] void refuse_damaged(const std::filesystem::path& path, const Kind& kind) {
   refuse(path, "the " + std::string(kind.title) +
-                   " is altered or damaged since it was written; restore it from a backup");
+                   " has been altered or damaged; restore it from a backup");
 }
 
 std::filesystem::path whole(const std::filesystem::path& path) {
@@ -60,7 +60,7 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
   return whole(file).parent_path();
 }
 
-/// A path relative to the key, so that a study can be moved with its key. "" stays "".
+/// A path relative to the key, so that study and key can be moved together. "" stays "".
 std::string relative_to_key(const std::filesystem::path& target, const std::filesystem::path& key) {
   if (target.empty()) return "";
   const auto relative = whole(target).lexically_relative(folder_of(key));
@@ -107,7 +107,7 @@ std::vector<EnrolmentRange> ranges_from(const json& list) {
   return ranges;
 }
 
-/// What both files hold.
+/// The members common to both files.
 json common_document(const StudyCodes& codes, const Kind& kind, const std::filesystem::path& path) {
   // An empty folder means the working directory; it is written relative to the key as well.
   const auto study_folder = codes.study.folder.empty() ? "." : codes.study.folder;
@@ -179,11 +179,11 @@ json document_of(const StationKey& key, const std::filesystem::path& path) {
   return document;
 }
 
-/// Takes the fields of a station file, whose codes the station cannot derive.
-/// \return whether the file names the study's fields and no others
-bool take_codes(const json& document, StationKey& key) {
+/// Reads the codes of a station file, which the station cannot derive.
+/// \return whether the file has exactly the study's fields
+bool read_codes(const json& document, StationKey& key) {
   for (const StimulusIndex& field : presented_fields(key.study)) {
-    const bool practised = key.study.is_practised(field.class_index);
+    const bool practised = key.study.is_practice_class(field.class_index);
     auto& list = practised ? key.practice : key.stimuli;
     const json& named = document.at(practised ? "practice" : "stimuli").at(list.size());
     list.push_back({named.at("code").get<std::string>(), field});
@@ -196,7 +196,7 @@ StationKey station_of_document(const json& document, const std::filesystem::path
   StationKey key;
   key.study = study_from(document, path);
   key.study_id = document.at("study_id").get<std::string>();
-  const bool is_whole = take_codes(document, key);
+  const bool is_whole = read_codes(document, key);
   key.catch_code = document.at("catch_code").get<std::string>();
   key.configuration = document.at("configuration").get<std::string>();
   key.seal = digest_from(document.at("seal"));
@@ -252,16 +252,15 @@ json whole_document(const std::string& text, const std::filesystem::path& path, 
   return document;
 }
 
-/// Lets `made` make the key from the text of a file of secrets.
+/// Parses the text of a key or station file with `make`.
 template <typename Make>
-auto loaded(const std::filesystem::path& path, const std::string& text, const Kind& kind,
-            Make made) {
+auto load(const std::filesystem::path& path, const std::string& text, const Kind& kind, Make make) {
   const json document = whole_document(text, path, kind);
   try {
-    return made(document, path);
+    return make(document, path);
   } catch (const json::exception&) {
     refuse_damaged(path, kind);
-  } catch (const UsageError&) {  // a station's name
+  } catch (const UsageError&) {  // from an invalid station name
     refuse_damaged(path, kind);
   } catch (const StudyError& error) {
     throw FileError(error.what());
@@ -284,11 +283,11 @@ void save_station_key(const std::filesystem::path& path, const StationKey& key) 
 }
 
 StudyKey load_study_key(const std::filesystem::path& path) {
-  return loaded(path, read_secret_text(path), kKey, key_of);
+  return load(path, read_secret_text(path), kKey, key_of);
 }
 
 StationKey load_station_key(const std::filesystem::path& path) {
-  return loaded(path, read_secret_text(path), kStation, station_of_document);
+  return load(path, read_secret_text(path), kStation, station_of_document);
 }
 
 void protect(const std::filesystem::path& file, const std::optional<std::string>& passphrase,
@@ -296,8 +295,8 @@ void protect(const std::filesystem::path& file, const std::optional<std::string>
   const std::string text = read_secret_text(file);
   const bool is_station =
       text.find("\"format\": \"" + std::string(kStation.format) + "\"") != std::string::npos;
-  const Signer signer = is_station ? loaded(file, text, kStation, station_of_document).signer()
-                                   : loaded(file, text, kKey, key_of).signer();
+  const Signer signer = is_station ? load(file, text, kStation, station_of_document).signer()
+                                   : load(file, text, kKey, key_of).signer();
   write_secret_text(file, text, signer.public_half(), passphrase, cost);
 }
 

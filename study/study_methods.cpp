@@ -41,7 +41,7 @@ std::vector<std::string_view> names_of(const std::vector<engine::Method>& method
   return names;
 }
 
-/// The word for the method, then which keys are for which methods.
+/// Describes the method's name, and which keys belong to which methods.
 void describe_name(ObjectIo& io, engine::Method& method) {
   const std::vector<std::string> names = engine::method_names();
   const std::vector<std::string_view> views(names.begin(), names.end());
@@ -66,7 +66,7 @@ void describe_component(ObjectIo& io, engine::GaborComponent& component) {
             {.meaning = "of the wave, from the x axis", .required = true, .unit = "degrees"});
 }
 
-/// A list, or the word "auto".
+/// Describes components: a list, or the word "auto".
 void describe_components(ValueIo& io, engine::TvGaborOptions& options) {
   constexpr auto kWords = std::to_array<Named<bool>>({{"auto", true}});
   const ValueIo::Form forms[] = {{[](const JsonValue& place) { return place.is_text(); },
@@ -84,7 +84,7 @@ void describe_components(ValueIo& io, engine::TvGaborOptions& options) {
   io.either(options.automatic ? 0 : 1, forms);
 }
 
-/// The text of a key's meaning with the methods that have it.
+/// Composes the meaning of a key, with the methods that use it.
 class Meanings {
  public:
   /// \param key  one of method_keys()
@@ -185,8 +185,8 @@ void describe_methods(ObjectIo& io, std::vector<StudyMethod>& methods, const Abo
       const std::span before = std::span(methods).first(i);
       if (std::ranges::count(before, label, &StudyMethod::label) > 0) {
         place.refuse_below(at, in_quotes(label) +
-                                   " is there twice; list it once, or give one of "
-                                   "the two another label");
+                                   " occurs twice; list it once, or give one of them another "
+                                   "label");
       }
       for (const StudyMethod& other : before) {
         refuse_same_label(place, at, label, other.label, "method");

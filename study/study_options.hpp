@@ -1,4 +1,4 @@
-/// \file A method and a rendering alone, as a study file has them, for callers without a study.
+/// \file A method or a rendering in the format of the study file, for callers without a study.
 #pragma once
 
 #include "engine/extraction_options.hpp"
@@ -15,8 +15,8 @@ namespace touchtrial::study {
 [[nodiscard]] engine::ExtractionOptions parse_method(std::string_view text,
                                                      const std::string& source);
 
-/// A study file's "rendering"; the device in it has no effect on forces.
-/// \throws the same
+/// A study file's "rendering"; its device has no effect on forces.
+/// \throws StudyError as parse_method
 [[nodiscard]] engine::RenderingOptions parse_rendering(std::string_view text,
                                                        const std::string& source);
 

@@ -9,14 +9,14 @@
 namespace touchtrial::study {
 namespace {
 
-/// Text without control characters, of a sane length.
+/// Whether a text has no control characters and a reasonable length.
 bool is_plain(const std::string& text, std::string_view ending = {}) {
-  constexpr std::size_t kLongest = 200;
-  return text.size() > ending.size() && text.size() <= kLongest && text.ends_with(ending) &&
+  constexpr std::size_t kMaxLength = 200;
+  return text.size() > ending.size() && text.size() <= kMaxLength && text.ends_with(ending) &&
          std::ranges::none_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7F; });
 }
 
-/// A name or a path; whether there is such a file is said where one is needed.
+/// A name or a path. Whether the file exists is checked when it is needed.
 constexpr TextRule kCurve{
     .check =
         [](const JsonValue& place) {
@@ -33,13 +33,13 @@ constexpr TextRule kCurve{
     .pattern = R"(^(israr_2006|tan_1994|.+\.db)$)",
     .in_words = "`israr_2006`, `tan_1994`, `NAME.db`"};
 
-/// A name or a path; whether there is such a model is said where one is needed.
+/// A name or a path. Whether the model exists is checked when it is needed.
 constexpr TextRule kDevice{
     .check =
         [](const JsonValue& place) {
           if (is_plain(place.text())) return;
           place.refuse(
-              "must be a model's name, as touchtrial device models lists them, or a file's");
+              "must be the name of a device model (see `touchtrial device models`) or of a file");
         },
     .min_length = 1,
     .max_length = 200,
@@ -48,9 +48,9 @@ constexpr TextRule kDevice{
 constexpr NumberRange kGain{.low = 0.0, .high = 10.0};
 constexpr NumberRange kStiffness{.low = 0.0, .high = 100.0, .open_low = true};
 
-void describe_level(ObjectIo& io, WantedLevel& level) {
+void describe_level(ObjectIo& io, TargetLevel& level) {
   io.number(
-      "level_db", level.db, {.low = 0.0, .high = WantedLevel::kMaxDb},
+      "level_db", level.db, {.low = 0.0, .high = TargetLevel::kMaxDb},
       {.meaning = "of the weakest stimulus, above the detection threshold on `device`, beside "
                   "the blank plane",
        .required = true});
@@ -82,7 +82,7 @@ bool states_level(const JsonValue& place) {
   return gains.find("level_db").has_value() || gains.find("curve").has_value();
 }
 
-/// The word "budget", a level, or the gains of the model.
+/// Describes gains: the word "budget", a level, or explicit gains of the model.
 void describe_gains(ValueIo& io, RenderingSection& rendering) {
   constexpr auto kWords = std::to_array<Named<bool>>({{"budget", true}});
   const auto& [options, device, level] = rendering;
@@ -99,7 +99,7 @@ void describe_gains(ValueIo& io, RenderingSection& rendering) {
                                   }},
                                  {states_level,
                                   [&](ValueIo& value) {
-                                    WantedLevel wanted;
+                                    TargetLevel wanted;
                                     value.part(wanted, describe_level);
                                     rendering.level = wanted;
                                   }},
@@ -109,8 +109,8 @@ void describe_gains(ValueIo& io, RenderingSection& rendering) {
   io.either(!options.gains ? 0 : is_surface ? 2 : 3, forms);
 }
 
-/// What one of the models alone has.
-void describe_of_models(ObjectIo& io, engine::RenderingOptions& options) {
+/// Describes the keys of a single model.
+void describe_model_keys(ObjectIo& io, engine::RenderingOptions& options) {
   io.number(
       "friction", options.friction, {.low = 0.0, .high = 10.0},
       {"`surface`: coefficient of the bristle friction. `paper` has none and accepts only 0"});
@@ -122,13 +122,13 @@ void describe_of_models(ObjectIo& io, engine::RenderingOptions& options) {
   io.rule([&options](const JsonValue& place, const JsonObject& /*object*/) {
     if (options.model == engine::ModelKind::paper && options.friction != 0.0) {
       place.refuse_below("/friction",
-                         "must be 0: the rendering model paper has no friction; leave it out or "
-                         "give \"model\": \"surface\"");
+                         "must be 0, because the rendering model paper has no friction; remove it, "
+                         "or set \"model\": \"surface\"");
     }
     if (options.model == engine::ModelKind::surface && options.touchdown_ramp_n != 0.0) {
       place.refuse_below("/touchdown_ramp_n",
-                         "must be 0: the lateral force of the rendering model surface grows with "
-                         "the load by itself; leave it out or give \"model\": \"paper\"");
+                         "must be 0, because the lateral force of the rendering model surface "
+                         "always grows with the load; remove it, or set \"model\": \"paper\"");
     }
   });
 }
@@ -170,11 +170,13 @@ void describe_texture(ObjectIo& io, RenderingSection& rendering) {
     const engine::RenderingOptions& read = rendering.options;
     if (read.equalise == engine::Equalise::level && !rendering.level) {
       place.refuse_below("/equalise",
-                         "is level, but /gains states none; give gains level_db and curve, or rms");
+                         "is level, but /gains states no level; add level_db and curve there, or "
+                         "use rms");
     }
     if (read.neighbourhood % 2 == 0) {
-      place.refuse_below("/neighbourhood",
-                         "is " + std::to_string(read.neighbourhood) + ", must be odd");
+      place.refuse_below("/neighbourhood", "is " + std::to_string(read.neighbourhood) +
+                                               ", but must be odd; use " +
+                                               std::to_string(read.neighbourhood + 1));
     }
   });
 }
@@ -185,7 +187,7 @@ void describe(ObjectIo& io, RenderingSection& rendering) {
   io.choice("model", rendering.options.model, kModelNames,
             {"the rendering model: tangential forces beside a wall, or the gradient of one "
              "potential"});
-  describe_of_models(io, rendering.options);
+  describe_model_keys(io, rendering.options);
   describe_wall(io, rendering.options);
   describe_texture(io, rendering);
   io.text("device", rendering.device, kDevice,
@@ -199,7 +201,7 @@ void describe(ObjectIo& io, RenderingSection& rendering) {
            .otherwise = "none"});
   io.rule([&rendering](const JsonValue& place, const JsonObject& /*object*/) {
     if (!rendering.level || !rendering.device.empty()) return;
-    place.refuse_below("/gains", "states a level, which needs the device: add \"device\"");
+    place.refuse_below("/gains", "states a level, which depends on the device; add \"device\"");
   });
 }
 
@@ -207,7 +209,10 @@ engine::RenderingOptions parse_rendering(std::string_view text, const std::strin
   const JsonValue place = parse_strict_json(text, source);
   RenderingSection rendering;
   read_described(place, [&](ObjectIo& io) { describe(io, rendering); });
-  if (rendering.level) place.refuse_below("/gains", "states a level, which only a study has");
+  if (rendering.level) {
+    place.refuse_below("/gains",
+                       "states a level, which only a study file may have; give explicit gains");
+  }
   return rendering.options;
 }
 

@@ -5,7 +5,7 @@
 
 namespace touchtrial::study {
 
-/// \return as annotated_schema() makes it, with the sections of the registered protocols
+/// The schema in the form of annotated_schema(), with the sections of the registered protocols.
 [[nodiscard]] std::string study_schema();
 
 }  // namespace touchtrial::study

@@ -9,7 +9,7 @@
 namespace touchtrial::study {
 namespace {
 
-constexpr std::size_t kLongestPath = 1024;  // bytes
+constexpr std::size_t kMaxPathBytes = 1024;  // bytes
 
 constexpr TextRule kLabel{
     .check =
@@ -31,15 +31,15 @@ constexpr TextRule kLabel{
 void check_image(const JsonValue& place) {
   const std::string& path = place.text();
   if (path.empty()) place.refuse("is empty; give the path of an image");
-  if (path.size() > kLongestPath) {
-    place.refuse("is longer than " + std::to_string(kLongestPath) + " bytes; shorten the path");
+  if (path.size() > kMaxPathBytes) {
+    place.refuse("is longer than " + std::to_string(kMaxPathBytes) + " bytes; shorten the path");
   }
   if (has_control_character(path)) place.refuse("has a control character; rename the image");
 }
 
 constexpr TextRule kImage{.check = check_image,
                           .min_length = 1,
-                          .max_length = kLongestPath,
+                          .max_length = kMaxPathBytes,
                           .pattern = R"(^[^\u0000-\u001f\u007f-\u009f]+$)"};
 
 void describe_class(ObjectIo& io, StudyClass& one, std::size_t most_images) {
@@ -57,36 +57,35 @@ void describe_class(ObjectIo& io, StudyClass& one, std::size_t most_images) {
       if (std::find(one.images.begin(), image, *image) == image) continue;
       place.refuse_below(
           "/images/" + std::to_string(image - one.images.begin()),
-          in_quotes(image->string()) + " is there twice; list each image of a class once");
+          in_quotes(image->string()) + " occurs twice; list each image of a class once");
     }
   });
 }
 
-constexpr double kLongest_s = 3600.0;
-constexpr NumberRange kTime_s{.low = 0.0, .high = kLongest_s};
+constexpr double kMaxTime_s = 3600.0;
+constexpr NumberRange kTime_s{.low = 0.0, .high = kMaxTime_s};
 constexpr NumberRange kPath_mm{.low = 0.0, .high = 1e6};
 
 void describe_validity(ObjectIo& io, ValidityRule& rule) {
   constexpr NumberRange kMedian_n{.low = 0.0, .high = 100.0};
-  io.number("exploring_s", rule.least_exploring_s, kTime_s,
+  io.number("exploring_s", rule.min_exploring_s, kTime_s,
             {"exploration from landing to the last sample, at least"});
-  io.number("contact_s", rule.least_contact_s, kTime_s, {"contact, at least"});
-  io.number("path_mm", rule.least_path_mm, kPath_mm, {"path in contact, at least"});
-  io.number("least_median_n", rule.least_median_n, kMedian_n, {"smallest median force in contact"});
-  io.number("largest_median_n", rule.largest_median_n, kMedian_n,
-            {"largest median force in contact"});
+  io.number("contact_s", rule.min_contact_s, kTime_s, {"contact, at least"});
+  io.number("path_mm", rule.min_path_mm, kPath_mm, {"path in contact, at least"});
+  io.number("least_median_n", rule.min_median_n, kMedian_n, {"smallest median force in contact"});
+  io.number("largest_median_n", rule.max_median_n, kMedian_n, {"largest median force in contact"});
   io.number("saturated_share", rule.saturated_share, {.low = 0.0, .high = 1.0, .open_low = true},
             {"share of the samples in contact at the force limit that makes a trial invalid"});
 }
 
-void describe_least_touch(ObjectIo& io, LeastTouch& touch) {
+void describe_min_touch(ObjectIo& io, MinTouch& touch) {
   io.number("contact_s", touch.contact_s, kTime_s,
             {"time at the plane (at most 3 mm above it), at least"});
   io.number("path_mm", touch.path_mm, kPath_mm,
             {"way along it, at least; 0 here and in `contact_s`: no touch needed"});
 }
 
-/// How presentations are ordered and repeated.
+/// Describes how presentations are ordered.
 void describe_order(ObjectIo& io, TrialOptions& trials) {
   io.integer("catch", trials.catch_trials, 0, 1000,
              {"unscored presentations of a plane without texture, at random places among the "
@@ -109,7 +108,7 @@ void describe_order(ObjectIo& io, TrialOptions& trials) {
              .if_changed = true});
 }
 
-/// What follows an interrupted presentation, and how long a session can be resumed.
+/// Describes what follows an interruption, and how long a session can be resumed.
 void describe_resumption(ObjectIo& io, TrialOptions& trials) {
   constexpr double kYear_h = 8760.0;
   io.choice("on_interruption", trials.on_interruption, kOnInterruptionNames,
@@ -163,7 +162,7 @@ void describe(ObjectIo& io, TrialOptions& trials) {
              {"presentations of each class (and presented method) per participant"});
   io.choice("order", trials.order, kTrialOrderNames, {"see [Orders](#orders)"});
   io.number("explore_limit_s", trials.explore_limit_s,
-            {.low = 0.0, .high = kLongest_s, .open_low = true},
+            {.low = 0.0, .high = kMaxTime_s, .open_low = true},
             {"time limit for exploring a presentation"});
   io.choice("on_timeout", trials.on_timeout, kOnTimeoutNames,
             {"`fade`: the force fades and the participant still answers; `no-response`: the trial "
@@ -183,7 +182,7 @@ void describe(ObjectIo& io, TrialOptions& trials) {
   io.part("answer_after", trials.answer_after,
           {.meaning = "what the hand does before a presentation can be answered, unless time is up",
            .if_changed = true},
-          describe_least_touch);
+          describe_min_touch);
 }
 
 void describe(ObjectIo& io, PracticePlan& practice) {
@@ -203,16 +202,16 @@ void describe(ObjectIo& io, VisitPlan& visits) {
   constexpr double kMaxDays = 3650.0;
   io.integer("count", visits.count, 2, 100,
              {.meaning = "number of visits of each participant", .required = true});
-  io.number("least_days", visits.least_days, {.low = 0.0, .high = kMaxDays},
+  io.number("least_days", visits.min_days, {.low = 0.0, .high = kMaxDays},
             {"between the beginnings of two visits; an earlier visit is refused"});
-  io.number("most_days", visits.most_days, {.low = 0.0, .high = kMaxDays, .open_low = true},
+  io.number("most_days", visits.max_days, {.low = 0.0, .high = kMaxDays, .open_low = true},
             {.meaning = "between the beginnings of two visits, at least `least_days`; a later "
                         "visit is warned of, and recorded as the deviation `visit-late`",
              .otherwise = "any"});
   io.rule([&visits](const JsonValue& place, const JsonObject& /*object*/) {
-    if (!visits.most_days || *visits.most_days >= visits.least_days) return;
+    if (!visits.max_days || *visits.max_days >= visits.min_days) return;
     place.refuse_below("/most_days",
-                       "is less than \"least_days\", so that no visit could come; raise it");
+                       "is less than \"least_days\", so no visit would be possible; raise it");
   });
   io.choice("methods", visits.methods, kVisitMethodsNames,
             {"`all`: every visit presents all methods, in the participant's one order, with new "

@@ -1,4 +1,4 @@
-/// \file The sections of the study file: their keys, the words that they use, and functions that
+/// \file The sections of the study file: their keys, the names of their values, and functions that
 /// write them as JSON. Include only from source files.
 #pragma once
 
@@ -78,12 +78,12 @@ inline constexpr auto kSpendingNames = std::to_array<Named<Spending>>(
 
 /// Reads one line.
 /// \param longest  maximum length, bytes
-/// \throws StudyError if the line is too long, is empty, begins or ends with a blank, or has a
+/// \throws StudyError if the line is empty or too long, begins or ends with a blank, or contains a
 ///   control character
 [[nodiscard]] std::string read_line(const JsonValue& place, std::size_t longest);
 
 /// Reads paragraphs, which may contain line feeds and may be empty.
-/// \throws StudyError if the text is too long, or has another control character
+/// \throws StudyError if the text is too long, or contains another control character
 [[nodiscard]] std::string read_paragraphs(const JsonValue& place, std::size_t longest);
 
 /// A line of 1 to `longest` bytes.
@@ -92,7 +92,7 @@ inline constexpr TextRule kLine{
     .check = [](const JsonValue& place) { static_cast<void>(read_line(place, longest)); },
     .min_length = 1,
     .max_length = longest};
-/// The same, or nothing.
+/// A line of 0 to `longest` bytes.
 template <std::size_t longest>
 inline constexpr TextRule kLineOrNothing{.check =
                                              [](const JsonValue& place) {
@@ -108,7 +108,7 @@ inline constexpr TextRule kParagraphs{
 /// "German", "French, a draft"
 [[nodiscard]] std::string_view words_for_language(std::string_view code);
 
-/// A key for each of the program's languages.
+/// Describes a key for each of the program's languages.
 /// \param describe  (ValueIo&, Value&)
 template <typename Value, typename Describe>
 void describe_by_language(ObjectIo& io, std::map<std::string, Value>& values,
@@ -122,9 +122,9 @@ void describe_by_language(ObjectIo& io, std::map<std::string, Value>& values,
     if (value) values[std::string(code)] = *value;
   }
 }
-/// A line in one or more languages.
+/// Describes a line in one or more languages.
 void describe_translated(ValueIo& io, Translated& text);
-/// \param pointer  where `text` is, from the place of a rule
+/// \param pointer  JSON pointer to `text`, relative to `place`
 /// \throws StudyError if the study's language is missing
 void require_language(const JsonValue& place, const std::string& pointer, const Translated& text,
                       const std::string& language);
@@ -137,8 +137,8 @@ inline constexpr std::size_t kMaxMethods = 8;
 inline constexpr int kMaxStimuli = 10'000;
 inline constexpr int kMaxScoredTrials = 10'000;
 
-/// Reads a name that is safe in file names, tables and BIDS labels: 1 to 64 of 0-9 A-Z a-z _ -, and
-/// no word that other programs take for a missing value.
+/// Reads a name that is safe in file names, tables and BIDS labels: 1 to 64 of 0-9 A-Z a-z _ -, but
+/// not a word that other programs read as a missing value.
 /// \throws StudyError if the text is not such a name
 [[nodiscard]] std::string read_plain_name(const JsonValue& place);
 
@@ -147,18 +147,18 @@ inline constexpr TextRule kPlainName{
     .pattern = "^[0-9A-Za-z_-]{1,64}$",
     .in_words = "1 to 64 of `0-9 A-Z a-z _ -`"};
 
-/// Refuses a label that another one equals or looks like (skeleton_of).
-/// \param pointer  where the label is
-/// \param of  what has labels: "class"
+/// Refuses a label that equals or looks like another one (skeleton_of).
+/// \param pointer  JSON pointer to the label
+/// \param of  the labelled kind of thing, for instance "class"
 /// \throws StudyError with the place
 void refuse_same_label(const JsonValue& place, const std::string& pointer, const std::string& label,
                        const std::string& other, const std::string& of);
 
-/// What "rendering" says.
+/// The content of "rendering".
 struct RenderingSection {
   engine::RenderingOptions options;
   std::string device;                ///< Study::device
-  std::optional<WantedLevel> level;  ///< Study::level
+  std::optional<TargetLevel> level;  ///< Study::level
 };
 
 /// These functions describe the sections, and refuse values that contradict each other.
@@ -173,16 +173,15 @@ void describe(ObjectIo& io, VisitPlan& visits);
 void describe(ObjectIo& io, GroupPlan& groups);
 /// \param usual_test  of a difference in this study
 void describe(ObjectIo& io, Registration& registration, RegisteredTest usual_test);
-/// Checks that the registered analysis is one of this study.
+/// Checks that the registered analysis is possible for this study.
 /// \param file  the whole study file
 void check_registration(const JsonValue& file, const Study& study);
 
-/// The sections in the form of the study file, with every key explicit. A method has only the keys
-/// that belong to it, "control" if it has one, and "label" if it is not the default. The trials
-/// have "max_run", "rove_db", "on_interruption", "resume_within_h", "validity" and "answer_after"
-/// only if these differ from their defaults, as the session has "texts", "text_scale" and
-/// "high_contrast", and a registration has the keys of its analysis only if it has one, so that
-/// studies sealed before these keys existed keep their seals. Equal options give equal JSON.
+/// The sections in the form of the study file, with every key explicit except the following. A
+/// method has only the keys that belong to it, "control" if it has one, and "label" if it is not
+/// the default. Keys that are younger than sealed studies appear only if they differ from their
+/// defaults (About::if_changed), and a registration has the keys of its analysis only if it has
+/// one, so that older studies keep their seals. Equal options give equal JSON.
 [[nodiscard]] nlohmann::json written_section(const Description& section, const Description& usual);
 template <typename Section>
 [[nodiscard]] nlohmann::json to_json(const Section& section) {

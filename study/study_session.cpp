@@ -8,9 +8,9 @@
 namespace touchtrial::study {
 namespace {
 
-constexpr std::size_t kLongestQuestion = 500;  // bytes
-constexpr std::size_t kLongestPage = 4000;     // bytes
-constexpr std::size_t kLongestName = 64;       // bytes
+constexpr std::size_t kMaxQuestionBytes = 500;  // bytes
+constexpr std::size_t kMaxPageBytes = 4000;     // bytes
+constexpr std::size_t kMaxNameBytes = 64;       // bytes
 
 void check_length(const JsonValue& place, const std::string& text, std::size_t longest) {
   if (text.size() <= longest) return;
@@ -20,13 +20,13 @@ void check_length(const JsonValue& place, const std::string& text, std::size_t l
 
 constexpr TextRule kPage{.check =
                              [](const JsonValue& place) {
-                               const std::string page = read_paragraphs(place, kLongestPage);
+                               const std::string page = read_paragraphs(place, kMaxPageBytes);
                                if (page.empty())
                                  place.refuse("is empty; write a page, or remove it");
                                check_markup(place, page);
                              },
                          .min_length = 1,
-                         .max_length = kLongestPage};
+                         .max_length = kMaxPageBytes};
 
 void describe_bounds(ObjectIo& io, Question& question) {
   constexpr NumberRange kAny{.low = -1e9, .high = 1e9};
@@ -39,7 +39,7 @@ void describe_bounds(ObjectIo& io, Question& question) {
   io.rule([&question](const JsonValue& place, const JsonObject& /*object*/) {
     if (!question.min || !question.max || *question.min <= *question.max) return;
     place.refuse_below("/max", "is " + number_text(*question.max) + ", less than min, " +
-                                   number_text(*question.min) + "; no number is between them");
+                                   number_text(*question.min) + "; swap or correct them");
   });
 }
 
@@ -83,7 +83,8 @@ void describe_instructions(ObjectIo& io, SessionPlan& session) {
       });
   io.rule([&session](const JsonValue& place, const JsonObject& /*object*/) {
     if (session.instructions.empty() || session.instructions.contains(session.language)) return;
-    place.refuse_below("/" + session.language, "is missing, the study's language; add its pages");
+    place.refuse_below("/" + session.language,
+                       "is missing, but is the study's language; add its pages");
   });
 }
 
@@ -96,7 +97,7 @@ void describe_own_texts(ObjectIo& io, SessionPlan& session) {
   std::erase_if(session.texts, [](const auto& own) { return own.second.empty(); });
 }
 
-/// What the participant reads.
+/// Describes what the participant reads.
 void describe_texts(ObjectIo& io, SessionPlan& session) {
   const std::vector<std::string_view>& codes = language_codes();
   auto language =
@@ -132,7 +133,7 @@ void describe_masking(ObjectIo& io, MaskingPlan& masking) {
             {"root mean square relative to full scale; the laboratory measures the level in dBA"});
 }
 
-/// What a day's session begins with.
+/// Describes the preparations before a session.
 void describe_day(ObjectIo& io, SessionPlan& session) {
   io.list("day_sheet", session.day_sheet, {.most = 50, .unique = true},
           {"items to tick before a session, in addition to the program's own"},
@@ -142,12 +143,12 @@ void describe_day(ObjectIo& io, SessionPlan& session) {
     for (auto item = sheet.begin(); item != sheet.end(); ++item) {
       if (std::find(sheet.begin(), item, *item) == item) continue;
       place.refuse_below("/day_sheet/" + std::to_string(item - sheet.begin()),
-                         in_quotes(*item) + " is there twice; list it once");
+                         in_quotes(*item) + " occurs twice; list it once");
     }
   });
-  io.text("consent_version", session.consent_version, kLineOrNothing<kLongestName>,
+  io.text("consent_version", session.consent_version, kLineOrNothing<kMaxNameBytes>,
           {"version of the consent form that participants sign"});
-  io.text("ethics_number", session.ethics_number, kLineOrNothing<kLongestName>,
+  io.text("ethics_number", session.ethics_number, kLineOrNothing<kMaxNameBytes>,
           {"number of the ethics committee's approval"});
 }
 
@@ -180,7 +181,7 @@ void describe_closing(ObjectIo& io, SessionPlan& session) {
 
 std::string read_line(const JsonValue& place, std::size_t longest) {
   const std::string& line = place.text();
-  if (line.empty()) place.refuse("is empty; write something, or leave it out");
+  if (line.empty()) place.refuse("is empty; write a text, or remove the key");
   check_length(place, line, longest);
   if (has_control_character(line)) place.refuse("has a control character; remove it");
   if (line.front() == ' ' || line.back() == ' ') {
@@ -195,7 +196,7 @@ std::string read_paragraphs(const JsonValue& place, std::size_t longest) {
   std::string without_ends = text;
   std::erase(without_ends, '\n');
   if (has_control_character(without_ends)) {
-    place.refuse("has a control character other than a line's end; remove it");
+    place.refuse("has a control character other than a line feed; remove it");
   }
   return text;
 }
@@ -215,7 +216,7 @@ std::string_view words_for_language(std::string_view code) {
 void describe_translated(ValueIo& io, Translated& text) {
   io.object([&text](ObjectIo& keys) {
     describe_by_language(keys, text, [](ValueIo& value, std::string& line) {
-      value.text(line, kLine<kLongestQuestion>);
+      value.text(line, kLine<kMaxQuestionBytes>);
     });
   });
 }
@@ -223,7 +224,7 @@ void describe_translated(ValueIo& io, Translated& text) {
 void require_language(const JsonValue& place, const std::string& pointer, const Translated& text,
                       const std::string& language) {
   if (text.contains(language)) return;
-  place.refuse_below(pointer + "/" + language, "is missing, the study's language; add it");
+  place.refuse_below(pointer + "/" + language, "is missing, but is the study's language; add it");
 }
 
 void describe(ObjectIo& io, SessionPlan& session) {

@@ -37,15 +37,14 @@ void adjust_by_holm(std::vector<RightAnswers>& people) {
   for (std::size_t i = 0; i < people.size(); ++i) people[i].p_holm = adjusted[i];
 }
 
-/// The p of 0, 1, .. right answers of n.
+/// The one-sided p of 0, 1, .. right answers of n.
 std::vector<double> p_by_count(int n, double guess) {
   std::vector<double> p;
   for (int right = 0; right <= n; ++right) p.push_back(*p_of_guessing({n, right}, guess));
   return p;
 }
 
-/// The number of right answers that `uniform` draws, which is in (0, 1]: the p of its count, or a
-/// smaller one, has this probability.
+/// The number of right answers by guessing for a uniform number in (0, 1].
 int count_of(const std::vector<double>& p, double uniform) {
   const auto above = std::ranges::partition_point(p, [&](double one) { return one >= uniform; });
   return static_cast<int>(above - p.begin()) - 1;
@@ -76,7 +75,7 @@ OwnUse own_use(const Person& person, std::size_t choices, const Which& which) {
   return use;
 }
 
-/// One answer of a participant and the one just before it.
+/// One answer of a participant and the previous one.
 struct AnswerPair {
   const TrialOutcome* before = nullptr;
   const TrialOutcome* trial = nullptr;
@@ -153,8 +152,8 @@ std::optional<AgainstGuessing> against_guessing(std::span<const Person> people, 
   return found;
 }
 
-Anybody anybody_better(const AgainstGuessing& answers, double guess, int deals) {
-  analysis::AnybodyTest test(static_cast<int>(answers.people.size()), deals);
+GlobalNullResult test_anyone_above_chance(const AgainstGuessing& answers, double guess, int deals) {
+  analysis::GlobalNullTest test(static_cast<int>(answers.people.size()), deals);
   std::vector<double> together(static_cast<std::size_t>(deals) + 1);
   for (std::size_t i = 0; i < answers.people.size(); ++i) {
     const Proportion& own = answers.people[i].answers;
@@ -171,7 +170,8 @@ Anybody anybody_better(const AgainstGuessing& answers, double guess, int deals) 
   return test.result(together);
 }
 
-std::vector<std::string> those_better(const AgainstGuessing& answers, const Anybody& anybody) {
+std::vector<std::string> people_above_chance(const AgainstGuessing& answers,
+                                             const GlobalNullResult& anybody) {
   std::vector<std::string> names;
   if (!anybody.found()) return names;
   for (const RightAnswers& one : answers.people) {

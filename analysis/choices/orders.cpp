@@ -21,11 +21,11 @@ namespace {
 
 using analysis::AnsweredBlock;
 using analysis::ChanceTest;
-using analysis::DealtOrder;
 using analysis::FeltBlock;
 using analysis::FeltTrial;
 using analysis::KnownMatches;
 using analysis::OrderEffects;
+using analysis::OrderRule;
 using analysis::Prevalence;
 using analysis::RedrawnBlock;
 using analysis::RedrawnClasses;
@@ -99,12 +99,12 @@ int draws_for(std::size_t things, std::initializer_list<int> choices, std::size_
 }
 
 /// Draws of orders by the study's schedules.
-/// \param places  of each block
-/// \return nothing if the rule draws any order, or a block has places that the schedules do not have
+/// \param places  of each block \return nothing if the rule allows any order, or a block has places
+///   that are not in the schedules
 std::optional<OrderDraws> schedule_draws(const study::Study& study, int method,
                                          std::span<const std::vector<int>> places, int deals,
                                          std::string_view purpose) {
-  if (dealt_order(study) != DealtOrder::redrawn || places.empty()) return std::nullopt;
+  if (dealt_order(study) != OrderRule::redrawn || places.empty()) return std::nullopt;
   OrderDraws draws(study, method, places.size(), deals, purpose);
   const bool fit = std::ranges::all_of(places, [&](const std::vector<int>& block) {
     return static_cast<std::size_t>(std::ranges::max(block)) < draws.length();
@@ -124,8 +124,8 @@ class BlockTests {
         deals_(deals),
         known_(known),
         draws_(schedule_draws(outcomes.design, method, placed.places, deals, "chance test")) {
-    // Without the study's rule.
-    if (order_ == DealtOrder::redrawn && !draws_) order_ = DealtOrder::permuted;
+    // Falls back to any order.
+    if (order_ == OrderRule::redrawn && !draws_) order_ = OrderRule::permuted;
   }
 
   /// \param first,last  blocks
@@ -144,7 +144,7 @@ class BlockTests {
  private:
   int classes_;
   const PlacedBlocks& placed_;
-  DealtOrder order_;
+  OrderRule order_;
   int deals_;
   KnownMatches* known_;
   std::optional<OrderDraws> draws_;
@@ -219,7 +219,7 @@ std::optional<ChanceTest> chance_of(const Outcomes& outcomes, int method, int mo
                                     KnownMatches* known) {
   const PlacedBlocks placed = blocks_of(outcomes, method);
   const std::size_t blocks = placed.answers.size();
-  const bool redrawn = dealt_order(outcomes.design) == DealtOrder::redrawn;
+  const bool redrawn = dealt_order(outcomes.design) == OrderRule::redrawn;
   const int deals = redrawn ? deals_for(blocks, most_deals) : kMaxChanceDeals;
   return BlockTests(outcomes, method, placed, deals, known).of(0, blocks);
 }
@@ -260,25 +260,25 @@ std::optional<OrderEffects> order_of(const Outcomes& outcomes, int method) {
   }
   const int draws = draws_for(trials, {1999, 999, 199}, kMaxMovedTrials);
   const auto orders = schedule_draws(outcomes.design, method, places, draws, "order effects");
-  RedrawnClasses redraw;  // without one, any order stands for those of the rule
+  RedrawnClasses redraw;  // if empty, any order is allowed
   if (orders) {
     redraw = [&](std::size_t block, int deal) { return orders->drawn(block, deal, places[block]); };
   }
   return order_effects(participants, redraw, draws, static_cast<std::uint64_t>(method));
 }
 
-DealtOrder dealt_order(const study::Study& study) {
+OrderRule dealt_order(const study::Study& study) {
   const study::TrialOptions& trials = study.trials;
   const bool limited = trials.max_run > 0;
-  if (!limited && trials.order == study::TrialOrder::shuffled) return DealtOrder::permuted;
-  if (!limited && trials.order == study::TrialOrder::uniform) return DealtOrder::independent;
-  return DealtOrder::redrawn;
+  if (!limited && trials.order == study::TrialOrder::shuffled) return OrderRule::permuted;
+  if (!limited && trials.order == study::TrialOrder::uniform) return OrderRule::independent;
+  return OrderRule::redrawn;
 }
 
 OrderDraws::OrderDraws(const study::Study& study, int method, std::size_t blocks, int deals,
                        std::string_view purpose)
     : blocks_(blocks), random_(0, purpose, static_cast<std::uint64_t>(method)) {
-  // A seed of its own keeps the participants' own orders out of the draws.
+  // A separate seed, so that participants' actual orders are not among the draws.
   SeededEntropy entropy(study.seed);
   for (int i = 1; i <= kOrders; ++i) {
     const study::ScheduleDraw draw{entropy.secret("chance test: order " + std::to_string(i)), i};

@@ -29,21 +29,22 @@ struct Person {
   OwnTrials trials;  ///< of sessions that count
 };
 
-/// The people of a study with those of their trials that are wanted.
+/// The people of a study with the selected trials.
 /// \param outcomes  must outlive the result
-/// \return in the order of sessions, also those without a trial; trials in the order of the outcomes
+/// \return in the order of sessions, including people without a trial; trials in the order of the
+///   outcomes
 [[nodiscard]] std::vector<Person> people_with(
     const Outcomes& outcomes, const std::function<bool(const TrialOutcome&)>& is_wanted);
 
-/// Orders trials as they were felt. An interrupted trial stands where it was repeated.
+/// Sorts trials by when they were felt. An interrupted trial takes the place of its repetition.
 void sort_as_felt(OwnTrials& trials);
 
-/// All presentations that are not void, in the order in which they were felt. What the participant
-/// felt before an interruption does not appear.
+/// All presentations that are not void, in the order in which they were felt. Interrupted
+/// presentations are left out.
 [[nodiscard]] OwnTrials as_felt(const Outcomes& outcomes);
 
-/// Whose sessions are whose. The first session of a participant stands for the participant; in a
-/// study with one visit, every session stands for itself.
+/// Maps sessions to participants, who are identified by their first session. In a study with one
+/// visit, every session maps to itself.
 class FirstSessions {
  public:
   explicit FirstSessions(const Outcomes& outcomes);
@@ -59,13 +60,13 @@ class FirstSessions {
 
 [[nodiscard]] std::set<int> counted_sessions(const Outcomes& outcomes);
 
-/// Completed sessions whose exclusion is the only reason why they do not count. A participant who
-/// was excluded and started again is left out, because the new session counts already.
+/// Completed sessions that would count if they were not excluded. A participant who was excluded
+/// and started again is left out, because the new session counts already.
 [[nodiscard]] std::set<int> excluded_sessions(const Outcomes& outcomes);
 
 [[nodiscard]] Proportion accuracy_of(const OwnTrials& trials);
 
-/// Tells whether a trial ended in a way that counts: with an answer, or by a time-out.
+/// Whether a trial ended in a way that counts: with an answer, or by a time-out.
 [[nodiscard]] bool has_ended(const TrialOutcome& trial) noexcept;
 
 }  // namespace touchtrial::choices

@@ -12,25 +12,15 @@ namespace touchtrial::choices {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using analysis::p_figure;
 using analysis::plain_figure;
 using analysis::share_figure;
-
-std::string place_words(const Preference& one, const std::vector<std::string>& labels) {
-  const std::string& label = labels.at(static_cast<std::size_t>(one.choice));
-  return one.place ? fmt::format("{} (place {})", label, *one.place + 1) : label;
-}
-
-std::string counts_of(const Proportion& of) {
-  return fmt::format("{} of {}", of.correct, of.n);
-}
 
 Json counts_json(const Proportion& of) {
   const std::optional<double> share = of.share();
   return {{"n", of.n}, {"right", of.correct}, {"share", share ? Json(*share) : Json(nullptr)}};
 }
 
-Json json_of(const Anybody& anybody) {
+Json json_of(const GlobalNullResult& anybody) {
   return {{"found", anybody.found()}, {"p", anybody.p},
           {"deals", anybody.deals},   {"people", anybody.people},
           {"alone", anybody.alone},   {"alone_by_chance", anybody.alone_by_chance}};
@@ -50,7 +40,7 @@ Json json_of(const Preference& one, const std::vector<std::string>& labels) {
 
 }  // namespace
 
-std::string alone_words(const Anybody& anybody) {
+std::string alone_words(const GlobalNullResult& anybody) {
   return fmt::format("{} of {} {} an own p of {} or less, where chance gives {} at most on average",
                      anybody.alone, counted(anybody.people, "participant"),
                      anybody.people == 1 ? "has" : "have", analysis::kUsualLevel,
@@ -62,7 +52,7 @@ std::string preference_words(const Preferences& preferences,
   if (!preferences.anybody.found()) return "";
   std::string text = alone_words(preferences.anybody);
   const std::vector<const Preference*> found = preferences.of_those_who_prefer();
-  if (found.empty()) return text + ": who it is cannot be told";
+  if (found.empty()) return text + ": who they are cannot be determined";
   Proportion there;
   Proportion elsewhere;
   std::map<int, std::vector<std::string>> names;
@@ -84,23 +74,7 @@ std::string preference_words(const Preferences& preferences,
                     share_figure(elsewhere.share()));
 }
 
-analysis::Table preferences_table(const Preferences& preferences,
-                                  const std::vector<std::string>& labels, const std::string& noun) {
-  analysis::Table table{
-      "preferences-of-participants", fmt::format("Which {} each participant preferred", noun),
-      analysis::columns_of({"participant", "n", "preferred", "named", "right where it was right",
-                            "right elsewhere", "p", "p by Holm"},
-                           {"preferred"})};
-  for (const Preference& one : preferences.people) {
-    table.rows.push_back({one.participant, std::to_string(one.answers), place_words(one, labels),
-                          share_figure(Proportion{one.answers, one.named}.share()),
-                          counts_of(one.right_there), counts_of(one.right_elsewhere),
-                          p_figure(one.p), p_figure(one.p_holm)});
-  }
-  return table;
-}
-
-std::string anybody_json(const Anybody& anybody) {
+std::string global_null_json(const GlobalNullResult& anybody) {
   return json_of(anybody).dump();
 }
 

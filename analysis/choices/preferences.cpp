@@ -17,16 +17,16 @@
 namespace touchtrial::choices {
 namespace {
 
-using analysis::AnybodyTest;
+using analysis::GlobalNullTest;
 using analysis::ranked_p;
 
-constexpr std::size_t kMostDrawnAnswers = 20'000'000;  ///< takes about a third of a second
-constexpr std::size_t kLeastDeals = 999;
+constexpr std::size_t kMaxDrawnAnswers = 20'000'000;  ///< takes about a third of a second
+constexpr std::size_t kMinPreferenceDeals = 999;
 
 int affordable_deals(std::size_t answers, std::size_t most_deals) {
-  const std::size_t affordable = kMostDrawnAnswers / std::max<std::size_t>(1, answers);
+  const std::size_t affordable = kMaxDrawnAnswers / std::max<std::size_t>(1, answers);
   return static_cast<int>(
-      std::clamp<std::size_t>(affordable, std::min(kLeastDeals, most_deals), most_deals));
+      std::clamp<std::size_t>(affordable, std::min(kMinPreferenceDeals, most_deals), most_deals));
 }
 
 bool is_one_of(std::optional<int> choice, int choices) {
@@ -42,7 +42,7 @@ OwnTrials answered_trials(const Person& person, int choices, const Which& which)
   return answered;
 }
 
-/// Where the last answer that named a choice lay.
+/// The position of the last answer that named a choice.
 std::optional<int> place_of(const OwnTrials& trials, int choice) {
   for (auto trial = trials.rbegin(); trial != trials.rend(); ++trial) {
     if ((*trial)->response == choice) return position_of((*trial)->row.answer);
@@ -50,8 +50,8 @@ std::optional<int> place_of(const OwnTrials& trials, int choice) {
   return std::nullopt;
 }
 
-/// What is known of a participant's answers but the p.
-/// \param beyond  of each choice, how much oftener than expected it was named
+/// A participant's preference, without its p.
+/// \param beyond  for each choice, how much more often than expected it was named
 Preference preference_of(const std::string& participant, const OwnTrials& trials,
                          std::span<const double> beyond) {
   Preference one;
@@ -65,7 +65,7 @@ Preference preference_of(const std::string& participant, const OwnTrials& trials
   return one;
 }
 
-/// Puts the p of those who were tested into their places, and adjusts them.
+/// Sets the p of the people who were tested, and their adjusted p.
 void put_p(const std::vector<std::size_t>& tested, const std::vector<double>& p,
            std::vector<Preference>& people) {
   const std::vector<double> adjusted = analysis::holm_adjusted(p);
@@ -79,7 +79,8 @@ double sum_of_squares(std::span<const double> values) {
   return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
 }
 
-/// Who is always right, or always wrong, is it as often wherever the right choice is.
+/// Whether a person has right and wrong answers; otherwise accuracy cannot depend on the right
+/// choice.
 bool has_both(const OwnTrials& trials) {
   const Proportion right = accuracy_of(trials);
   return right.correct > 0 && right.correct < right.n;
@@ -110,7 +111,7 @@ struct NamedAndRight {
   std::vector<int> targets;
 };
 
-/// The same answers, right and wrong, where choices were drawn anew and nobody prefers one.
+/// The same numbers of right and wrong answers with redrawn choices, without a preference.
 NamedAndRight drawn_anew(int choices, int n, int right, RandomStream& random) {
   const auto m = static_cast<std::uint64_t>(choices);
   NamedAndRight drawn(choices);
@@ -121,7 +122,7 @@ NamedAndRight drawn_anew(int choices, int n, int right, RandomStream& random) {
   return drawn;
 }
 
-/// S_k of preferences_by_target, of the answers as they are.
+/// S_k of preferences_by_target for the observed answers.
 std::vector<double> beyond_targets(const OwnTrials& trials, int choices) {
   NamedAndRight own(choices);
   for (const TrialOutcome* trial : trials) {
@@ -132,7 +133,7 @@ std::vector<double> beyond_targets(const OwnTrials& trials, int choices) {
   return own.beyond(right.n, right.correct);
 }
 
-/// The same as they are, then in each deal.
+/// S_k of the observed answers, then of each deal.
 std::vector<std::vector<double>> dealt_beyond(const OwnTrials& trials, int choices, int deals,
                                               RandomStream& random) {
   const Proportion right = accuracy_of(trials);
@@ -151,7 +152,7 @@ std::vector<double> squares_of(const std::vector<std::vector<double>>& dealt) {
   return squares;
 }
 
-/// A wrong answer that takes one of a pair of stimuli for the other.
+/// A wrong answer that confuses a pair of stimuli.
 struct Mistake {
   std::size_t person = 0;
   std::size_t session = 0;  ///< of all people, counted from 0
@@ -160,7 +161,7 @@ struct Mistake {
   bool named_second = true;
 };
 
-/// Wrong answers, those of a pair of stimuli after each other.
+/// Wrong answers, grouped by pair of stimuli.
 class Mistakes {
  public:
   Mistakes(std::span<const OwnTrials> people, int choices) : people_(people.size()) {
@@ -184,7 +185,7 @@ class Mistakes {
 
   [[nodiscard]] std::size_t size() const { return all_.size(); }
 
-  /// How much oftener than expected each choice was named, by session.
+  /// How much more often than expected each choice was named, by session.
   [[nodiscard]] std::vector<double> beyond() const {
     std::vector<double> counts(expected_.size());
     for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = -expected_[i];
@@ -212,7 +213,7 @@ class Mistakes {
     return sums;
   }
 
-  /// Exchanges what was named between the mistakes of each pair.
+  /// Permutes the named stimuli among the mistakes of each pair.
   void deal(RandomStream& random) {
     for_each_pair([&](std::span<Mistake> pair) {
       for (std::size_t left = pair.size(); left > 1; --left) {
@@ -258,7 +259,7 @@ class Mistakes {
   std::vector<double> expected_;        ///< by session and choice
 };
 
-/// How often each participant named each place, of those who have a place in every answer.
+/// The share of each place in a participant's answers, for people with a place in every answer.
 std::vector<std::vector<double>> shares_of_places(std::span<const Person> people, int places,
                                                   std::vector<int>& named) {
   std::vector<std::vector<double>> shares;
@@ -328,7 +329,7 @@ Preferences preferences_by_target(std::span<const Person> people, int choices, c
     tested.push_back(std::move(trials));
   }
   const int deals = affordable_deals(answers, static_cast<std::size_t>(most_deals));
-  AnybodyTest test(static_cast<int>(tested.size()), deals);
+  GlobalNullTest test(static_cast<int>(tested.size()), deals);
   std::vector<std::vector<double>> sums(static_cast<std::size_t>(deals) + 1,
                                         std::vector<double>(static_cast<std::size_t>(choices)));
   std::vector<double> own_p;
@@ -374,7 +375,7 @@ Preferences preferences_among_errors(std::span<const Person> people, int choices
     const std::vector<double> own = mistakes.squares();
     for (std::size_t i = 0; i < own.size(); ++i) squares[i].push_back(own[i]);
   }
-  AnybodyTest test(static_cast<int>(places.size()), deals);
+  GlobalNullTest test(static_cast<int>(places.size()), deals);
   std::vector<double> together(static_cast<std::size_t>(deals) + 1);
   std::vector<double> own_p;
   for (const std::size_t place : places) {
@@ -399,7 +400,7 @@ std::optional<AnswersByPlace> answers_by_place(std::span<const Person> people, i
     for (const std::vector<double>& own : shares) excess.push_back(own[place] - 1.0 / choices);
     all.places.push_back({named[place], group_test(excess)});
   }
-  all.deals = affordable_deals(shares.size() * named.size(), analysis::kAnybodyDeals);
+  all.deals = affordable_deals(shares.size() * named.size(), analysis::kGlobalNullDeals);
   all.p = p_of_layouts(shares, all.deals);
   all.own = preferences_among_errors(people, choices);
   return all;

@@ -1,10 +1,10 @@
-/// \file Whether participants prefer an answer whatever they felt: by person, because people who
-/// prefer different answers cancel out in a mean. Sources: docs/statistics.md, "Any participant"
-/// and "Preferences".
+/// \file Tests of whether participants prefer an answer whatever they felt. The tests are by
+/// person, because different preferences cancel out in a mean. Sources: docs/statistics.md, "Any
+/// participant" and "Preferences".
 #pragma once
 
 #include "analysis/choices/answers.hpp"
-#include "analysis/statistics/anybody.hpp"
+#include "analysis/statistics/global_null_test.hpp"
 
 #include <optional>
 #include <span>
@@ -16,8 +16,8 @@ namespace touchtrial::choices {
 /// One participant's answers.
 struct Preference {
   std::string participant;
-  int choice = 0;              ///< the one named most beyond what is expected
-  std::optional<int> place{};  ///< of that choice in the last session, from 0; if layouts differ
+  int choice = 0;              ///< the one named most often beyond expectation
+  std::optional<int> place{};  ///< its place in the last session, from 0; only if layouts differ
   int answers = 0;
   int named = 0;               ///< of them, those that name it
   Proportion right_there;      ///< right answers where it was right
@@ -28,29 +28,29 @@ struct Preference {
 
 struct Preferences {
   std::vector<Preference> people;  ///< with an answer
-  Anybody anybody;
+  GlobalNullResult anybody;
 
-  /// Those whose own p is within the level, if anybody prefers a choice.
+  /// The people whose own p is within the level, if anybody prefers a choice.
   [[nodiscard]] std::vector<const Preference*> of_those_who_prefer() const;
 };
 
-/// Of studies whose right choice is drawn trial by trial, each choice equally often. Without a
-/// preference somebody is right as often whichever choice is right, and each is named equally
-/// often: with c the share right of n trials and k right in T of them, S_k = named_k - c T_k - (1 -
-/// c) (n - T_k) / (m - 1) has mean 0. Right answers keep their places, which levels may follow, and
-/// choices are drawn anew; p is of the sum of squares of S_k.
+/// For studies that draw the right choice of each trial, all m choices being equally likely.
+/// Without a preference, accuracy does not depend on which choice is right, and wrong answers are
+/// spread evenly. With c the share right of n trials and choice k right in T_k of them, S_k =
+/// named_k - c T_k - (1 - c) (n - T_k) / (m - 1) then has mean 0. Right answers keep their places,
+/// which levels may follow, and choices are redrawn; p is of the sum of squares of S_k.
 [[nodiscard]] Preferences preferences_by_target(std::span<const Person> people, int choices,
                                                 const Which& which,
-                                                int most_deals = analysis::kAnybodyDeals);
+                                                int most_deals = analysis::kGlobalNullDeals);
 
-/// Of studies with stimuli that resemble each other in unknown ways. Among the wrong answers that
-/// take one of two stimuli for the other, which of them was named does not depend on the
-/// participant if nobody has preferences of their own; in each deal the names are exchanged between
-/// people. A preference that all share for one stimulus is left to confusions; a place that all
-/// prefer shows, as each participant has a layout of their own.
+/// For studies with stimuli of unknown similarity. Among wrong answers that confuse two stimuli,
+/// which one was named does not depend on the participant if nobody has preferences of their own;
+/// each deal permutes the names between people. A preference that everybody has for one stimulus
+/// counts as confusion. A place that everybody prefers is detected, because each participant has a
+/// different layout.
 /// \param people  with scored trials; those without an answer do not count
 [[nodiscard]] Preferences preferences_among_errors(std::span<const Person> people, int choices,
-                                                   int most_deals = analysis::kAnybodyDeals);
+                                                   int most_deals = analysis::kGlobalNullDeals);
 
 /// One place on the answer screen.
 struct PlaceUse {
@@ -61,7 +61,7 @@ struct PlaceUse {
 /// Answers by their places in layouts that are drawn at random for each participant.
 struct AnswersByPlace {
   std::vector<PlaceUse> places;  ///< in the order of the screen
-  double p = 1.0;                ///< that all people together prefer no place: layouts dealt anew
+  double p = 1.0;                ///< that all people together prefer no place; layouts are redrawn
   int deals = 0;                 ///< of layouts
   Preferences own;               ///< preferences_among_errors
 };

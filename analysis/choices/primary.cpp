@@ -64,7 +64,7 @@ std::map<int, std::pair<OwnShare, OwnShare>> shares_of(const PrimaryQuestion& qu
   const std::set<int> whole = people_with_all_visits(outcomes, selection, people);
   std::map<int, std::pair<OwnShare, OwnShare>> shares;
   for (const TrialOutcome& trial : outcomes.trials) {
-    if (!selection.has(trial) || !outcomes.design.decides(trial.visit)) continue;
+    if (!selection.has(trial) || !outcomes.design.enters_analysis(trial.visit)) continue;
     const bool first = trial.stimulus.method == question.first;
     const bool second = is_difference(question) && trial.stimulus.method == question.second;
     if (!first && !second) continue;
@@ -107,7 +107,7 @@ Interval range_of(const PrimaryQuestion& question) {
   return is_difference(question) ? Interval{-1.0, 1.0} : Interval{0.0, 1.0};
 }
 
-/// The lower limit that goes with a one-sided test: the lower end of the interval at 1 - 2 alpha.
+/// The lower limit of a one-sided test: the lower end of the interval at 1 - 2 alpha.
 std::optional<double> bound_of(const PrimaryQuestion& question,
                                std::span<const CrossoverPerson> people) {
   if (question.sides == Sides::two || question.alpha >= 0.5) return std::nullopt;
@@ -115,7 +115,7 @@ std::optional<double> bound_of(const PrimaryQuestion& question,
   return interval ? std::optional(interval->low) : std::nullopt;
 }
 
-/// What belongs to the registered choice alone.
+/// Adds the results that exist only for the registered selection.
 void put_registered_choice(const PrimaryQuestion& question, int classes,
                            std::span<const CrossoverPerson> people, PrimaryResult& result) {
   result.p = primary_p(question, classes, people);
@@ -129,7 +129,7 @@ void put_registered_choice(const PrimaryQuestion& question, int classes,
   result.permutation = crossover_permutation(people, result.null, question.sides);
 }
 
-/// Whether a test by t had none, so that p is that of another one.
+/// Whether t was undefined, so that p is from another test.
 bool has_no_t(const PrimaryQuestion& question, std::span<const CrossoverPerson> people,
               const PrimaryResult& result) {
   switch (question.test) {
@@ -147,7 +147,7 @@ bool has_no_t(const PrimaryQuestion& question, std::span<const CrossoverPerson> 
 std::optional<StratifiedMean> over_stations(const PrimaryQuestion& question,
                                             const Outcomes& outcomes,
                                             const SelectedPeople& selected) {
-  // Periods are told apart within all stations together.
+  // The period effect is estimated over all stations together.
   if (question.test == study::RegisteredTest::crossover) return std::nullopt;
   std::map<int, int> station_of;
   for (const SessionOutcome& session : outcomes.sessions) {

@@ -1,6 +1,6 @@
-/// \file The question that decides an identification study: whether participants are right more
-/// often than by chance, or more often with one method than with another. Source:
-/// docs/statistics.md, "The registered question".
+/// \file The primary question of an identification study: whether participants are right more often
+/// than by chance, or more often with one method than with another. Source: docs/statistics.md,
+/// "The registered question".
 #pragma once
 
 #include "analysis/choices/selections.hpp"
@@ -25,9 +25,9 @@ struct PrimaryQuestion {
   Sides sides = Sides::one;
   double alpha = 0.05;
   std::optional<double> smallest_effect{};
-  std::optional<double> margin{};  ///< of a difference, by which the first method may be worse
+  std::optional<double> margin{};  ///< of a difference: how much worse the first method may be
 
-  /// Of the interval that decides: 1 - alpha, or 1 - 2 alpha with a margin.
+  /// The level of the deciding interval: 1 - alpha, or 1 - 2 alpha with a margin.
   [[nodiscard]] double interval_level() const noexcept {
     return 1.0 - (margin ? 2.0 : 1.0) * alpha;
   }
@@ -46,7 +46,7 @@ struct PrimaryQuestion {
 /// "one-sample t test over participants, one-sided"
 [[nodiscard]] std::string test_words(const PrimaryQuestion& question);
 
-/// What gives p in place of a t test of people who do not differ: "sign flips over participants,
+/// The test used in place of a t test if people do not differ: "sign flips over participants,
 /// because these do not differ and there is no t, one-sided"
 [[nodiscard]] std::string test_words_without_t(const PrimaryQuestion& question);
 
@@ -55,7 +55,7 @@ struct PrimaryQuestion {
 [[nodiscard]] std::vector<CrossoverPerson> primary_values(const PrimaryQuestion& question,
                                                           const Outcomes& outcomes);
 
-/// Of a difference: whether people who have both methods are above chance with each of them.
+/// For a difference: whether people who have both methods are above chance with each.
 [[nodiscard]] std::vector<analysis::AboveChance> above_chance(const PrimaryQuestion& question,
                                                               const Outcomes& outcomes,
                                                               const Selection& selection);
@@ -65,7 +65,7 @@ struct PrimaryEstimate {
   std::optional<Interval> interval{};  ///< Student's
 };
 
-/// The estimate from these participants. What too few of them cannot give is missing.
+/// The estimate from these participants. Values that need more participants are missing.
 /// \param level  of the interval
 [[nodiscard]] PrimaryEstimate primary_estimate(const PrimaryQuestion& question,
                                                std::span<const CrossoverPerson> people,
@@ -76,10 +76,10 @@ struct PrimaryEstimate {
 [[nodiscard]] std::optional<double> primary_p(const PrimaryQuestion& question, int classes,
                                               std::span<const CrossoverPerson> people);
 
-/// The differences alone.
+/// Only the differences.
 [[nodiscard]] std::vector<double> differences_of(std::span<const CrossoverPerson> people);
 
-/// The answer under every choice of sessions and trials, judged.
+/// The answer under every selection of sessions and trials, with its decision.
 /// \return nothing if the study has no question
 [[nodiscard]] std::optional<PrimaryResult> primary_result(const Outcomes& outcomes);
 

@@ -48,12 +48,12 @@ std::set<int> people_with_all_visits(const Outcomes& outcomes, const Selection& 
                                      const FirstSessions& people) {
   int deciding = 0;
   for (int visit = 1; visit <= outcomes.design.visits.count; ++visit) {
-    deciding += outcomes.design.decides(visit) ? 1 : 0;
+    deciding += outcomes.design.enters_analysis(visit) ? 1 : 0;
   }
   std::map<int, std::set<int>> visits;
   for (const SessionOutcome& one : outcomes.sessions) {
     if (!selection.sessions.contains(one.row.session)) continue;
-    if (outcomes.design.decides(one.row.visit)) {
+    if (outcomes.design.enters_analysis(one.row.visit)) {
       visits[people.of(one.row.session)].insert(one.row.visit);
     }
   }
@@ -66,8 +66,9 @@ std::set<int> people_with_all_visits(const Outcomes& outcomes, const Selection& 
 
 std::string visit_words(const study::Study& study) {
   if (study.visits.count == 1) return "";
-  if (study.decides(1) && study.decides(study.visits.count)) return ", over all visits";
-  return study.decides(1) ? ", at the first visit" : ", at the last visit";
+  if (study.enters_analysis(1) && study.enters_analysis(study.visits.count))
+    return ", over all visits";
+  return study.enters_analysis(1) ? ", at the first visit" : ", at the last visit";
 }
 
 }  // namespace touchtrial::choices

@@ -121,7 +121,7 @@ Breakdown by_people(BreakdownKind kind, const std::vector<PlacedTrial>& trials, 
   return breakdown;
 }
 
-/// Tells whether any class has several images; only then does accuracy have a breakdown by image.
+/// Whether any class has several images, which is required for a breakdown by image.
 bool has_several_exemplars(const Outcomes& outcomes) {
   return std::ranges::any_of(outcomes.exemplars,
                              [](const auto& images) { return images.size() > 1; });

@@ -15,14 +15,14 @@ enum class BreakdownKind {
   trial,        ///< the place among a participant's scored trials of the method, from 1
   order_group,  ///< row of the Williams design of method blocks
   visit,        ///< of participants who come several times
-  group         ///< that participants were dealt into
+  group         ///< to which participants were assigned
 };
 
 struct GroupAccuracy {
   std::string group;
   Proportion accuracy;
   Interval wilson;
-  /// Of participants' own accuracies, with Student's interval; of visits and groups alone.
+  /// Mean of participants' own accuracies with Student's interval; only for visits and groups.
   std::optional<MeanEstimate> mean{};
 };
 
@@ -68,7 +68,7 @@ struct ReactionTimes {
 /// The reaction times of one method, by class; the last entry is for all classes together.
 [[nodiscard]] std::vector<ReactionTimes> reaction_times(const Outcomes& outcomes, int method);
 
-/// Answers that were rated alike.
+/// Answers with the same rating.
 struct RatedAccuracy {
   int rating = 1;
   Proportion accuracy;  ///< all participants' answers pooled

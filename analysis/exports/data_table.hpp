@@ -1,4 +1,4 @@
-/// \file The table of named columns that exports write, and its text as CSV and as TSV.
+/// \file A table of named columns for exports, and its text as CSV and as TSV.
 #pragma once
 
 #include <chrono>
@@ -29,7 +29,7 @@ template <typename Value>
   }
 }
 
-/// A time in UTC as ISO 8601; empty if participants are simulated, whose wall clock means nothing.
+/// A time in UTC as ISO 8601; empty for simulated participants, whose wall clock is meaningless.
 [[nodiscard]] DataCell utc_cell(std::chrono::nanoseconds at, bool simulated);
 
 struct DataTable {
@@ -40,9 +40,9 @@ struct DataTable {
 /// The exact time in seconds, with a decimal point and as many decimals as the nanoseconds need.
 [[nodiscard]] std::string seconds_text(std::chrono::nanoseconds time);
 
-/// A text of a person for a cell that a spreadsheet may open. Source: OWASP, "CSV Injection".
-/// \return `text` as core/printable.hpp shows it; with an apostrophe before it if it begins with =,
-///   +, -, @, a tab or a carriage return, which would make it a formula, and is not a number
+/// Free text made safe for a cell that a spreadsheet may open. Source: OWASP, "CSV Injection".
+/// \return `text` as core/printable.hpp shows it. It is preceded by an apostrophe if it is not a
+///   number and begins with =, +, -, @, a tab or a carriage return, which would make it a formula
 [[nodiscard]] std::string harmless_cell(const std::string& text);
 
 /// The text as a quoted string of R.

@@ -1,9 +1,11 @@
 #include "analysis/exports/dataset.hpp"
 
 #include "analysis/outcomes/collection.hpp"
+#include "analysis/outcomes/incidents.hpp"
 #include "analysis/outcomes/quality.hpp"
 #include "analysis/report/results.hpp"
 #include "analysis/report/text_figures.hpp"
+#include "record/event_kinds.hpp"
 
 #include <algorithm>
 #include <map>
@@ -13,7 +15,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// Tells whether a character is an ASCII letter or digit, in every locale.
+/// Whether a character is an ASCII letter or digit, in every locale.
 bool is_plain(char c) {
   return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }
@@ -26,52 +28,48 @@ ColumnMeaning yes_or_no(std::string description) {
 }
 
 Levels incident_levels() {
-  return {{"interrupted", "a presentation was broken off"},
-          {"break-taken", "a break that the study prescribes"},
-          {"paused", "the experimenter paused the session"},
-          {"resumed", "the session went on"},
-          {"stopped", "the session was ended early"},
-          {"noted", "the experimenter took a note"},
-          {"deviated", "something differed from what the study asks for"},
-          {"block-restarted", "a block was begun anew"},
-          {"participant-noted", "a note or deviation after the session"},
-          {"participant-excluded", "the session was excluded"},
-          {"participant-replaced", "somebody else took the participant's place"},
-          {"participant-withdrawn", "the participant withdrew"},
-          {"session-begins", "the session begins, or goes on after the program had ended"},
-          {"session-ends", "the session ends"},
-          {"plane-on", "a plane can be felt from now on"},
-          {"contact", "the stylus comes near the plane"},
-          {"plane-off", "the plane can no longer be felt"},
-          {"time-up", "the time to explore was over, and the force has faded"},
-          {"answered", "the participant answered"},
-          {"practised", "the participant answered in practice"}};
+  Levels levels;
+  for (const record::EventKind kind : incident_kinds()) {
+    const record::EventKindRow& row = record::row_of(kind);
+    levels.emplace_back(row.name, row.meaning);
+  }
+  const Levels marks{
+      {"session-begins", "the session begins, or goes on after the program had ended"},
+      {"session-ends", "the session ends"},
+      {"plane-on", "a plane can be felt from now on"},
+      {"contact", "the stylus comes near the plane"},
+      {"plane-off", "the plane can no longer be felt"},
+      {"time-up", "the time to explore was over, and the force has faded"},
+      {"answered", "the participant answered"},
+      {"practised", "the participant answered in practice"}};
+  levels.insert(levels.end(), marks.begin(), marks.end());
+  return levels;
 }
 
 Meanings of_trials() {
   const Levels states{{"answered", "the participant answered"},
                       {"timed-out", "time ran out without an answer"},
-                      {"interrupted", "broken off and never repeated"},
-                      {"voided", "its block was begun anew"},
+                      {"interrupted", "interrupted and never repeated"},
+                      {"voided", "its block was restarted"},
                       {"presented", "had not ended when the session did"}};
   const Levels kinds{{"scored", "may enter the report"},
                      {"lead-in", "starts a block and is not scored"},
                      {"catch",
-                      "a plane without texture, or the highest level of a track whose procedure "
-                      "does not hear of the answer; not scored"},
+                      "a plane without texture, or the highest level of a track, without an effect "
+                      "on its procedure; not scored"},
                      {"control", "with the hand off the device; not scored"}};
   return {
       {"trial", {"Number of the trial in its session, from 1"}},
       {"block", {"Number of the trial's block, from 0"}},
-      {"method", {"Method by which the texture was taken from its image"}},
+      {"method", {"Method by which the texture was extracted from its image"}},
       {"class", {"Texture that was presented"}},
       {"trial_type", {"Texture that was presented"}},
-      {"exemplar", {"Image that the presented texture was taken from"}},
-      {"stim_file", {"Image that the presented texture was taken from, below stimuli/"}},
+      {"exemplar", {"Image from which the presented texture was extracted"}},
+      {"stim_file", {"Image from which the presented texture was extracted, below stimuli/"}},
       {"motion_file",
        {"Recording of the trial, below the folder of the participant's session; its run is the "
         "trial"}},
-      {"response", {"Texture or other choice that the participant named"}},
+      {"response", {"Texture or other choice that the participant gave as the answer"}},
       {"correct", yes_or_no("Whether the response is the right one; a trial without a "
                             "response is wrong")},
       {"confidence", {"Confidence in the response, from 1 (a guess) upwards"}},
@@ -90,26 +88,26 @@ Meanings of_trials() {
       {"explorations", {"Times that the participant explored the plane before responding"}},
       {"first_contact_s", {"From the moment the plane can be felt to first contact", "s"}},
       {"position", {"Place of the response among the pictures shown, from 0"}},
-      {"first_position", {"Place of the first response, where it was changed once, from 0"}},
+      {"first_position", {"Place of the first response if it was changed, from 0"}},
       {"valid_in_clear",
-       yes_or_no("Validity by what was never sealed: how long the plane was explored")},
+       yes_or_no("Validity by the unsealed data: how long the plane was explored")},
       {"contact_ok", yes_or_no("Whether the hand was at the plane long enough")},
       {"path_ok", yes_or_no("Whether the hand moved far enough along the plane")},
       {"force_ok", yes_or_no("Whether the hand pushed neither too lightly nor too hard")},
       {"speed_ok", yes_or_no("Whether the hand moved neither too slowly nor too fast")},
-      {"within_limits", yes_or_no("Validity by what was sealed: path, force and saturation")},
+      {"within_limits", yes_or_no("Validity by the sealed data: path, force and saturation")},
       {"limited_ticks", {"Servo ticks whose force the safety chain changed"}},
       {"samples", {"Samples in the trial's trace"}},
       {"sampling_hz", {"Sampling rate of the trial's trace", "Hz"}},
       {"overruns", {"Servo ticks that came too late"}},
       {"paused",
-       {"Whether the session was paused while the answer was awaited, so that it has no reaction "
-        "times"}},
-      {"gain_db", {"Gain at which the plane was presented, re the prepared one", "dB"}},
-      {"track", {"Track that the trial belongs to, from 1; none with the hand off"}},
-      {"standard", {"What the track is about: a texture, and what comparisons differ from"}},
+       {"Whether the session was paused before the answer, which then has no reaction times"}},
+      {"gain_db", {"Gain of the presented plane relative to the prepared one", "dB"}},
+      {"track", {"Track of the trial, from 1; none with the hand off the device"}},
+      {"standard",
+       {"Standard of the track: a texture, and the value from which comparisons differ"}},
       {"level_db",
-       {"Level of the comparison: of detection its gain, of discrimination 20 log10 of the "
+       {"Level of the comparison: for detection its gain, for discrimination 20 log10 of the "
         "difference over the standard",
         "dB"}},
       {"picture", {"Texture whose picture was shown with the question"}},
@@ -123,8 +121,8 @@ Meanings of_sessions() {
       {"participant", {"The participant's id in the study"}},
       {"session", {"Number of the session in the study's database, from 1"}},
       {"enrolment", {"Number of enrolment, from 1; decides the order of presentation"}},
-      {"visit", {"Visit of the participant that the session is, from 1"}},
-      {"group", {"Group that the participant was dealt into"}},
+      {"visit", {"Number of the participant's visit, from 1"}},
+      {"group", {"Group to which the participant was assigned"}},
       {"session_state",
        {"How the session ended",
         "",
@@ -135,12 +133,12 @@ Meanings of_sessions() {
       {"withdrawn", yes_or_no("Whether the participant withdrew")},
       {"erased", yes_or_no("Whether the participant had the data erased")},
       {"pilot", yes_or_no("Whether the session is a pilot")},
-      {"simulated", yes_or_no("Whether the participant was simulated and is no person")},
+      {"simulated", yes_or_no("Whether the participant was simulated, not a person")},
       {"counted_session", yes_or_no("Whether the session's trials enter the report")},
       {"device", {"Driver of the haptic device"}},
-      {"replaced_by", {"Participant who took this one's place in the order of enrolment"}},
+      {"replaced_by", {"Participant who replaced this one in the order of enrolment"}},
       {"after_look",
-       {"What was decided about the session after its outcomes had been seen: excluded, replaced, "
+       {"Decisions about the session after its outcomes had been seen: excluded, replaced, "
         "erased"}},
       {"shown", yes_or_no("Whether outcomes of the session may be shown yet")},
   };
@@ -150,11 +148,10 @@ Meanings of_collection() {
   return {
       {"practice_rounds", {"Rounds of practice"}},
       {"practice_presentations", {"Textures presented in practice"}},
-      {"practice_correct", {"Of them: named correctly"}},
-      {"order_block",
-       {"Block within which the order of methods was dealt at random; negative: none"}},
+      {"practice_correct", {"Of them, answered correctly"}},
+      {"order_block", {"Block within which the order of methods was randomised; negative: none"}},
       {"practice_passed", yes_or_no("Whether practice was passed")},
-      {"resumed", {"Times that the session was taken up again after the program had ended"}},
+      {"resumed", {"Number of times that the session was resumed after the program had ended"}},
       {"stop_reason", {"Why the session was stopped"}},
       {"exclusion_reason", {"Why the session was excluded"}},
       {"replacement_reason", {"Why the participant was replaced"}},
@@ -162,24 +159,26 @@ Meanings of_collection() {
       {"largest_force_n", {"Largest force sent in the session's presentations", "N"}},
       {"station", {"Station that the session was collected from; empty in a station's own file"}},
       {"device_serial", {"Serial number of the haptic device"}},
-      {"device_model", {"Model of the haptic device, as it tells it"}},
-      {"device_firmware", {"Firmware of the haptic device, as it tells it"}},
+      {"device_model", {"Model of the haptic device, as reported by it"}},
+      {"device_firmware", {"Firmware of the haptic device, as reported by it"}},
       {"device_max_force_n", {"Largest force of the haptic device", "N"}},
       {"device_force_scale",
-       {"Felt newtons for one of the driver's, to the right, up and towards the person, as the lab "
-        "set them"}},
-      {"device_length_scale", {"True millimetres for one of the driver's, likewise"}},
+       {"Calibration by the laboratory: felt newtons per newton of the driver, to the right, up "
+        "and towards the person"}},
+      {"device_length_scale",
+       {"Calibration by the laboratory: true millimetres per millimetre of the driver, in the same "
+        "directions"}},
       {"certificate",
        {"SHA-256 of the certificate of the device's acceptance, or UNVERIFIED DEVICE"}},
-      {"servo_hz", {"Servo rate that was asked for", "Hz"}},
-      {"scheduling", {"Scheduling that the servo's thread obtained"}},
+      {"servo_hz", {"Requested servo rate", "Hz"}},
+      {"scheduling", {"Scheduling of the servo's thread"}},
       {"visual", yes_or_no("Whether textures were shown on a screen instead of felt")},
       {"interruptions", {"Presentations that were interrupted, repeated or not"}},
-      {"pauses", {"Times that the session was paused"}},
-      {"notes", {"Notes that were taken during the session"}},
+      {"pauses", {"Number of times that the session was paused"}},
+      {"notes", {"Number of notes made during the session"}},
       {"answers", {"Answers of a session that has ended"}},
-      {"one_key",
-       yes_or_no("Whether 95 % of 20 answers or more came from one key, where that is no outcome")},
+      {"one_key", yes_or_no("Whether 95 % of 20 answers or more came from one key; only if that "
+                            "does not reveal outcomes")},
   };
 }
 
@@ -188,33 +187,33 @@ Meanings of_what_was_said() {
       {"questionnaire", {"Name of the questionnaire"}},
       {"question", {"Id of the question"}},
       {"question_kind",
-       {"What answers the question",
+       {"Kind of answer to the question",
         "",
         {{"choice", "one of several options"}, {"number", "a number"}, {"text", "words"}}}},
-      {"wording", {"The question as it was asked"}},
+      {"wording", {"Wording of the question"}},
       {"answer", {"A number, or the place of the chosen option, from 0"}},
-      {"words", {"Text of the chosen option, or what was typed"}},
+      {"words", {"Text of the chosen option, or typed text"}},
       {"event", {"Place of the event in its chain"}},
       {"incident", {"What happened", "", incident_levels()}},
       {"at_s", {"Time since the session's opening", "s"}},
       {"onset",
        {"Time since the session's opening; in motion/, since the first sample of the run", "s"}},
-      {"duration", {"How long it lasted; n/a: not recorded", "s"}},
+      {"duration", {"Duration; n/a: not recorded", "s"}},
       {"exploration",
        {"Which of the trial's explorations begins, from 1; if a trial presents several planes, "
         "each is explored once"}},
       {"code",
-       {"Why: the reason of an interruption, the program's reason for a stop, the code of a "
-        "deviation, what a session was resumed after"}},
-      {"mark", {"Event that other instruments were told of"}},
-      {"value", {"Code of the event that other instruments were told of"}},
+       {"Reason of an interruption, the program's reason for a stop, code of a deviation, or cause "
+        "of a resumption"}},
+      {"mark", {"Event that was sent to other instruments"}},
+      {"value", {"Code of the event that was sent to other instruments"}},
       {"latency_s", {"From the event to the end of the write on the serial line", "s"}},
       {"lsl_time", {"Time of the event on the Lab Streaming Layer's clock", "s"}},
       {"lsl_s", {"Time of the event on the Lab Streaming Layer's clock", "s"}},
       {"lsl_uncertainty_s", {"Uncertainty of that clock's reading", "s"}},
       {"safety_fault", {"Fault that the safety chain found"}},
       {"device_fault", {"Fault that the device reported"}},
-      {"text", {"What was typed"}},
+      {"text", {"Typed text"}},
       {"consent", {"Number of the participant's consent, from 1"}},
       {"consent_version", {"Version of the consent form that was signed"}},
   };
@@ -226,8 +225,9 @@ Meanings of_participants() {
       {"session_id", {"The session's label in this dataset"}},
       {"filename", {"File, below the folder of the participant's session"}},
       {"acq_time",
-       {"When the first sample was taken. Every first session opens on 1920-01-01 at 00:00:00, "
-        "and later ones as many days after it as they were; simulated ones have no day"}},
+       {"Time of the first sample. Dates are shifted: each participant's first session opens on "
+        "1920-01-01 at 00:00:00, and later ones the true number of days after it; simulated "
+        "sessions have no date"}},
       {"age_band", {"Age as the participant gave it, in bands of ten years"}},
       {"sex", {"Sex or gender as the participant gave it"}},
       {"handedness",
@@ -284,9 +284,9 @@ std::string about_study(const DatasetSource& study) {
         "SIMULATED: every participant in this dataset is a program. Nothing in it comes from a "
         "person.\n\n";
   }
-  if (commitment.pilot) text += "A pilot: not to be pooled with the study's data.\n\n";
+  if (commitment.pilot) text += "A pilot: do not pool with the study's data.\n\n";
   text += fmt::format(
-      "A psychophysical study of textures that are felt through a force-feedback device, recorded "
+      "A psychophysical study of textures felt through a force-feedback device, recorded "
       "with Touchtrial {}. Protocol: {}; {}{} scored trials a participant; {} that count{}.\n\n",
       commitment.program_version, commitment.protocol,
       has_choices ? fmt::format("{} {} to choose from; ", commitment.positions,
@@ -295,14 +295,13 @@ std::string about_study(const DatasetSource& study) {
       commitment.scored_trials, counted(counts, "completed session"), counts == 1 ? "s" : "");
   text +=
       study.outcomes != nullptr
-          ? "Participants who had their data erased are not in it. A trial enters the report where "
+          ? "Participants who had their data erased are not included. A trial enters the report if "
             "`counted` is 1: its session was completed and not excluded, it is scored, and it "
             "ended. " +
                 std::string(has_choices ? "A trial without a response counts as wrong.\n\n"
                                         : "A trial without an answer has no rating.\n\n")
-          : "Exported before unblinding: what was presented and answered, and when, is "
-            "sealed, and practice, lead-ins and catch trials cannot be told from scored "
-            "trials.\n\n";
+          : "Exported before unblinding: stimuli, answers and their times are sealed, and "
+            "practice, lead-ins and catch trials cannot be distinguished from scored trials.\n\n";
   return text;
 }
 

@@ -1,8 +1,7 @@
-/// \file What the datasets for archives share: their source, the options that their publisher
-/// chooses, labels, and the meanings of columns.
+/// \file Common parts of the dataset formats: source, options, labels, and the meanings of columns.
 #pragma once
 
-#include "analysis/exports/said_tables.hpp"
+#include "analysis/exports/people_tables.hpp"
 #include "analysis/outcomes/outcomes.hpp"
 
 #include <filesystem>
@@ -14,7 +13,7 @@
 
 namespace touchtrial::analysis {
 
-/// A study and, after unblinding, its outcomes and its key: both or neither.
+/// A study and, after unblinding, both its outcomes and its key.
 struct DatasetSource {
   const record::StudyStore& store;
   const Outcomes* outcomes = nullptr;
@@ -28,7 +27,7 @@ struct DatasetOptions {
   bool traces = false;               ///< includes positions and forces of every trial
   bool stimuli = false;              ///< includes the study's images
   std::filesystem::path database{};  ///< a database to copy into the dataset; empty: none
-  Typed typed = Typed::left_out;     ///< answers in words, notes and reasons, which may name people
+  Typed typed = Typed::left_out;  ///< free-text answers, notes and reasons, which may name people
   std::vector<record::PersonalRecord> consents{};  ///< of the personal data, if they are known
   std::function<void(int done, int of)> progress{};
 };
@@ -41,22 +40,22 @@ struct DatasetOptions {
 /// The letters and digits of a name; "study" if it has none.
 [[nodiscard]] std::string plain_label(const std::string& name);
 
-/// The part of a README that every format has: how the data were collected, and what is still
+/// The part of the README that all formats share: how the data were collected, and what is still
 /// sealed.
 [[nodiscard]] std::string about_study(const DatasetSource& study);
 
 /// The report as JSON; before unblinding, the report on quality.
-/// \param typed  left_out: without answers in words
+/// \param typed  left_out: without free-text answers
 [[nodiscard]] std::string report_in_dataset(const DatasetSource& study, Typed typed);
 
-/// What an exported column means; docs/data-dictionary.md, "Exports", says the same.
+/// The meaning of an exported column, as in docs/data-dictionary.md, "Exports".
 struct ColumnMeaning {
   std::string description;
   std::string unit{};                                         ///< a BIDS unit; empty: none
-  std::vector<std::pair<std::string, std::string>> levels{};  ///< values and what they mean
+  std::vector<std::pair<std::string, std::string>> levels{};  ///< values and their meanings
 };
 
-/// The beginning of the columns of ratings, which the id of their scale follows.
+/// The prefix of rating columns, followed by the scale's id.
 inline constexpr std::string_view kRatingColumn = "rating_";
 
 /// \param column  its name in the CSV files or in BIDS

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the mark of a folder says.
+/// The content of a folder's mark.
 struct FolderMark {
   std::string study;
   std::string study_id;
@@ -42,7 +42,7 @@ FolderMark read_folder_mark(const fs::path& path) {
     return mark;
   } catch (const nlohmann::json::exception&) {
     throw FileError(one_line(path.string()) +
-                    ": is no mark of an export; give another folder, or remove that file");
+                    ": is not an export's mark file; give another folder, or remove that file");
   }
 }
 
@@ -51,11 +51,11 @@ void make_export_folder(const fs::path& folder) {
   fs::create_directories(folder, error);
   if (fs::is_directory(folder)) return;
   const std::string reason = error ? error.message() : "a file of that name exists";
-  throw FileError(one_line(folder.string()) + ": cannot be made a folder (" + reason +
+  throw FileError(one_line(folder.string()) + ": cannot create the folder (" + reason +
                   "); give another folder or change its permissions");
 }
 
-/// The names of the files as a mark lists them, sorted.
+/// The file names, sorted, as in a mark.
 std::set<std::string> names_of(const std::vector<ExportFile>& files) {
   std::set<std::string> names;
   for (const ExportFile& file : files) names.insert(file.name.generic_string());
@@ -69,7 +69,7 @@ FolderMark mark_of(const fs::path& folder, const ExportMark& mark) {
   if (found.study_id == mark.study_id) return found;
   throw FileError(one_line(folder.string()) + ": holds an export of study " +
                   one_line(found.study) + " (" + one_line(found.study_id) +
-                  "), another than this one; give another folder");
+                  "), not of this one; give another folder");
 }
 
 /// An export may replace a file that another format of this study wrote under the same name.
@@ -87,7 +87,7 @@ void require_no_other_dataset(const fs::path& folder, const ExportMark& mark,
   }
 }
 
-/// Tells whether a name stays inside the folder. The name comes from a file that anybody may have
+/// Whether a name stays inside the folder. The name comes from a mark file, which anybody may have
 /// edited.
 bool stays_inside(const std::string& name) {
   const fs::path path(name);
@@ -95,8 +95,8 @@ bool stays_inside(const std::string& name) {
          std::none_of(path.begin(), path.end(), [](const fs::path& part) { return part == ".."; });
 }
 
-/// Checks the places of all files that are to be written or removed.
-/// \return those listed that their file system cannot mark as outputs
+/// Checks all paths that will be written or removed.
+/// \return the listed files whose file system cannot mark them as outputs
 std::set<std::string> unmarked_files(const fs::path& folder, const FolderMark& found,
                                      const std::set<std::string>& names,
                                      const std::set<std::string>& before) {
@@ -122,9 +122,8 @@ void remove_obsolete(const fs::path& folder, const std::string& name) {
   std::error_code error;
   fs::remove(folder / name, error);
   if (error) {
-    throw FileError(one_line((folder / name).string()) +
-                    ": is no longer part of the export and cannot be removed (" + error.message() +
-                    "); remove it");
+    throw FileError(one_line((folder / name).string()) + ": is obsolete and cannot be removed (" +
+                    error.message() + "); remove it");
   }
   for (fs::path above = fs::path(name).parent_path(); !above.empty(); above = above.parent_path()) {
     if (!fs::remove(folder / above, error)) return;

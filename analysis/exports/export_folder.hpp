@@ -1,5 +1,4 @@
-/// \file Writes exports into a folder. A folder holds the exports of one study and no obsolete
-/// files of them.
+/// \file Writes exports into a folder, which holds the exports of one study and no obsolete files.
 #pragma once
 
 #include "core/files.hpp"
@@ -16,14 +15,14 @@ struct ExportFile {
   std::filesystem::path name;  ///< relative to the export's folder
   /// Writes the whole file as an output or throws. The folder of the file exists.
   std::function<void(const std::filesystem::path&)> write;
-  /// Writing takes long and may run on any thread, at the same time as other concurrent files.
+  /// Writing is slow and may run on any thread, concurrently with other such files.
   bool concurrent = false;
 };
 
-/// A file whose content is made when the file is written.
+/// A file whose content is generated when it is written.
 [[nodiscard]] ExportFile text_file(std::filesystem::path name,
                                    std::function<std::string()> content);
-/// A file whose content is known already.
+/// A file with this content.
 [[nodiscard]] ExportFile text_file(std::filesystem::path name, std::string content,
                                    FileMode mode = FileMode::everyone);
 
@@ -40,9 +39,8 @@ inline constexpr const char* kExportMark = ".touchtrial-export.json";
 /// Writes every file atomically into a folder, which it creates if necessary. Then removes the
 /// files that the last export of this format wrote there and that this export does not have (for
 /// example, those of a participant whose data were erased since). A mark in the folder keeps the
-/// list of files. The mark is updated before the first file is written, so that an export that was
-/// cut short can be repeated. Concurrent files are written last, as many at a time as there are
-/// cores.
+/// list of files. The mark is updated before the first file is written, so that an interrupted
+/// export can be repeated. Concurrent files are written last, on all cores.
 /// \return the files, in the order given
 /// \throws FileError if the folder or a file cannot be written
 /// \throws FileError, before anything is written, if the folder holds the export of another study

@@ -2,7 +2,7 @@
 
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/exports/export_tables.hpp"
-#include "analysis/exports/said_tables.hpp"
+#include "analysis/exports/people_tables.hpp"
 #include "analysis/exports/study_tables.hpp"
 #include "analysis/exports/trial_tables.hpp"
 #include "analysis/outcomes/incidents.hpp"
@@ -21,7 +21,7 @@ namespace {
 
 using record::EventKind;
 
-/// The rows that have one of the values in a column.
+/// The rows with one of the values in a column.
 DataTable rows_with(DataTable table, const std::string& column, const std::set<DataCell>& values) {
   const auto found = std::ranges::find(table.columns, column);
   const auto at = static_cast<std::size_t>(found - table.columns.begin());
@@ -48,7 +48,7 @@ DataTable visits_of(const record::StudyStore& store, const std::vector<record::S
   return table;
 }
 
-/// One row for each consent, with what was given then.
+/// One row for each consent, with the data given then.
 DataTable personal_table(const std::vector<record::PersonalRecord>& consents) {
   DataTable table{{"participant", "consent_version", "consented_utc", "age", "gender", "contact"},
                   {}};
@@ -65,12 +65,12 @@ DataTable personal_table(const std::vector<record::PersonalRecord>& consents) {
 constexpr std::array kSafetyKinds = {EventKind::interrupted, EventKind::stopped,
                                      EventKind::deviated};
 
-/// A remark without a code is no part of the safety record.
+/// A remark without a code is not part of the safety record.
 bool is_of_safety(const Incident& incident) {
   return incident.kind != EventKind::participant_noted || !incident.code.empty();
 }
 
-/// Over which presentations a session's largest force was found.
+/// The presentations over which a session's largest force was found.
 enum class ForceOf { none, session, so_far, unknown };
 
 DataCell force_words(ForceOf source) {
@@ -100,7 +100,7 @@ class SafetyRecord {
       Session& session = sessions_.at(stored.session);
       const record::Event event = readable(stored, session.row);
       if (!event.sealed.empty()) return;
-      session.largest_force_n = record::closed_from_json(event.body).largest_force_n;
+      session.largest_force_n = record::from_json<record::ClosedBody>(event.body).largest_force_n;
       session.force_of = session.largest_force_n ? ForceOf::session : ForceOf::none;
     });
     for (auto& [number, session] : sessions_) {
@@ -137,8 +137,8 @@ class SafetyRecord {
     std::int64_t deviations = 0;
   };
 
-  /// The largest force of a session that has not ended is sealed in its events, under the
-  /// participant's key. Nothing else of them is kept.
+  /// Reads the largest force of open sessions from their events, which are sealed under the
+  /// participant's key. Keeps nothing else from them.
   void open_forces(const record::StudyStore& store, Session& session) const {
     const auto own = keys_.find(session.row.session);
     if (own == keys_.end() || !own->second.participant) return;
@@ -147,8 +147,10 @@ class SafetyRecord {
       const bool is_trace = stored.kind == EventKind::trace_stored;
       if (!is_trace && stored.kind != EventKind::interrupted) continue;
       const record::Event event = whole_event(stored, *own->second.participant).event;
-      const double force_n = is_trace ? record::trace_body_from_json(event.body).largest_force_n
-                                      : record::trial_from_json(event.body).largest_force_n;
+      const double force_n = is_trace
+                                 ? record::from_json<record::TraceBody>(event.body).largest_force_n
+                                 : record::from_json<record::InterruptedBody>(event.body)
+                                       .largest_force_n.value_or(0.0);
       session.largest_force_n =
           std::max(session.largest_force_n.value_or(0.0), record::in_tenths(force_n));
       session.force_of = ForceOf::so_far;
@@ -173,8 +175,8 @@ class SafetyRecord {
     row.push_back(flag(session.row.simulated));
   }
 
-  /// With its text, if the safety key opens it. Interruptions are never opened: their sealed part
-  /// has what was felt.
+  /// The event with its text, if the safety key opens it. Interruptions are never opened, because
+  /// their sealed part records what was felt.
   [[nodiscard]] record::Event readable(const record::Event& event,
                                        const record::SessionRow& row) const {
     const auto own = keys_.find(row.session);
@@ -219,12 +221,12 @@ std::vector<std::filesystem::path> export_participant(
       rows_with(deviations_table(collection, commitment.simulated), "participant", id));
   add("servo.csv", rows_with(servo_table(collection, commitment.simulated), "session", sessions));
   const DataTable incidents = rows_with(incidents_table(store, outcomes), "participant", id);
-  files.push_back(said_file(prefix + "incidents.csv", incidents, outcomes.has_value()));
+  files.push_back(text_table_file(prefix + "incidents.csv", incidents, outcomes.has_value()));
   if (!consents.empty()) {
-    files.push_back(said_file(prefix + "personal.csv", personal_table(consents), true));
+    files.push_back(text_table_file(prefix + "personal.csv", personal_table(consents), true));
   }
   if (outcomes) {
-    files.push_back(said_file(prefix + "answers.csv", answers_table(*outcomes), true));
+    files.push_back(text_table_file(prefix + "answers.csv", answers_table(*outcomes), true));
     add("unscored_trials.csv", unscored_table(*outcomes));
     for (ExportFile& file : event_files(store, *study.key, *outcomes, prefix)) {
       files.push_back(std::move(file));

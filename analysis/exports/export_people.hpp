@@ -11,11 +11,11 @@
 
 namespace touchtrial::analysis {
 
-/// Writes what a study holds about one participant: the rows of participants.csv, trials.csv,
+/// Writes a study's data about one participant: the rows of participants.csv, trials.csv,
 /// deviations.csv, incidents.csv and servo.csv, the times of the sessions, and every consent with
-/// the personal data. With outcomes also the unscored trials, answers to questions, and the events
+/// the personal data. With outcomes, also the unscored trials, answers to questions, and the events
 /// with flight records. The id is the beginning of every file's name.
-/// \param study  with outcomes: load_outcomes of this participant; without, only what is in clear
+/// \param study  with outcomes: load_outcomes of this participant; without: only unencrypted data
 /// \param consents  of this participant; empty: none is recorded
 /// \return the files, in the order written
 /// \throws StoreError if the participant has no session and no personal data
@@ -26,8 +26,9 @@ std::vector<std::filesystem::path> export_participant(
     const std::vector<record::PersonalRecord>& consents, const std::filesystem::path& folder);
 
 /// Writes safety_sessions.csv and safety_events.csv: stops, faults, largest forces, reasons and
-/// deviations of all participants, also of those whose data were erased. Never holds an outcome.
-/// \param key  opens the texts that are left; null: codes alone
+/// deviations of all participants, also of those whose data were erased. They never contain
+/// outcomes.
+/// \param key  opens the remaining texts; null: codes only
 /// \return the files, in the order written
 /// \throws VerificationError if the key does not match the database, or a text does not open
 /// \throws FileError if the folder or a file cannot be written

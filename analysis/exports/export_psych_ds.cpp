@@ -34,7 +34,7 @@ std::string description_of(const record::StudyCommitment& commitment) {
   return fmt::format(
       "{}{}Textures felt through a force-feedback device, {} in each trial. Protocol: {}.",
       commitment.simulated ? "SIMULATED: every participant is a program. " : "",
-      commitment.pilot ? "A pilot, not to be pooled with the study's data. " : "",
+      commitment.pilot ? "A pilot; do not pool with the study's data. " : "",
       commitment.positions > 0 ? fmt::format("one of {} named", commitment.positions) : "one rated",
       commitment.protocol);
 }
@@ -65,7 +65,7 @@ std::string psych_ds_readme(const DatasetSource& study) {
          "`data/*_description-trials_data.csv` has one row a trial, its key the columns `session` "
          "and `trial`; `data/*_description-participants_data.csv` one row a session, its key "
          "`session`; the others one row for each answer to a question, incident or consent. "
-         "`dataset_description.json` says what each column means.\n";
+         "`dataset_description.json` explains each column.\n";
 }
 
 /// The table of participants.csv without participants whose data were erased. Columns that have the

@@ -12,8 +12,7 @@ namespace touchtrial::analysis {
 /// Uses only `authors`, `license`, `typed` and `consents` of the options. Before unblinding, the
 /// trials contain no more than those of the CSV export.
 /// \return the files, in the order written
-/// \throws FileError if the folder or a file cannot be written, or the folder holds files of
-/// something else
+/// \throws FileError if the folder or a file cannot be written, or the folder holds other files
 std::vector<std::filesystem::path> export_psych_ds(const DatasetSource& study,
                                                    const DatasetOptions& options,
                                                    const std::filesystem::path& folder);

@@ -1,7 +1,7 @@
 #include "analysis/exports/export_tables.hpp"
 
 #include "analysis/exports/export_folder.hpp"
-#include "analysis/exports/said_tables.hpp"
+#include "analysis/exports/people_tables.hpp"
 #include "analysis/exports/study_tables.hpp"
 #include "analysis/exports/trial_tables.hpp"
 #include "analysis/outcomes/collection.hpp"
@@ -9,6 +9,7 @@
 #include "analysis/report/json_figures.hpp"
 #include "analysis/report/results.hpp"
 #include "core/strict_json.hpp"
+#include "record/event_kinds.hpp"
 #include "record/payload_json.hpp"
 
 #include <algorithm>
@@ -18,6 +19,7 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -27,7 +29,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The contents of the folder, for readers who do not know the program.
+/// A description of the folder's files, for readers who do not know the program.
 std::string contents_json(const record::StudyStore& store, bool blinded,
                           const std::vector<ExportFile>& files) {
   const record::StudyCommitment& commitment = store.commitment();
@@ -43,26 +45,24 @@ std::string contents_json(const record::StudyStore& store, bool blinded,
 }
 
 /// The kinds of events that no other export lists one by one.
-constexpr std::array kKinds = {record::EventKind::participant_noted,
-                               record::EventKind::calibrated,
-                               record::EventKind::instructed,
-                               record::EventKind::practised,
-                               record::EventKind::interrupted,
-                               record::EventKind::break_taken,
-                               record::EventKind::paused,
-                               record::EventKind::stopped,
-                               record::EventKind::noted,
-                               record::EventKind::ticked,
-                               record::EventKind::deviated,
-                               record::EventKind::questioned,
-                               record::EventKind::explored_again,
-                               record::EventKind::block_restarted,
-                               record::EventKind::resumed};
+std::vector<record::EventKind> listed_kinds() {
+  using record::EventKind;
+  constexpr std::array kElsewhere = {
+      EventKind::opened,    EventKind::presented,    EventKind::first_contact, EventKind::answered,
+      EventKind::timed_out, EventKind::trace_stored, EventKind::marked,        EventKind::closed};
+  std::vector<EventKind> kinds = {EventKind::participant_noted};
+  for (const record::EventKindRow& row : record::event_kinds()) {
+    if (!belongs_to_file_chain(row.kind) && !std::ranges::count(kElsewhere, row.kind)) {
+      kinds.push_back(row.kind);
+    }
+  }
+  return kinds;
+}
 
 /// The detail of an interruption. Empty for other events, and for interruptions in virtual time.
 record::InterruptionDetail detail_of(const record::OpenedEvent& opened) {
   if (opened.event.kind != record::EventKind::interrupted || opened.secret.empty()) return {};
-  return record::interruption_from_json(opened.secret);
+  return record::from_json<record::InterruptionDetail>(opened.secret);
 }
 
 record::OpenedEvent whole(const record::Event& event, const record::SessionRow& row,
@@ -104,7 +104,7 @@ std::vector<ExportFile> csv_files(const std::vector<ResultTable>& tables,
                                   const std::string& start = {}) {
   std::vector<ExportFile> files;
   for (const ResultTable& one : tables) {
-    files.push_back(said_file(one.file, one.table, one.has_words, start));
+    files.push_back(text_table_file(one.file, one.table, one.has_words, start));
   }
   return files;
 }
@@ -120,7 +120,7 @@ std::vector<ResultTable> exported_tables(const record::StudyStore& store,
                                      {"participants.csv", participants_table(store, collection)},
                                      {"deviations.csv", deviations_table(collection, simulated)},
                                      {"servo.csv", servo_table(collection, simulated)}};
-  std::ranges::move(said_tables(store, outcomes, consents), std::back_inserter(tables));
+  std::ranges::move(people_tables(store, outcomes, consents), std::back_inserter(tables));
   if (outcomes) {
     std::ranges::move(analysis_of(outcomes->design).tables(*outcomes), std::back_inserter(tables));
     tables.push_back({"unscored_trials.csv", unscored_table(*outcomes)});
@@ -147,8 +147,8 @@ std::vector<std::filesystem::path> export_typed_text(
     const record::StudyStore& store, const Outcomes& outcomes, const std::filesystem::path& folder,
     const std::vector<record::PersonalRecord>& consents) {
   const record::StudyCommitment& commitment = store.commitment();
-  return write_export(folder, {commitment.study, commitment.study_id, "r, what was said"},
-                      csv_files(said_tables(store, outcomes, consents)));
+  return write_export(folder, {commitment.study, commitment.study_id, "r, typed text"},
+                      csv_files(people_tables(store, outcomes, consents)));
 }
 
 std::vector<ExportFile> event_files(const record::StudyStore& store, const study::StudyKey& key,
@@ -160,7 +160,7 @@ std::vector<ExportFile> event_files(const record::StudyStore& store, const study
                    "safety_fault", "device_fault", "flight", "simulated"},
                   {}};
   std::vector<ExportFile> files;
-  store.for_each_of(kKinds, [&](const record::Event& stored) {
+  store.for_each_of(listed_kinds(), [&](const record::Event& stored) {
     const auto session = shown.find(record::session_about(stored));
     if (session == shown.end()) return;
     const record::SessionRow& row = *session->second;

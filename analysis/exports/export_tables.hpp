@@ -23,14 +23,14 @@ inline constexpr const char* kByteOrderMark = "\xEF\xBB\xBF";
     const record::StudyStore& store, const std::optional<Outcomes>& outcomes,
     const std::vector<record::PersonalRecord>& consents = {});
 
-/// Writes trials.csv, participants.csv, deviations.csv, servo.csv, said_tables and study.csv. With
-/// outcomes it also writes the tables of the protocol's analysis (for example,
+/// Writes trials.csv, participants.csv, deviations.csv, servo.csv, people_tables and study.csv.
+/// With outcomes it also writes the tables of the protocol's analysis (for example,
 /// confusion_<method>.csv for each presented method), unscored_trials.csv and study_file.json. The
 /// last file is export.json, which lists the others and says whether they are simulated. Creates
-/// the folder if necessary; files that no export wrote stay. Equal studies give equal bytes.
+/// the folder if necessary; files that no export wrote are kept. Equal studies give equal bytes.
 /// \param outcomes  of this store; nothing before unblinding
 /// \param consents  of the personal data, if they are known
-/// \param start  of each CSV file: Excel takes a file for UTF-8 only after kByteOrderMark
+/// \param start  the start of each CSV file; Excel reads UTF-8 only after kByteOrderMark
 /// \return the files, in the order written
 /// \throws FileError if the folder or a file cannot be written
 std::vector<std::filesystem::path> export_csv(
@@ -38,7 +38,7 @@ std::vector<std::filesystem::path> export_csv(
     const std::filesystem::path& folder, const std::vector<record::PersonalRecord>& consents = {},
     const std::string& start = {});
 
-/// Writes said_tables beside those of the protocol's `export_model`.
+/// Writes people_tables beside those of the protocol's `export_model`.
 /// \return the files, in the order written
 /// \throws FileError if the folder or a file cannot be written
 std::vector<std::filesystem::path> export_typed_text(
@@ -46,8 +46,8 @@ std::vector<std::filesystem::path> export_typed_text(
     const std::vector<record::PersonalRecord>& consents);
 
 /// Writes events.csv and one file for each flight record. Contains the sessions whose outcomes may
-/// be shown, without those of participants whose data were erased. Requires unblinding, because the
-/// forces before a fault can tell textures apart.
+/// be shown, except those of participants whose data were erased. Requires unblinding, because the
+/// forces before a fault can reveal textures.
 /// \param outcomes  of this store, opened with `key`
 /// \return the files, in the order written
 /// \throws VerificationError, naming the event, if a sealed part does not open

@@ -139,7 +139,7 @@ void add_record(std::vector<DataCell>& row, const SessionRecord& record, bool un
   }
 }
 
-/// What was decided about a session after a look at its outcomes, separated by "; ".
+/// The decisions about a session after a look at its outcomes, separated by "; ".
 std::string decided_after_look(const LookRecord& looked, int session) {
   std::vector<std::string> decided;
   if (looked.excluded_afterwards.contains(session)) decided.emplace_back("excluded");

@@ -1,5 +1,4 @@
-/// \file Tables on the study and on how it was collected. Columns: docs/data-dictionary.md,
-/// "Exports".
+/// \file Tables about the study and its collection. Columns: docs/data-dictionary.md, "Exports".
 #pragma once
 
 #include "analysis/exports/data_table.hpp"
@@ -10,9 +9,8 @@
 
 namespace touchtrial::analysis {
 
-/// The study as a whole. Each row has a key, the item that it belongs to (the class of an
-/// exemplar), and a value. Classes, exemplars and methods appear in their order, and only with
-/// outcomes.
+/// The study as rows of key, item (such as the class of an exemplar) and value. Classes, exemplars
+/// and methods appear in their order, and only with outcomes.
 [[nodiscard]] DataTable study_table(const record::StudyStore& store,
                                     const std::optional<Outcomes>& outcomes,
                                     const Collection& collection);
@@ -24,10 +22,10 @@ namespace touchtrial::analysis {
                                            const Collection& collection);
 
 /// Adds `visit` to a table with a column `session`, and `group`, if the study has several visits or
-/// groups. Without a group that may be shown, the cell is empty.
+/// groups. The cell of a hidden group is empty.
 void add_visit_and_group(DataTable& table, const Collection& collection);
 
-/// One row for each deviation from the protocol, ordered by session and then by when it was noted.
+/// One row for each deviation from the protocol, ordered by session and time of recording.
 [[nodiscard]] DataTable deviations_table(const Collection& collection, bool simulated);
 
 /// The servo's timing: one row for each trial that ran in real time, none for simulated sessions.
@@ -36,7 +34,7 @@ void add_visit_and_group(DataTable& table, const Collection& collection);
 /// The looks at outcomes, in their order.
 [[nodiscard]] DataTable looks_table(const Outcomes& outcomes);
 
-/// The collection of the outcomes; without outcomes, the collection that the store holds in clear.
+/// The collection of the outcomes; without outcomes, the store's unencrypted collection.
 [[nodiscard]] Collection collection_of(const record::StudyStore& store,
                                        const std::optional<Outcomes>& outcomes);
 

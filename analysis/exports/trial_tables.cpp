@@ -19,8 +19,8 @@ DataCell response_of(const TrialView& trial) {
   return trial.study->choices[*trial.outcome->response];
 }
 
-/// Empty for a trial that did not end, so that the mean of the column is an accuracy, and where no
-/// response is right.
+/// Empty if the trial did not end, so that the column's mean is an accuracy, and if no response is
+/// right.
 DataCell correctness_of(const TrialView& trial) {
   if (!trial.outcome->right) return std::monostate{};
   if (!has_stimulus(trial) && !trial.outcome->chosen) return std::monostate{};
@@ -30,7 +30,7 @@ DataCell correctness_of(const TrialView& trial) {
   return flag(trial.outcome->correct());
 }
 
-/// A trial with several planes: of which class and method its track is.
+/// Whether the trial has several planes and belongs to a track, which gives its class and method.
 bool is_of_track(const TrialView& trial) {
   return trial.outcome->chosen && trial.outcome->chosen->track > 0;
 }
@@ -86,8 +86,8 @@ DataCell within(const TrialView& trial) {
   return flag(trial.row.hand.*kWindow);
 }
 
-/// The verdict of the validity rule, which judges the trace; missing without a trace. Before
-/// unblinding, the verdict of the part of the rule that is in clear.
+/// The verdict of the validity rule; missing without a trace. Before unblinding, the verdict of the
+/// rule's clear part.
 DataCell validity_of(const TrialView& trial) {
   if (!trial.row.has_trace()) return std::monostate{};
   return flag(trial.outcome != nullptr ? trial.outcome->valid() : trial.row.valid);
@@ -175,7 +175,7 @@ DataTable blinded_trials(const record::StudyStore& store) {
   return table;
 }
 
-DataTable trials_that_are(bool scored, const Outcomes& outcomes) {
+DataTable trials_if_scored(bool scored, const Outcomes& outcomes) {
   const std::vector<TrialColumn> columns = trial_columns_of(&outcomes);
   DataTable table = trials_header(columns, true);
   for (const TrialOutcome& trial : outcomes.trials) {
@@ -207,7 +207,7 @@ const std::string& image_of(const Outcomes& study, const TrialOutcome& trial) {
 }
 
 DataTable trials_table(const record::StudyStore& store, const std::optional<Outcomes>& outcomes) {
-  if (outcomes) return trials_that_are(true, *outcomes);
+  if (outcomes) return trials_if_scored(true, *outcomes);
   DataTable table = blinded_trials(store);
   const Prescription study = prescription_from_json(store.commitment().configuration);
   const bool has_more = study.visits > 1 || !study.groups.empty();
@@ -216,7 +216,7 @@ DataTable trials_table(const record::StudyStore& store, const std::optional<Outc
 }
 
 DataTable unscored_table(const Outcomes& outcomes) {
-  return trials_that_are(false, outcomes);
+  return trials_if_scored(false, outcomes);
 }
 
 }  // namespace touchtrial::analysis

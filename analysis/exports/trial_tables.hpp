@@ -28,29 +28,28 @@ struct TrialColumn {
   std::function<DataCell(const TrialView&)> value;
 };
 
-/// The columns that every protocol has, in the order of trials.csv.
+/// The columns of all protocols, in the order of trials.csv.
 [[nodiscard]] std::span<const TrialColumn> trial_columns();
 
-/// These; where gains are roved, "gain_db"; and the columns of the protocol's analysis.
+/// trial_columns(), "gain_db" if gains are roved, and the columns of the protocol's analysis.
 /// \param outcomes  null before unblinding
 /// \throws StudyError if the study's protocol has no analysis
 [[nodiscard]] std::vector<TrialColumn> trial_columns_of(const Outcomes* outcomes);
 
-/// The file name of a trial's image, as the study gives it.
+/// The file name of a trial's image, as in the study.
 [[nodiscard]] const std::string& image_of(const Outcomes& study, const TrialOutcome& trial);
 
 /// One row for each trial, ordered by session and trial, without participants whose data were
-/// erased. With outcomes, the rows are the scored trials, whether or not their session counts
-/// (participants_table tells). Without outcomes, the rows are all presented trials, because the
-/// seal also covers which of them were practice or lead-ins. The table then has no columns about
-/// stimuli, answers and times, and the columns that could tell stimuli apart by how they felt
-/// (contact_s, path_mm, force_rms_n, saturated_share) are empty. The last columns are those of
-/// add_visit_and_group.
+/// erased. With outcomes, the rows are the scored trials, whether or not their session counts (see
+/// participants_table). Without outcomes, the rows are all presented trials, because it is sealed
+/// which of them were practice or lead-ins. The table then has no columns about stimuli, answers
+/// and times, and the columns that could reveal stimuli (contact_s, path_mm, force_rms_n,
+/// saturated_share) are empty. The last columns are those of add_visit_and_group.
 [[nodiscard]] DataTable trials_table(const record::StudyStore& store,
                                      const std::optional<Outcomes>& outcomes);
 
 /// The trials that are not scored: lead-ins and catch trials, with the columns of trials_table.
-/// They show what came before each scored trial. A catch trial has neither class nor method.
+/// With them, the order of all presentations is known. A catch trial has neither class nor method.
 [[nodiscard]] DataTable unscored_table(const Outcomes& outcomes);
 
 }  // namespace touchtrial::analysis

@@ -9,7 +9,7 @@
 namespace touchtrial::analysis {
 
 struct EvaluatedImage {
-  std::string image;  ///< the name to report it by
+  std::string image;  ///< its name in reports
   engine::Evaluation evaluation;
 };
 

@@ -14,8 +14,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// A picture with its texture and field.
-struct Worked {
+struct ProcessedPicture {
   const LabelledPicture* picture;
   GreyImage texture;
   engine::TextureField field;
@@ -35,15 +34,15 @@ engine::GlcmStatistics mean_over_directions(const GreyImage& image) {
   return mean;
 }
 
-Worked worked(const LabelledPicture& picture, const engine::ExtractionOptions& method,
-              const engine::RenderingOptions& rendering) {
+ProcessedPicture worked(const LabelledPicture& picture, const engine::ExtractionOptions& method,
+                        const engine::RenderingOptions& rendering) {
   const engine::Extraction<double> extraction =
       engine::extract_texture<double>(picture.image, method);
   return {&picture, engine::texture_picture(extraction.texture),
           engine::make_texture_field(extraction.texture, rendering)};
 }
 
-PictureMeasures measures_of(const Worked& work, engine::Gains gains) {
+PictureMeasures measures_of(const ProcessedPicture& work, engine::Gains gains) {
   PictureMeasures measures;
   measures.set = work.picture->set;
   measures.label = work.picture->label;
@@ -81,17 +80,17 @@ void add_pair(PairMean& mean, double value) {
   mean.mean += (value - mean.mean) / mean.pairs;
 }
 
-using WorkedSet = std::vector<const Worked*>;
+using ProcessedSet = std::vector<const ProcessedPicture*>;
 
-bool large_enough(const WorkedSet& set) {
-  return std::ranges::all_of(set, [](const Worked* work) {
+bool large_enough(const ProcessedSet& set) {
+  return std::ranges::all_of(set, [](const ProcessedPicture* work) {
     const GreyImage& image = work->picture->image;
     return std::min(image.height(), image.width()) >= engine::kMsSsimSmallestSide;
   });
 }
 
 template <typename PairDone>
-Likeness likeness_in(const WorkedSet& set, const PairDone& pair_done) {
+Likeness likeness_in(const ProcessedSet& set, const PairDone& pair_done) {
   Likeness likeness;
   for (std::size_t i = 0; i < set.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -106,9 +105,10 @@ Likeness likeness_in(const WorkedSet& set, const PairDone& pair_done) {
   return likeness;
 }
 
-std::vector<std::pair<std::string, WorkedSet>> sets_of(const std::vector<Worked>& all) {
-  std::vector<std::pair<std::string, WorkedSet>> sets;
-  for (const Worked& work : all) {
+std::vector<std::pair<std::string, ProcessedSet>> sets_of(
+    const std::vector<ProcessedPicture>& all) {
+  std::vector<std::pair<std::string, ProcessedSet>> sets;
+  for (const ProcessedPicture& work : all) {
     const auto has_name = [&](const auto& set) { return set.first == work.picture->set; };
     auto set = std::ranges::find_if(sets, has_name);
     if (set == sets.end()) set = sets.insert(set, {work.picture->set, {}});
@@ -117,26 +117,26 @@ std::vector<std::pair<std::string, WorkedSet>> sets_of(const std::vector<Worked>
   return sets;
 }
 
-engine::Gains gains_of(const WorkedSet& set, const engine::RenderingOptions& rendering) {
+engine::Gains gains_of(const ProcessedSet& set, const engine::RenderingOptions& rendering) {
   std::vector<engine::FieldView> fields;
-  for (const Worked* work : set) fields.push_back(work->field.view());
+  for (const ProcessedPicture* work : set) fields.push_back(work->field.view());
   return engine::choose_gains(fields, rendering).of_field.front();
 }
 
 template <typename PairDone>
-SetMeasures measures_of_set(const std::string& name, const WorkedSet& set,
+SetMeasures measures_of_set(const std::string& name, const ProcessedSet& set,
                             const PairDone& pair_done) {
   SetMeasures measures;
   measures.set = name;
   measures.pictures = static_cast<int>(set.size());
   std::set<std::string> labels;
-  for (const Worked* work : set) labels.insert(work->picture->label);
+  for (const ProcessedPicture* work : set) labels.insert(work->picture->label);
   measures.classes = static_cast<int>(labels.size());
   if (large_enough(set)) measures.likeness = likeness_in(set, pair_done);
   return measures;
 }
 
-int pairs_in(const std::vector<std::pair<std::string, WorkedSet>>& sets) {
+int pairs_in(const std::vector<std::pair<std::string, ProcessedSet>>& sets) {
   int pairs = 0;
   for (const auto& [name, set] : sets) {
     const auto count = static_cast<int>(set.size());
@@ -153,7 +153,7 @@ MeasuredPictures measure_pictures(std::span<const LabelledPicture> pictures,
                                   const std::function<void(int done, int of)>& progress) {
   if (pictures.empty()) throw std::invalid_argument("measure_pictures: there is no picture");
   rendering.equalise = engine::Equalise::none;
-  std::vector<Worked> all;
+  std::vector<ProcessedPicture> all;
   for (const LabelledPicture& picture : pictures) all.push_back(worked(picture, method, rendering));
   const auto sets = sets_of(all);
   const int steps = pairs_in(sets);
@@ -164,7 +164,7 @@ MeasuredPictures measure_pictures(std::span<const LabelledPicture> pictures,
   const engine::Gains gains = gains_of(sets.front().second, rendering);
   MeasuredPictures measured;
   measured.tangential_gain_n = gains.tangential_n;
-  for (const Worked& work : all) measured.pictures.push_back(measures_of(work, gains));
+  for (const ProcessedPicture& work : all) measured.pictures.push_back(measures_of(work, gains));
   for (const auto& [name, set] : sets) {
     measured.sets.push_back(measures_of_set(name, set, pair_done));
   }

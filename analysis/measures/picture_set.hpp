@@ -1,4 +1,5 @@
-/// \file Measures of sets of pictures: of each picture, and of how alike pictures are. Definitions: docs/stimuli.md, "Measures".
+/// \file Measures of single pictures and of the similarity between pictures. Definitions:
+/// docs/stimuli.md, "Measures".
 #pragma once
 
 #include "core/plane.hpp"
@@ -14,9 +15,9 @@
 
 namespace touchtrial::analysis {
 
-/// A picture to be measured.
+/// A picture to measure.
 struct LabelledPicture {
-  std::string set;    ///< measures of a set never include other sets
+  std::string set;    ///< sets are measured separately
   std::string label;  ///< the picture's class in the set
   std::string name;   ///< for reports
   GreyImage image;
@@ -40,7 +41,7 @@ struct PairMean {
   double mean = 0.0;  ///< 0 without a pair
 };
 
-/// How alike two pictures of one class are, and two of different classes.
+/// The similarity of pictures within a class and between classes.
 struct Likeness {
   PairMean original_within, original_between;
   PairMean texture_within, texture_between;
@@ -60,13 +61,13 @@ struct MeasuredPictures {
   std::vector<SetMeasures> sets;          ///< by first appearance
 };
 
-/// Measures pictures under a method and rendering. The gain is that of the first picture's set, by
-/// the stiffness budget or as the rendering sets it; `equalise` is ignored, because it would hide
-/// what is measured. Pairs of different sizes are compared over the corner that they share.
+/// Measures pictures under a method and rendering. All use the gain of the first picture's set, by
+/// the stiffness budget or as set by the rendering. `equalise` is ignored, because it would hide
+/// the differences to measure. Pairs of different sizes are compared over their common corner.
 /// \param progress  called after each pair with the number of pairs done and their total; may be
 ///   empty
 /// \throws std::invalid_argument if there is no picture, or one is below kSlopeSmallestSide
-/// Thread-safe. A pair of 500 x 500 pictures takes about 20 ms.
+///   Thread-safe. A pair of 500 x 500 pictures takes about 20 ms.
 [[nodiscard]] MeasuredPictures measure_pictures(
     std::span<const LabelledPicture> pictures, const engine::ExtractionOptions& method,
     engine::RenderingOptions rendering, const std::function<void(int done, int of)>& progress = {});

@@ -8,7 +8,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// The file's name without its folders, which would take the numbers' room.
+/// The file's name without its folders, to leave room for the numbers.
 std::string file_of(const std::string& path) {
   return path.substr(path.find_last_of('/') + 1);
 }

@@ -17,7 +17,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// The program's own questionnaire about hands, and the one that ends a session.
+/// The names of the program's own questionnaires.
 constexpr const char* kHandedness = "handedness";
 constexpr const char* kClosing = "closing";
 
@@ -25,7 +25,7 @@ void add_answers(const record::SessionRow& row, const std::string& questionnaire
                  const std::string& text, std::vector<QuestionAnswer>& all) {
   const nlohmann::ordered_json object = nlohmann::ordered_json::parse(text, nullptr, false);
   if (!object.is_object()) {
-    throw StoreError("a questionnaire's answers are no JSON object; run `touchtrial verify`");
+    throw StoreError("a questionnaire's answers are not a JSON object; run `touchtrial verify`");
   }
   for (const auto& [id, value] : object.items()) {
     QuestionAnswer answer{row.participant, row.session, questionnaire, id};
@@ -39,7 +39,7 @@ bool is_option(double number, std::size_t options) {
   return number >= 0.0 && number < static_cast<double>(options);
 }
 
-/// The answers of the people who count to one question, by person.
+/// The answers to one question, by participant who counts.
 using AnswersOfPeople = std::map<std::string, const QuestionAnswer*>;
 
 QuestionSummary question_summary(const std::string& id, const study::Question* question,
@@ -90,7 +90,7 @@ std::vector<QuestionAnswer> open_answers(const StudyEvents& study, const Session
   study.for_each_of(kQuestioned, [&](const record::Event& event) {
     const auto own = keys.find(event.session);
     if (own == keys.end() || !own->second.participant) return;
-    add_answers(rows.at(event.session), record::remark_from_json(event.body),
+    add_answers(rows.at(event.session), record::from_json<record::TextBody>(event.body).text,
                 whole_event(event, *own->second.participant).secret, all);
   });
   return all;

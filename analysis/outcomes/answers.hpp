@@ -25,7 +25,7 @@ struct QuestionAnswer {
   friend bool operator==(const QuestionAnswer&, const QuestionAnswer&) = default;
 };
 
-/// The answers of all sessions that are not erased, by session and by when they were given.
+/// The answers of all sessions that are not erased, by session and time.
 /// \throws VerificationError if an answer does not open
 /// \throws StoreError if an answer is not in the form that this program writes
 [[nodiscard]] std::vector<QuestionAnswer> open_answers(const StudyEvents& study,
@@ -37,31 +37,31 @@ using Questionnaires = std::vector<study::Questionnaire>;
 /// The study file's own questions.
 [[nodiscard]] Questionnaires own_questions(const study::Study& study);
 
-/// \return null if nobody knows the question's wording
+/// \return null if the question's wording is unknown
 [[nodiscard]] const study::Question* question_of(const Questionnaires& asked,
                                                  const QuestionAnswer& answer);
 
 /// A text in a language, else in English, else in any; empty without one.
 [[nodiscard]] std::string in_language(const study::Translated& text, const std::string& language);
 
-/// An answer as people read it: the option's text, or what was typed; empty for a number.
+/// The text of an answer: the option's text or the typed text; empty for a number.
 /// \param question  as question_of; may be null
 [[nodiscard]] std::string words_of(const QuestionAnswer& answer, const study::Question* question,
                                    const std::string& language);
 
-/// Whether a question asks who somebody is: age, sex, gender, or the handedness inventory.
-/// Demographics tell about these, in bands.
+/// Whether a question is demographic: age, sex, gender, or the handedness inventory. Demographics
+/// report these in bands.
 [[nodiscard]] bool is_demographic(const std::string& questionnaire, const std::string& question);
 
-/// Whether an answer is in words, which may name somebody, or an age.
+/// Whether an answer could identify a person: free text or an age.
 [[nodiscard]] inline bool may_name_somebody(const QuestionAnswer& answer) {
   return !answer.number || answer.question == "age";
 }
 
-/// The answers of all participants who count to one question.
+/// The answers to one question of all participants who count.
 struct QuestionSummary {
   std::string question;  ///< its id
-  std::string wording;   ///< in the study's language; empty if nobody knows it
+  std::string wording;   ///< in the study's language; empty if unknown
   study::QuestionKind kind{};
   int answered = 0;             ///< participants
   std::vector<Band> options{};  ///< of a choice, in their order
@@ -72,9 +72,9 @@ struct QuestionSummary {
 
 struct Outcomes;
 
-/// What participants said in answer to closing questions, by question, in the order in which they
-/// are asked. Of several sessions, a participant's last answer counts. A public report shows no
-/// texts, and neither options that fewer than kMinOfBand people chose nor numbers of so few.
+/// Summaries of the answers to closing questions, in the order in which they are asked. If a
+/// participant had several sessions, the last answer counts. A public report shows no texts, and no
+/// options or numbers from fewer than kMinOfBand people.
 [[nodiscard]] std::vector<QuestionSummary> summaries_of(const Outcomes& outcomes);
 
 }  // namespace touchtrial::analysis

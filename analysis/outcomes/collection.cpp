@@ -13,7 +13,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// The row of an erased session, without any data of the participant.
+/// The row of an erased session, without data about the participant.
 record::SessionRow without_participant(const record::SessionRow& row) {
   record::SessionRow bare;
   bare.session = row.session;
@@ -44,7 +44,7 @@ bool is_practice_failure(const Deviation& deviation) {
   return deviation.code == "practice-not-passed";
 }
 
-/// Sets the values that follow from all of a session's events together.
+/// Sets the values that depend on all of a session's events together.
 void finish(SessionRecord& record) {
   if (record.practice) {
     record.practice->passed = std::ranges::none_of(record.deviations, is_practice_failure);

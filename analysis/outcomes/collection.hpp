@@ -1,5 +1,5 @@
-/// \file How a study was collected: the facts about its sessions that a results section must state.
-/// They reveal nothing about outcomes, so they may be shown at any time.
+/// \file How a study's data were collected: the facts about sessions that a results section must
+/// state. They reveal nothing about outcomes, so they may be shown at any time.
 #pragma once
 
 #include "analysis/outcomes/sealed_sessions.hpp"
@@ -24,20 +24,20 @@ namespace touchtrial::analysis {
          session.simulated == commitment.simulated;
 }
 
-/// What a session's schedule was drawn from.
+/// The inputs from which a session's schedule was drawn.
 [[nodiscard]] inline study::Draws draws_of(const record::SessionRow& session) noexcept {
   return session.pilot || session.simulated ? study::Draws::rehearsal : study::Draws::people;
 }
 
-/// The sessions that count: by themselves, and their participants have all visits that the study
-/// needs (study::Study::visits_needed) among them.
+/// The sessions that count, from participants whose counting sessions include all visits that the
+/// study needs (study::Study::visits_needed).
 /// \param rows  all sessions that may be shown
 /// \throws StoreError as prescription_from_json
 [[nodiscard]] std::set<int> counted_sessions(std::span<const record::SessionRow> rows,
                                              const record::StudyCommitment& commitment);
 
-/// A deviation from the protocol: its code (docs/data-dictionary.md) and a description, which is
-/// empty without the key if it was recorded during the session.
+/// A deviation from the protocol: its code (docs/data-dictionary.md) and a description.
+/// Descriptions recorded during a session are empty without the key.
 struct Deviation {
   std::string code;
   std::string text;
@@ -47,16 +47,16 @@ struct Deviation {
 struct PracticeRecord {
   int rounds = 0;
   int presentations = 0;
-  std::optional<int> correct;  ///< known with the key alone
+  std::optional<int> correct;  ///< known only with the key
   bool passed = true;          ///< whether there is no deviation `practice-not-passed`
 };
 
-/// How the answers of a session are spread: an outcome.
+/// How the answers of a session are distributed over positions. This is an outcome.
 struct AnswerSpread {
-  int different = 0;           ///< positions that were answered
+  int different = 0;           ///< number of positions used
   double largest_share = 0.0;  ///< of the most frequent position, in (0, 1]
   int longest_run = 0;         ///< answers at one position in a row
-  /// From plane-on to the answer, to tenths of a second; empty: each waited for the end of a pause.
+  /// From plane-on to the answer, to tenths of a second; empty if every answer followed a pause.
   std::optional<double> median_s{};
 
   friend bool operator==(const AnswerSpread&, const AnswerSpread&) = default;
@@ -66,8 +66,7 @@ struct AnswerSpread {
 /// \return nothing if none is answered
 [[nodiscard]] std::optional<AnswerSpread> spread_of(std::vector<record::TrialRow> trials);
 
-/// Trials of a session with a trace, and those of them in which the hand was outside a window
-/// (record::HandWindows).
+/// Trials of a session with a trace, and how often the hand left a window (record::HandWindows).
 struct HandCounts {
   int trials = 0;
   int contact = 0;
@@ -89,28 +88,28 @@ struct SessionRecord {
   bool one_key = false;                  ///< see session::Session::close
   std::optional<AnswerSpread> spread{};  ///< once outcomes are shown
   HandCounts outside{};
-  std::vector<Deviation> deviations;  ///< including those noted later; duplicates appear once
-  // In the words of people; "(sealed)" without the key.
+  std::vector<Deviation> deviations;  ///< including those recorded later; duplicates appear once
+  // Free text; "(sealed)" without the key.
   std::string exclusion_reason;
-  bool after_outcomes = false;  ///< the exclusion, when outcomes had been seen
+  bool after_outcomes = false;  ///< the exclusion was made after outcomes had been seen
   std::string replacement_reason;
-  std::string stop_reason;  ///< or the program's
+  std::string stop_reason;  ///< free text, or the program's reason
   std::string withdrawal_reason;
   std::optional<double> largest_force_n;  ///< sent, to tenths; once outcomes are shown
   int resumed = 0;        ///< how often the session was resumed after the program had ended
   int interruptions = 0;  ///< of presentations, repeated or not
   int pauses = 0;
-  int notes = 0;  ///< taken during the session
-  /// Laterality quotient, -100 to 100, once outcomes are shown and if it was told.
+  int notes = 0;  ///< made during the session
+  /// Laterality quotient, -100 to 100; empty until outcomes are shown, or if not answered.
   std::optional<double> handedness_score{};
-  std::string group{};  ///< the participant's; empty: there is none, or it is not shown
-  /// Of the dealt orders of methods, once outcomes are shown; negative: dealt without a partner.
+  std::string group{};  ///< of the participant; empty if there is none or it is hidden
+  /// Block of the assigned order of methods, once outcomes are shown; negative: no partner.
   std::optional<int> order_block{};
 };
 
 /// Whether a session ran on a device with force that had no valid certificate.
 [[nodiscard]] bool ran_unverified(const SessionRecord& session);
-/// The same of any session whose data are not erased.
+/// Whether any session whose data are not erased did.
 [[nodiscard]] bool any_ran_unverified(const std::vector<SessionRecord>& sessions);
 
 /// device_words (text_figures.hpp) of the sessions of simulated participants whose data are not
@@ -130,7 +129,7 @@ struct ServoTrial {
 struct ParticipantFlow {
   int enrolled = 0;
   int erased = 0;    ///< withdrew and had the data erased
-  int replaced = 0;  ///< somebody else took their place
+  int replaced = 0;  ///< replaced by another participant
   int excluded = 0;
   std::vector<std::string> exclusion_reasons;  ///< one per exclusion, in order of sessions
   int stopped = 0;
@@ -138,10 +137,10 @@ struct ParticipantFlow {
   int other_kind = 0;  ///< pilot or simulated sessions in a study that is not, or the reverse
   int unseen = 0;      ///< completed after an interim look
   int analysed = 0;    ///< enrolled minus all of the above
-  int withdrawn = 0;   ///< among all of these: who withdrew, whether the data were erased or not
+  int withdrawn = 0;   ///< among all of these: withdrew, with or without erasure
 };
 
-/// What the study prescribes for a session, from its configuration in clear.
+/// What the study prescribes for a session, from its unencrypted configuration.
 struct Prescription {
   double explore_limit_s = 0.0;
   std::string on_timeout;
@@ -152,10 +151,10 @@ struct Prescription {
   bool masking_wanted = true;
   double masking_dbfs = 0.0;
   study::ValidityRule validity{};
-  int visits = 1;                     ///< of each participant
-  int visits_needed = 1;              ///< study::Study::visits_needed
-  double least_days = 0.0;            ///< between visits
-  std::optional<double> most_days{};  ///< likewise
+  int visits = 1;                    ///< of each participant
+  int visits_needed = 1;             ///< study::Study::visits_needed
+  double min_days = 0.0;             ///< between visits
+  std::optional<double> max_days{};  ///< likewise
   std::vector<std::string> groups{};
   std::string draft{};    ///< study::draft_notice of the participants' language
   int intervals = 0;      ///< planes of a trial; 0: one plane
@@ -167,15 +166,15 @@ struct Collection {
   std::vector<SessionRecord> sessions;   ///< in order of session numbers
   std::vector<ServoTrial> servo_trials;  ///< by session and trial, without erased sessions
   ParticipantFlow flow;
-  std::vector<record::PersonLook> looks;  ///< at single participants' outcomes, in order
+  std::vector<record::PersonLook> looks;  ///< looks at single participants' outcomes, in order
   bool visual = false;     ///< textures were seen on a screen, not felt; the same for all sessions
   bool is_public = false;  ///< without ids and without texts of people: without_identities
 };
 
-/// The same of a collection's sessions.
+/// The same for a collection's sessions.
 [[nodiscard]] std::string simulated_devices(const Collection& collection);
 
-/// \return the reason of an exclusion, behind "after outcomes were seen: " if they had been
+/// \return the reason of an exclusion, prefixed by "after outcomes were seen: " if they had been
 [[nodiscard]] std::string exclusion_words(const SessionRecord& session);
 
 /// Reads what a study prescribes.
@@ -183,8 +182,9 @@ struct Collection {
 /// \throws StoreError if the configuration does not have the form that this program writes
 [[nodiscard]] Prescription prescription_from_json(const std::string& configuration);
 
-/// Reads how every session was collected, but neither schedules, answers nor traces.
-/// \param keys  of sessions; open what is sealed of practice and deviations; where there are none, those parts are missing
+/// Reads how every session was collected, without schedules, answers and traces.
+/// \param keys  by session; they open the sealed parts of practice and deviations, which are
+///   missing otherwise
 /// \throws VerificationError, naming the event, if one does not open
 [[nodiscard]] Collection load_collection(const StudyEvents& study, const SessionKeys& keys = {});
 

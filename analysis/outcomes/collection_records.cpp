@@ -16,26 +16,26 @@ constexpr std::array kKinds = {record::EventKind::opened,   record::EventKind::p
                                record::EventKind::noted,    record::EventKind::closed};
 
 void add_opening(const record::Event& event, SessionRecord& session) {
-  record::SessionOpening opening = record::opening_from_json(event.body);
+  record::SessionOpening opening = record::from_json<record::SessionOpening>(event.body);
   session.device_serial = std::move(opening.device_serial);
   session.opened_utc = std::move(opening.opened_utc);
   session.station = std::move(opening.station);
   session.group = std::move(opening.group);
 }
 
-/// What a person wrote, if the event is opened.
+/// The free text of an event, if it is opened.
 std::string words_of(const record::Event& event, const std::string& text) {
   return event.sealed.empty() ? text : "(sealed)";
 }
 
 void add_exclusion(const record::Event& event, SessionRecord& session) {
-  const record::ParticipantBody body = record::participant_from_json(event.body);
+  const record::ParticipantBody body = record::from_json<record::ParticipantBody>(event.body);
   session.exclusion_reason = words_of(event, body.reason);
   session.after_outcomes = body.after_outcomes;
 }
 
 std::string stop_in(const record::Event& event) {
-  const record::StopBody body = record::stop_from_json(event.body);
+  const record::StopBody body = record::from_json<record::StopBody>(event.body);
   return body.code.empty() ? words_of(event, body.text) : body.code;
 }
 
@@ -88,13 +88,13 @@ void add_to_record(const record::Event& event, SessionRecord& session) {
     case record::EventKind::opened:
       return add_opening(event, session);
     case record::EventKind::practised:
-      return add_practice(record::practice_from_json(event.body), session);
+      return add_practice(record::from_json<record::PracticeBody>(event.body), session);
     case record::EventKind::deviated: {
-      const record::DeviationBody body = record::deviation_from_json(event.body);
+      const record::DeviationBody body = record::from_json<record::DeviationBody>(event.body);
       return add_deviation(body.code, body.text, session);
     }
     case record::EventKind::participant_noted: {
-      const record::NoteBody body = record::note_from_json(event.body);
+      const record::NoteBody body = record::from_json<record::NoteBody>(event.body);
       if (!body.code.empty()) add_deviation(body.code, body.text, session);
       return;
     }
@@ -102,21 +102,23 @@ void add_to_record(const record::Event& event, SessionRecord& session) {
       return add_exclusion(event, session);
     case record::EventKind::participant_replaced:
       session.replacement_reason =
-          words_of(event, record::replacement_from_json(event.body).reason);
+          words_of(event, record::from_json<record::ReplacementBody>(event.body).reason);
       return;
     case record::EventKind::stopped:
       session.stop_reason = stop_in(event);
       return;
     case record::EventKind::participant_withdrawn:
-      session.withdrawal_reason = words_of(event, record::withdrawal_from_json(event.body).reason);
+      session.withdrawal_reason =
+          words_of(event, record::from_json<record::WithdrawalBody>(event.body).reason);
       return;
     case record::EventKind::resumed:
       // A session that was only paused does not count as resumed.
-      if (record::resumed_from_json(event.body).after == "program-ended") ++session.resumed;
+      if (record::from_json<record::ResumedBody>(event.body).after == "program-ended")
+        ++session.resumed;
       return;
     case record::EventKind::interrupted:
-      // A pause takes a presentation off and counts against nobody.
-      if (record::trial_from_json(event.body).reason != record::kPauseReason)
+      // A pause interrupts a presentation, but is not counted as an interruption.
+      if (record::from_json<record::InterruptedBody>(event.body).reason != record::kPauseReason)
         ++session.interruptions;
       return;
     case record::EventKind::paused:
@@ -126,7 +128,7 @@ void add_to_record(const record::Event& event, SessionRecord& session) {
       ++session.notes;
       return;
     case record::EventKind::closed:
-      return add_end(record::closed_from_json(event.body), session);
+      return add_end(record::from_json<record::ClosedBody>(event.body), session);
     default:
       return;
   }
@@ -153,8 +155,8 @@ std::vector<std::string> people_notes(const Collection& collection) {
 }
 
 std::optional<ServoTrial> servo_trial_of(const record::Event& trace_stored) {
-  if (!StudyEvents::names_servo(trace_stored)) return std::nullopt;
-  const record::TraceBody body = record::trace_body_from_json(trace_stored.body);
+  if (!StudyEvents::has_servo(trace_stored)) return std::nullopt;
+  const record::TraceBody body = record::from_json<record::TraceBody>(trace_stored.body);
   if (!body.servo) return std::nullopt;
   return ServoTrial{trace_stored.session, body.trial, *body.servo, body.overruns};
 }

@@ -13,7 +13,7 @@ namespace touchtrial::analysis {
 /// The kinds of events on sessions' chains that describe how the sessions were collected.
 [[nodiscard]] std::span<const record::EventKind> kinds_in_sessions();
 
-/// Whether a part of what `add_to_record` takes from events of this kind is sealed.
+/// Whether some of the data that `add_to_record` reads from events of this kind are sealed.
 [[nodiscard]] bool is_partly_sealed(record::EventKind kind);
 
 /// Adds the facts from one event to a session's record.
@@ -33,12 +33,11 @@ struct CollectionDates {
 /// \return nothing if no session was in real time
 [[nodiscard]] std::optional<CollectionDates> dates_of(const std::vector<SessionRecord>& sessions);
 
-/// Sentences on participants who withdrew and let their data be used, and on looks at single
+/// Sentences about participants who withdrew but let their data be used, and about looks at single
 /// participants' outcomes. Empty if there are none.
 [[nodiscard]] std::vector<std::string> people_notes(const Collection& collection);
 
-/// Counts participants, each by the participant's last session; of the visits, by those that are
-/// needed.
+/// Counts participants, each by their last session among the visits that are needed.
 /// \param rows  sessions in order of their numbers
 [[nodiscard]] ParticipantFlow participant_flow(const std::vector<record::SessionRow>& rows,
                                                const std::vector<SessionRecord>& records,

@@ -1,5 +1,4 @@
-/// \file What participants said about themselves, in bands: for tables of people, never single
-/// ages.
+/// \file Demographics from participants' answers, in bands, so that tables never show single ages.
 #pragma once
 
 #include "record/study_store.hpp"
@@ -31,7 +30,7 @@ struct QuestionAnswer;
 [[nodiscard]] std::map<int, Demographics> demographics_of(
     const std::vector<QuestionAnswer>& answers, const study::Study& study);
 
-/// The least number of people that a band shows. Fewer could be recognised.
+/// The minimum number of people in a band that is shown. Fewer could be identified.
 inline constexpr int kMinOfBand = 5;
 
 /// People in one band.
@@ -40,23 +39,23 @@ struct Band {
   int people = 0;
 };
 
-/// How a group of people divides by one characteristic.
+/// The distribution of a group of people over one characteristic.
 struct Characteristic {
   std::string name;         ///< "age", "sex", "handedness"
   std::vector<Band> bands;  ///< each of kMinOfBand people or more; empty: nothing can be shown
-  /// People in smaller bands and people who did not say, together: 0, or kMinOfBand and more.
-  /// The smallest band goes in with them if they are too few by themselves.
+  /// People in smaller bands and people who did not answer, together: 0, or at least kMinOfBand.
+  /// The smallest band is merged into them if they are too few.
   int others = 0;
 };
 
-/// Takes out bands of fewer than kMinOfBand people, and the smallest band too while a few others
-/// would tell how many they are by what the bands leave of the whole.
+/// Removes bands of fewer than kMinOfBand people. Also removes the smallest band while the
+/// remainder is too small, because it could be computed from the total.
 /// \param others  people in no band
 /// \return the people in no band now
 [[nodiscard]] int keep_large_bands(std::vector<Band>& bands, int others);
 
-/// The characteristics of a group, without those that nobody told.
-/// \param people  one entry for each person, empty if the person said nothing
+/// The characteristics of a group, without those that nobody answered.
+/// \param people  one entry for each person, empty if the person gave no answers
 [[nodiscard]] std::vector<Characteristic> in_bands(const std::vector<Demographics>& people);
 
 }  // namespace touchtrial::analysis

@@ -48,8 +48,8 @@ std::string after_colon(const std::string& text) {
   return text.empty() ? "" : ": " + text;
 }
 
-/// The number of sessions for which `why` returns a text, and whose they are: "P01 (asleep), P02
-/// (left)"; nobody is named in a public report.
+/// The number of sessions for which `why` returns a text, and their participants: "P01 (asleep),
+/// P02 (left)"; a public report names nobody.
 template <typename Why>
 std::pair<int, std::string> sessions_with(const Outcomes& outcomes, Why why) {
   std::vector<std::string> names;
@@ -77,11 +77,12 @@ void add_looks(const Outcomes& outcomes, Departures& departures) {
     if (look.kind == LookKind::person) {
       const std::string who =
           outcomes.collection.is_public ? "one participant" : "participant " + look.participant;
-      departures.push_back(fmt::format(
-          "The outcomes of {} alone were looked at{} on {}{}.{}", who, station, utc_words(look.at),
-          after_colon(look.reason),
-          look.is_one_of_several ? " With those of others, they told how the study was going."
-                                 : ""));
+      departures.push_back(
+          fmt::format("The outcomes of {} alone were looked at{} on {}{}.{}", who, station,
+                      utc_words(look.at), after_colon(look.reason),
+                      look.is_one_of_several
+                          ? " Together with those of others, they showed how the study was going."
+                          : ""));
       continue;
     }
     const std::string of = planned > 0 ? fmt::format(" of {} planned", planned) : "";
@@ -138,7 +139,7 @@ void add_late_decisions(const Outcomes& outcomes, Departures& departures) {
   }
   if (!looked.erased_afterwards.empty()) {
     departures.push_back(counted(static_cast<int>(looked.erased_afterwards.size()), "session") +
-                         " erased at the participant's wish after outcomes were seen.");
+                         " erased at the participant's request after outcomes were seen.");
   }
 }
 
@@ -151,13 +152,12 @@ void add_rules(const Outcomes& outcomes, Departures& departures) {
       sessions_with(outcomes, [&](const SessionOutcome& one) -> std::optional<std::string> {
         const bool excluded = one.row.excluded && !one.row.erased;
         if (!excluded || met.contains(one.row.session)) return {};
-        // The reason of a late exclusion stands in the departure about it.
+        // Another departure gives the reason of a late exclusion.
         const bool is_late = outcomes.looked.excluded_afterwards.contains(one.row.session);
         return is_late ? "" : reasons[one.row.session];
       });
   if (without > 0) {
-    departures.push_back(counted(without, "session") +
-                         " excluded for a reason that no registered rule states" +
+    departures.push_back(counted(without, "session") + " excluded for an unregistered reason" +
                          after_colon(who) + ".");
   }
   const std::set<int> left_out = with_missed_catches(outcomes);
@@ -169,8 +169,8 @@ void add_rules(const Outcomes& outcomes, Departures& departures) {
       });
   if (kept > 0) {
     departures.push_back(counted(kept, "session") +
-                         " not excluded although a registered rule says so" + after_colon(whose) +
-                         ".");
+                         " not excluded although a registered rule requires it" +
+                         after_colon(whose) + ".");
   }
 }
 

@@ -11,16 +11,17 @@
 
 namespace touchtrial::analysis {
 
-/// The sessions that a registered rule leaves out, each with the first rule that does, in words.
+/// The sessions that a registered rule excludes, each with the first such rule in words.
 [[nodiscard]] std::map<int, std::string> rules_met(const Outcomes& outcomes);
 
-/// Those of them that miss more catch trials than the registered rule allows. Only outcomes show
-/// it, so the analysis leaves them out, excluded or not.
+/// The sessions that miss more catch trials than the registered rule allows. Only outcomes show
+/// this, so the analysis leaves them out even if the experimenter did not exclude them.
 [[nodiscard]] std::set<int> with_missed_catches(const Outcomes& outcomes);
 
-/// Every departure from the plan, one sentence or two each, the gravest first.
+/// Every departure from the plan, in one or two sentences each, the most serious first.
 ///
-/// \param ended_at_look  PrimaryResult: then fewer participants than planned are no departure
+/// \param ended_at_look  as in PrimaryResult; if set, fewer participants than planned are not a
+///   departure
 [[nodiscard]] std::vector<std::string> departures_of(const Outcomes& outcomes,
                                                      bool ended_at_look = false);
 

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <span>
 #include <utility>
 
 namespace touchtrial::analysis {
@@ -13,39 +15,46 @@ namespace {
 
 using record::EventKind;
 
-constexpr std::array kIncidents = {
-    EventKind::interrupted, EventKind::break_taken, EventKind::paused,  EventKind::stopped,
-    EventKind::noted,       EventKind::deviated,    EventKind::resumed, EventKind::block_restarted};
+constexpr std::size_t kInSessions = 8;
+constexpr std::array kIncidents = {EventKind::interrupted,
+                                   EventKind::break_taken,
+                                   EventKind::paused,
+                                   EventKind::resumed,
+                                   EventKind::stopped,
+                                   EventKind::noted,
+                                   EventKind::deviated,
+                                   EventKind::block_restarted,
+                                   EventKind::participant_noted,
+                                   EventKind::participant_excluded,
+                                   EventKind::participant_replaced,
+                                   EventKind::participant_withdrawn};
 
-/// A remark's text, if it is not sealed.
-std::string remark_in(const record::Event& event) {
-  return event.sealed.empty() || event.kind == EventKind::break_taken
-             ? record::remark_from_json(event.body)
-             : "";
-}
-
-/// Fills in what the body says.
+/// Reads the event's body into the incident.
 /// \return whether an event of this kind is an incident
-bool take_body(const record::Event& event, Incident& incident) {
+bool read_body(const record::Event& event, Incident& incident) {
   switch (event.kind) {
     case EventKind::interrupted: {
-      record::TrialBody body = record::trial_from_json(event.body);
+      auto body = record::from_json<record::InterruptedBody>(event.body);
       incident.trial = body.trial;
       incident.code = std::move(body.reason);
-      incident.safety_fault = std::move(body.safety_fault);
-      incident.device_fault = std::move(body.device_fault);
+      incident.safety_fault = body.safety_fault.value_or("");
+      incident.device_fault = body.device_fault.value_or("");
       return true;
     }
-    case EventKind::paused:
-      incident.text = remark_in(event);
-      incident.trial = record::pause_from_json(event.body).trial;
+    case EventKind::paused: {
+      auto body = record::from_json<record::PauseBody>(event.body);
+      incident.text = std::move(body.text);
+      incident.trial = body.trial;
       return true;
+    }
     case EventKind::break_taken:
+      incident.text = record::from_json<record::TextBody>(event.body).text;
+      return true;
     case EventKind::noted:
-      incident.text = remark_in(event);
+      incident.text = record::from_json<record::RemarkBody>(event.body).text;
       return true;
     case EventKind::resumed: {
-      record::ResumedBody body = record::resumed_from_json(event.body);
+      record::ResumedBody body = record::from_json<record::ResumedBody>(event.body);
       incident.trial = body.trial;
       incident.code = std::move(body.after);
       return true;
@@ -53,34 +62,34 @@ bool take_body(const record::Event& event, Incident& incident) {
     case EventKind::block_restarted:
       return true;
     case EventKind::stopped: {
-      record::StopBody body = record::stop_from_json(event.body);
+      record::StopBody body = record::from_json<record::StopBody>(event.body);
       incident.code = std::move(body.code);
       incident.text = std::move(body.text);
       return true;
     }
     case EventKind::deviated: {
-      record::DeviationBody body = record::deviation_from_json(event.body);
+      record::DeviationBody body = record::from_json<record::DeviationBody>(event.body);
       incident.code = std::move(body.code);
       incident.text = std::move(body.text);
       return true;
     }
     case EventKind::participant_noted: {
-      record::NoteBody body = record::note_from_json(event.body);
+      record::NoteBody body = record::from_json<record::NoteBody>(event.body);
       incident.code = std::move(body.code);
       incident.text = std::move(body.text);
       return true;
     }
     case EventKind::participant_excluded: {
-      record::ParticipantBody body = record::participant_from_json(event.body);
+      record::ParticipantBody body = record::from_json<record::ParticipantBody>(event.body);
       incident.code = body.after_outcomes ? "after-outcomes" : "";
       incident.text = std::move(body.reason);
       return true;
     }
     case EventKind::participant_replaced:
-      incident.text = record::replacement_from_json(event.body).reason;
+      incident.text = record::from_json<record::ReplacementBody>(event.body).reason;
       return true;
     case EventKind::participant_withdrawn:
-      incident.text = record::withdrawal_from_json(event.body).reason;
+      incident.text = record::from_json<record::WithdrawalBody>(event.body).reason;
       return true;
     default:
       return false;
@@ -89,9 +98,13 @@ bool take_body(const record::Event& event, Incident& incident) {
 
 }  // namespace
 
+std::span<const EventKind> incident_kinds() {
+  return kIncidents;
+}
+
 std::optional<Incident> incident_of(const record::Event& event, const record::SessionRow& row) {
   Incident incident{row.participant, row.session, event.sequence, event.kind};
-  if (!take_body(event, incident)) return std::nullopt;
+  if (!read_body(event, incident)) return std::nullopt;
   if (event.session == 0) {
     incident.utc = event.at;
   } else if (event.sealed.empty()) {
@@ -116,7 +129,7 @@ std::vector<Incident> load_incidents(const StudyEvents& study,
         own == keys.end() ? event : readable_event(event, row->second, own->second), row->second);
     if (incident) incidents.push_back(*std::move(incident));
   };
-  study.for_each_of(kIncidents, add);
+  study.for_each_of(std::span(kIncidents).first(kInSessions), add);
   for (const record::Event& event : store.events(0)) add(event);
   std::ranges::stable_sort(incidents, {}, &Incident::session);
   return incidents;
@@ -134,7 +147,7 @@ std::vector<InstrumentMark> load_marks(const StudyEvents& study,
     const auto own = keys.find(event.session);
     if (own == keys.end() || !own->second.participant) return;
     const record::MarksBody body =
-        record::marks_from_json(whole_event(event, *own->second.participant).secret);
+        record::from_json<record::MarksBody>(whole_event(event, *own->second.participant).secret);
     for (std::size_t i = 0; i < body.codes.size(); ++i) {
       InstrumentMark mark{.participant = participants[event.session],
                           .session = event.session,

@@ -14,41 +14,44 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-/// One chain's sessions as its events come, and the looks at them.
+/// Reads one chain's events in order; collects its sessions and the looks at them.
 class ChainReading {
  public:
   /// \param registered  the registered looks, by number of participants
-  /// \param visits  without which a participant does not count
+  /// \param visits  that a participant needs to count
   ChainReading(int station, std::vector<int> registered, int visits)
       : station_(station), registered_(std::move(registered)), visits_(visits) {}
 
-  /// These sessions are none that the plan is about.
-  void leave_out(std::set<int> sessions) { others_ = std::move(sessions); }
+  /// Sessions that the plan does not cover, such as pilots.
+  void exclude_sessions(std::set<int> sessions) { others_ = std::move(sessions); }
 
   void add(const record::Event& event) {
     using record::EventKind;
     switch (event.kind) {
       case EventKind::session_opened: {
-        const record::SessionOpenedBody body = record::session_opened_from_json(event.body);
+        const record::SessionOpenedBody body =
+            record::from_json<record::SessionOpenedBody>(event.body);
         participants_[body.session] = body.participant;
-        // The last visit stands for the participant.
+        // A participant is counted by the last visit.
         if (body.visit != visits_) others_.insert(body.session);
         last_opened = event.at;
         return;
       }
       case EventKind::session_closed: {
-        const record::SessionClosedBody body = record::session_closed_from_json(event.body);
+        const record::SessionClosedBody body =
+            record::from_json<record::SessionClosedBody>(event.body);
         ended_.insert(body.session);
         if (body.complete && !others_.contains(body.session)) counted_.insert(body.session);
         return;
       }
       case EventKind::participant_excluded: {
-        const record::ParticipantBody body = record::participant_from_json(event.body);
+        const record::ParticipantBody body = record::from_json<record::ParticipantBody>(event.body);
         if (body.after_outcomes) record.excluded_afterwards.insert(body.session);
         return decide(event, record.excluded_afterwards);
       }
       case EventKind::participant_withdrawn:
-        if (record::withdrawal_from_json(event.body).kept == record::Retention::data) return;
+        if (record::from_json<record::WithdrawalBody>(event.body).kept == record::Retention::data)
+          return;
         return decide(event, record.erased_afterwards);
       case EventKind::participant_replaced:
         return decide(event, record.replaced_afterwards);
@@ -62,10 +65,10 @@ class ChainReading {
     }
   }
 
-  /// From this time on everybody's outcomes were known, whatever this chain says.
-  void seen_from(nanoseconds at) { seen_from_ = at; }
+  /// Sets the time from which all outcomes were known, even if this chain has no look.
+  void set_seen_from(nanoseconds at) { seen_from_ = at; }
 
-  /// Everything that was read, with what would be at a look now.
+  /// The result, including the state that a look now would have.
   [[nodiscard]] LookRecord take() {
     record.participants = static_cast<int>(counted_.size());
     record.may_look = is_registered();
@@ -86,7 +89,7 @@ class ChainReading {
   }
 
   void look(const record::Event& event) {
-    const record::UnblindingBody body = record::unblinding_from_json(event.body);
+    const record::UnblindingBody body = record::from_json<record::UnblindingBody>(event.body);
     Look look{event.at,         static_cast<int>(counted_.size()),
               body.reason,      LookKind::final,
               body.participant, station_};
@@ -108,8 +111,8 @@ class ChainReading {
     return LookKind::registered;
   }
 
-  /// Whether a look now is one of the registered ones. One that was made can be made again, at the
-  /// same sessions.
+  /// Whether a look now would be a registered one. A registered look can be repeated at the same
+  /// sessions.
   [[nodiscard]] bool is_registered() const {
     const auto participants = static_cast<int>(counted_.size());
     if (std::ranges::find(registered_, participants) == registered_.end()) return false;
@@ -130,7 +133,7 @@ class ChainReading {
   nanoseconds seen_from_ = nanoseconds::max();
 };
 
-/// Whether the unblinding was made from those of the stations, which are listed one by one.
+/// Whether the unblinding only combines those of the stations, which are listed separately.
 bool is_of_stations(const record::Event& event, const std::vector<Look>& looks) {
   if (event.kind != record::EventKind::study_unblinded) return false;
   return std::ranges::any_of(looks, [&](const Look& look) { return look.at == event.at; });
@@ -156,7 +159,7 @@ std::vector<int> registered_looks(const record::StudyStore& store, const study::
   return analysis && in_one_file ? analysis->looks : std::vector<int>{};
 }
 
-/// Pilots in a study that is none, and the like.
+/// Sessions of another kind than the study, such as pilots.
 std::set<int> of_other_kind(const record::StudyStore& store) {
   const record::StudyCommitment& commitment = store.commitment();
   std::set<int> sessions;
@@ -181,7 +184,7 @@ std::string name_of(LookKind kind) {
 LookRecord look_record(const record::StudyStore& store, const study::StudyKey& key) {
   std::vector<Look> of_stations;
   nanoseconds first_seen = nanoseconds::max();
-  // Nobody has looked at the stations of a simulation, which are unblinded as they are made.
+  // A simulation's stations are unblinded when they are created, which is not a look.
   const int stations = store.commitment().simulated ? 0 : store.stations();
   const int visits = prescription_from_json(store.commitment().configuration).visits_needed;
   for (int station = 1; station <= stations; ++station) {
@@ -193,12 +196,12 @@ LookRecord look_record(const record::StudyStore& store, const study::StudyKey& k
     }
   }
   ChainReading whole(0, registered_looks(store, key), visits);
-  whole.leave_out(of_other_kind(store));
-  whole.seen_from(first_seen);
+  whole.exclude_sessions(of_other_kind(store));
+  whole.set_seen_from(first_seen);
   for (const record::Event& event : store.events(0)) {
     if (!is_of_stations(event, of_stations)) whole.add(event);
   }
-  // A station that has ended may look while others still collect.
+  // A station that has closed may look while others still collect.
   for (Look& look : of_stations) {
     const bool early = look.kind == LookKind::final && look.at < whole.last_opened;
     if (early) look.kind = LookKind::unregistered;

@@ -65,7 +65,7 @@ const study::Trial& trial_of(const record::TrialRow& row, const study::Schedule&
 
 void require_fit(const record::TrialRow& row, const study::Ask& ask) {
   if (!row.answer) return;
-  const std::string misfit = study::misfit_of(*row.answer, ask);
+  const std::string misfit = study::mismatch_of(*row.answer, ask);
   if (misfit.empty()) return;
   throw VerificationError(shown(row) + ": " + misfit + "; run `touchtrial verify`");
 }
@@ -102,9 +102,9 @@ TrialOutcome outcome_of(const record::TrialRow& row, const SessionOutcome& sessi
   return trial;
 }
 
-/// What each participant who counts said, over all of the participant's sessions.
-std::vector<Demographics> said_by_participants(const Outcomes& outcomes,
-                                               const std::map<int, Demographics>& by_session) {
+/// The demographics of each participant who counts, combined over all of their sessions.
+std::vector<Demographics> demographics_by_participant(
+    const Outcomes& outcomes, const std::map<int, Demographics>& by_session) {
   std::map<std::string, Demographics> people;
   for (const SessionOutcome& one : outcomes.sessions) {
     if (one.counted) people[one.row.participant];
@@ -123,7 +123,7 @@ std::vector<Demographics> said_by_participants(const Outcomes& outcomes,
   return all;
 }
 
-/// Adds what the study's dealing says of each session that is shown.
+/// Adds each shown session's assigned group and order.
 void add_assignment(const Outcomes& outcomes, Collection& collection) {
   std::map<int, const SessionOutcome*> shown;
   for (const SessionOutcome& one : outcomes.sessions) shown[one.row.session] = &one;
@@ -137,8 +137,7 @@ void add_assignment(const Outcomes& outcomes, Collection& collection) {
   }
 }
 
-/// Adds how the answers of each session that is shown are spread, and takes away what was opened of
-/// the ends of others.
+/// Adds the answer spread of each shown session, and removes the opened outcome data of the others.
 void add_spreads(const std::vector<record::TrialRow>& trials,
                  const std::map<int, SessionOutcome>& shown, Collection& collection) {
   std::map<int, std::vector<record::TrialRow>> by_session;
@@ -167,7 +166,7 @@ void add_questionnaires(const OpenedSessions& opened, const study::Study& study,
   std::erase_if(outcomes.incidents, is_unseen);
   outcomes.marks = load_marks(opened.events(), keys);
   const std::map<int, Demographics> said = demographics_of(outcomes.answers, study);
-  outcomes.demographics = in_bands(said_by_participants(outcomes, said));
+  outcomes.demographics = in_bands(demographics_by_participant(outcomes, said));
   for (SessionRecord& record : outcomes.collection.sessions) {
     const auto own = said.find(record.row.session);
     if (own != said.end()) record.handedness_score = own->second.handedness_score;
@@ -186,8 +185,8 @@ void add_questionnaires(const OpenedSessions& opened, const study::Study& study,
                   participant, participant)));
 }
 
-/// Opens the sessions that `shows` names.
-/// \param participant  whose sessions alone are wanted; empty: the study's
+/// Opens the sessions for which `shows` is true.
+/// \param participant  only this participant's sessions; empty: all sessions
 template <typename Shows>
 Outcomes opened(const record::StudyStore& store, const study::StudyKey& key, Shows shows,
                 const std::string& participant) {
@@ -223,7 +222,7 @@ Outcomes opened(const record::StudyStore& store, const study::StudyKey& key, Sho
   outcomes.trials.reserve(trials.size());
   for (const record::TrialRow& row : trials) {
     const auto schedule = schedules.find(row.session);
-    if (schedule == schedules.end()) continue;  // without an opening
+    if (schedule == schedules.end()) continue;  // no session-opened event
     const auto session = sessions.find(row.session);
     if (session == sessions.end()) continue;
     TrialOutcome trial = outcome_of(row, session->second, schedule->second, key.study);
@@ -246,7 +245,7 @@ Outcomes load_outcomes(const record::StudyStore& store, const study::StudyKey& k
   require_key_of(store, key);
   const record::StudyState state = store.state();
   const auto shows = [&](const record::SessionRow& row) {
-    // A look at the registered question alone shows nobody's outcomes.
+    // A look at only the registered question shows no single outcomes.
     const bool in_results = state.unblinded && state.reports(row.session);
     if (participant.empty()) return in_results;
     return row.participant == participant && (in_results || state.looked_at.contains(row.session));

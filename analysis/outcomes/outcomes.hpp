@@ -36,9 +36,9 @@ struct ChosenLevel {
 struct TrialOutcome {
   std::string participant;
   record::TrialRow row;
-  study::StimulusIndex stimulus;       ///< of a track: what its step is about
+  study::StimulusIndex stimulus;       ///< of a track: the stimulus of its step
   double gain_db = 0.0;                ///< study::Plane::gain_db
-  std::vector<study::Plane> planes{};  ///< of the schedule; empty where an adaptive order chose
+  std::vector<study::Plane> planes{};  ///< from the schedule; empty if an adaptive order chose
   study::Role role = study::Role::scored;
   std::optional<ChosenLevel> chosen{};
   std::optional<int> picture{};  ///< class whose picture was shown with the question
@@ -53,7 +53,7 @@ struct TrialOutcome {
 
   /// Whether the response is right. A trial without a response is wrong.
   [[nodiscard]] bool correct() const noexcept { return response && response == right; }
-  /// Whether the trial is valid by the whole validity rule: its part in clear and its sealed part.
+  /// Whether the trial passes the whole validity rule: its clear part and its sealed part.
   [[nodiscard]] bool valid() const noexcept {
     return row.valid && (!measures || measures->within_limits);
   }
@@ -71,18 +71,18 @@ struct Outcomes {
   std::vector<std::string> choices;                 ///< labels of the alternatives
   std::vector<std::string> methods;                 ///< labels of the presented methods
   std::vector<SessionOutcome> sessions;             ///< by number, including erased sessions
-  /// The number of sessions that had not ended at an interim look. These are neither in `sessions`
-  /// nor in `trials`.
+  /// Sessions that had not ended at an interim look. They are neither in `sessions` nor in
+  /// `trials`.
   int sessions_unseen = 0;
   std::vector<TrialOutcome> trials;  ///< by session and trial, without erased sessions
-  study::Study design;               ///< the study file, which has the rule for drawing orders
-  LookRecord looked;                 ///< who looked at outcomes, and what was decided after that
+  study::Study design;               ///< the study file, including the rule for drawing orders
+  LookRecord looked;                 ///< looks at outcomes, and decisions after them
   Collection collection;
   std::vector<Characteristic> demographics{};  ///< of the participants who count
   std::vector<QuestionAnswer> answers{};       ///< of `sessions`
   std::vector<Incident> incidents{};           ///< of `sessions`, with texts and times
   std::vector<InstrumentMark> marks{};         ///< of `sessions`
-  /// The questions that were asked: the study's own, until somebody adds those of the program.
+  /// The questions that were asked: the study's own; the caller may add those of the program.
   Questionnaires asked{};
 };
 
@@ -93,25 +93,25 @@ struct Outcomes {
 ///
 /// A session counts if it was completed and is neither excluded, erased nor replaced, and its
 /// participant has all visits that the study needs. A pilot or simulated session counts only if the
-/// whole study is one. A scored trial of a counted session
-/// counts if it ended, either with an answer or without a response when time ran out. A trial that
-/// was interrupted and repeated keeps its number, and its last presentation with an answer counts.
-/// A trial that was interrupted and never repeated does not count. After an interim look, the
-/// result has only the sessions that had ended before it, until the next unblinding.
+/// whole study is one. A scored trial of a counted session counts if it ended, either with an
+/// answer or without a response when time ran out. A trial that was interrupted and repeated keeps
+/// its number, and its last presentation with an answer counts. A trial that was interrupted and
+/// never repeated does not count. After an interim look, the result has only the sessions that had
+/// ended before it, until the next unblinding.
 ///
 /// Chains, sealed ends and derived tables are checked against the events first; traces are not.
 ///
-/// \param participant  whose sessions alone are opened, if a look at this participant or at the
-///   study shows them; empty: the study's
+/// \param participant  opens only this participant's sessions, if a look at the participant or the
+///   study permits it; empty: all sessions
 /// \throws StoreError if the study has not been unblinded, or nothing shows this participant
 /// \throws VerificationError if the key does not match the database, the database is inconsistent,
 ///   or a session does not agree with its schedule; the message names the session
 [[nodiscard]] Outcomes load_outcomes(const record::StudyStore& store, const study::StudyKey& key,
                                      const std::string& participant = {});
 
-/// The same after a look at the registered question alone: only what question_alone (results.hpp)
-/// makes of it may be shown.
-/// \throws as load_outcomes; StoreError if the last look was none of that kind
+/// The same after a look at only the registered question. Show nothing but the result of
+/// question_alone (results.hpp).
+/// \throws as load_outcomes; StoreError if the last look was not of that kind
 [[nodiscard]] Outcomes load_for_question(const record::StudyStore& store,
                                          const study::StudyKey& key);
 

@@ -9,10 +9,9 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// The session by which each participant is counted, in order of these sessions. This is the
-/// participant's last session, of the visits that are needed; it replaced all earlier ones of its
-/// visit.
-std::map<int, const record::SessionRow*> sessions_that_stand(
+/// The session by which each participant is counted, ordered by session. This is the participant's
+/// last session among the visits that are needed; it replaces all earlier ones of its visit.
+std::map<int, const record::SessionRow*> counting_sessions(
     const std::vector<record::SessionRow>& rows, int visits_needed) {
   std::map<std::string, const record::SessionRow*> last;
   for (const record::SessionRow& row : rows) {
@@ -27,9 +26,9 @@ bool unseen_after_interim_look(const record::SessionRow& row, const record::Stud
   return (state.unblinded || state.question) && !state.reports(row.session);
 }
 
-/// The one counter of the flow that a participant's session belongs to.
-int& end_of(const record::SessionRow& row, const record::StudyCommitment& commitment,
-            int visits_needed, const record::StudyState& state, ParticipantFlow& flow) {
+/// The flow counter that a participant's session belongs to.
+int& flow_counter(const record::SessionRow& row, const record::StudyCommitment& commitment,
+                  int visits_needed, const record::StudyState& state, ParticipantFlow& flow) {
   if (row.erased) return flow.erased;
   if (!row.replaced_by.empty() && row.replaced_by != row.participant) return flow.replaced;
   if (row.excluded) return flow.excluded;
@@ -46,7 +45,7 @@ int& end_of(const record::SessionRow& row, const record::StudyCommitment& commit
 std::set<int> counted_sessions(std::span<const record::SessionRow> rows,
                                const record::StudyCommitment& commitment) {
   const int needed = prescription_from_json(commitment.configuration).visits_needed;
-  std::map<std::pair<std::string, int>, std::set<int>> visits;  // that count, by participant
+  std::map<std::pair<std::string, int>, std::set<int>> visits;  // counting visits by participant
   const auto own = [&](const record::SessionRow& row) -> std::set<int>& {
     return visits[{row.participant, row.enrolment}];
   };
@@ -71,10 +70,10 @@ ParticipantFlow participant_flow(const std::vector<record::SessionRow>& rows,
   }
   const int needed = prescription_from_json(commitment.configuration).visits_needed;
   ParticipantFlow flow;
-  for (const auto& [session, row] : sessions_that_stand(rows, needed)) {
+  for (const auto& [session, row] : counting_sessions(rows, needed)) {
     ++flow.enrolled;
     if (row->withdrawn) ++flow.withdrawn;
-    int& end = end_of(*row, commitment, needed, state, flow);
+    int& end = flow_counter(*row, commitment, needed, state, flow);
     ++end;
     if (&end == &flow.excluded) flow.exclusion_reasons.push_back(reasons[session]);
   }

@@ -96,7 +96,7 @@ void put_real_time(nlohmann::ordered_json& object, const ServoQuality& servo) {
   object["scheduling"] = servo.scheduling;
 }
 
-/// By session, in how many trials the hand was outside each window.
+/// For each session, the number of trials in which the hand was outside each window.
 nlohmann::ordered_json hands_json(const Collection& collection) {
   auto hands = nlohmann::ordered_json::array();
   for (const SessionRecord& session : collection.sessions) {

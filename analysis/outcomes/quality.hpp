@@ -1,6 +1,5 @@
-/// \file The report on the quality of data collection. It reveals nothing about outcomes, so it may
-/// be seen before a study is unblinded. It uses only what the database stores in clear and needs no
-/// key.
+/// \file The report on the quality of data collection. It uses only the unencrypted data and needs
+/// no key. It reveals nothing about outcomes, so it may be seen before a study is unblinded.
 #pragma once
 
 #include "analysis/outcomes/collection.hpp"
@@ -20,8 +19,8 @@ struct SessionCounts {
   int open = 0;
   int stopped = 0;
   int excluded = 0;
-  int replaced = 0;   ///< somebody else took the place, or the session was restarted
-  int erased = 0;     ///< the participant withdrew, and had the data erased
+  int replaced = 0;   ///< replaced by another participant, or restarted
+  int erased = 0;     ///< withdrew and requested erasure
   int withdrawn = 0;  ///< of participants who withdrew, among all of these, erased or not
   int pilot = 0;      ///< pilot sessions among all of these, if the study itself is not a pilot
 };
@@ -30,9 +29,9 @@ struct SessionCounts {
 struct TrialQuality {
   int presented = 0;
   int answered = 0;
-  int no_response = 0;   ///< time ran out
-  int paused = 0;        ///< answered, after a pause that leaves the answer without a time
-  int interrupted = 0;   ///< presentations that were interrupted, repeated or not, but for a pause
+  int no_response = 0;   ///< timed out
+  int paused = 0;        ///< answered after a pause, so without a reaction time
+  int interrupted = 0;   ///< interrupted presentations, repeated or not, except for pauses
   int not_repeated = 0;  ///< trials that were interrupted and not presented again yet
   int with_trace = 0;
   int valid = 0;              ///< trials with a trace that are valid by the study's rule
@@ -65,8 +64,7 @@ struct QualityReport {
   std::optional<ServoQuality> servo;  ///< empty if no session was in real time
   bool visual = false;                ///< textures were seen on a screen, not felt
   Collection collection;              ///< participant flow, deviations, stations
-  std::vector<std::string>
-      notes{};  ///< where a clock went back, see chain_notes; texts that are a draft
+  std::vector<std::string> notes{};   ///< clocks that went back (chain_notes) and draft texts
 };
 
 /// "collecting", "closed" or "unblinded"

@@ -1,4 +1,4 @@
-/// \file The pack with which a database was recorded.
+/// \file Finds the pack with which a database was recorded.
 #pragma once
 
 #include "engine/pack/pack.hpp"
@@ -11,7 +11,7 @@
 namespace touchtrial::analysis {
 
 /// The pack with which the database was recorded.
-/// \param folder  empty: where the key says
+/// \param folder  empty: the path in the key
 /// \return nothing if there is no pack, or the pack is a different one
 [[nodiscard]] std::optional<engine::Pack> pack_of(const record::StudyStore& store,
                                                   const study::StudyKey& key,

@@ -30,11 +30,11 @@ std::string place_of(const record::Event& event) {
 
 [[noreturn]] void refuse_sealed(const record::Event& event) {
   throw VerificationError(place_of(event) +
-                          ": the sealed part does not open: the event is damaged, or was made anew "
+                          ": the sealed part does not open: the event is damaged, or was rewritten "
                           "without the key; restore a backup of the database");
 }
 
-/// Calls `visit` with an event, opened, and its secret text, if its session has a key.
+/// Calls `visit` with an opened event and its secret text, if its session has a key.
 template <typename Visit>
 void read_secret(const record::Event& stored, const SessionKeys& keys, Visit visit) {
   const auto own = keys.find(stored.session);
@@ -47,7 +47,7 @@ void read_secret(const record::Event& stored, const SessionKeys& keys, Visit vis
   }
 }
 
-/// The same with each event of a kind.
+/// The same for each event of a kind.
 template <typename Visit>
 void for_each_secret(const StudyEvents& events, const SessionKeys& keys, record::EventKind kind,
                      Visit visit) {
@@ -55,14 +55,14 @@ void for_each_secret(const StudyEvents& events, const SessionKeys& keys, record:
                      [&](const record::Event& stored) { read_secret(stored, keys, visit); });
 }
 
-/// What the events of a session come to.
+/// The trials and measures from a session's events.
 struct OpenedTrials {
   record::DerivedRows rows;
   Measures measures;
   std::exception_ptr fault;
 
-  /// Keeps an error instead of throwing it, so that the first session's is reported, whichever
-  /// thread finds one first.
+  /// Stores an error instead of throwing it, so that the first session's error is reported
+  /// whichever thread finishes first.
   /// \param measured  whether measures are wanted
   void open(std::vector<record::Event> events, const SecretKey& own, bool measured) noexcept {
     try {
@@ -75,7 +75,7 @@ struct OpenedTrials {
     }
   }
 
-  /// Adds the trials to those of the sessions before.
+  /// Appends the trials to those of earlier sessions.
   void move_to(std::vector<record::TrialRow>& trials, Measures* all) {
     if (fault) std::rethrow_exception(fault);
     for (const auto& [id, row] : rows.trials) trials.push_back(row);
@@ -141,20 +141,20 @@ void require_key_of(const record::StudyStore& store, const study::StudyKey& key)
   const record::StudyCommitment& commitment = store.commitment();
   if (key.study_id != commitment.study_id) {
     throw VerificationError(fmt::format(
-        "the key is of study {} ({}) and the database of study {} ({}); give the key "
-        "that was made with this database's pack",
+        "the key is of study {} ({}), but the database is of study {} ({}); give the key that was "
+        "made with this database's pack",
         one_line(key.study.name), key.study_id, one_line(commitment.study), commitment.study_id));
   }
   if (key.seal != commitment.seal) {
     throw VerificationError(
         fmt::format("the key does not match the seal of study {} ({}): key or study changed after "
-                    "the first session; give the key as it was then",
+                    "the first session; give the key from that time",
                     one_line(commitment.study), to_hex(commitment.seal).substr(0, 16)));
   }
   if (key.investigator_signature != commitment.investigator) {
     throw VerificationError(
-        "the database names another investigator than the key's holder: it was not begun with this "
-        "study's files");
+        "the database names another investigator than the key: it was not created with this "
+        "study's files; give the key that belongs to it");
   }
 }
 
@@ -220,7 +220,7 @@ struct OpenedSessions::Session {
   record::PersonKeys own;
   std::vector<record::Event> kept;
   OpenedTrials trials;
-  std::exception_ptr fault;  ///< of a key
+  std::exception_ptr fault;  ///< an error from opening the key
 
   void read(const BoxKeys& investigator, std::vector<record::Event> events) noexcept {
     try {
@@ -268,15 +268,16 @@ std::vector<record::TrialRow> OpenedSessions::take_trials(Measures& measures) {
 }
 
 void require_sealed_ends(const StudyEvents& events, const SessionKeys& keys) {
-  for_each_secret(events, keys, record::EventKind::closed,
-                  [&](const record::Event& event, const std::string& text) {
-                    const record::ChainEnd before{.length = event.sequence, .head = event.previous};
-                    if (record::chain_end_from_json(text) == before) return;
-                    throw VerificationError(place_of(event) +
-                                            ": the chain is not the one whose end was sealed here: "
-                                            "it was made anew without the key; "
-                                            "restore a backup of the database");
-                  });
+  for_each_secret(
+      events, keys, record::EventKind::closed,
+      [&](const record::Event& event, const std::string& text) {
+        const record::ChainEnd before{.length = event.sequence, .head = event.previous};
+        if (record::from_json<record::ChainEnd>(text) == before) return;
+        throw VerificationError(
+            place_of(event) +
+            ": the chain does not match its sealed end: it was rewritten without the key; "
+            "restore a backup of the database");
+      });
 }
 
 record::Trace open_trace(const std::optional<record::SealedTrace>& sealed,

@@ -28,13 +28,13 @@ void require_key_of(const record::StudyStore& store, const study::StudyKey& key)
                                                        const study::StudyKey& key,
                                                        const record::SessionRow& session);
 
-/// What is left of a session's keys.
+/// The keys of a session that have not been erased.
 /// \throws VerificationError as participant_key does, for either key
 [[nodiscard]] record::PersonKeys person_keys(const record::StudyStore& store,
                                              const study::StudyKey& key,
                                              const record::SessionRow& session);
 
-/// The same of every session, by session: unwrapped once, for all that open parts of a study.
+/// The same for every session. Keys are unwrapped once and shared by all readers of a study.
 using SessionKeys = std::map<int, record::PersonKeys>;
 /// \throws the same
 [[nodiscard]] SessionKeys person_keys(const record::StudyStore& store, const study::StudyKey& key);
@@ -43,9 +43,9 @@ using SessionKeys = std::map<int, record::PersonKeys>;
 /// \param own  the participant's key
 /// \throws VerificationError, naming the event, if it does not open
 [[nodiscard]] record::OpenedEvent whole_event(const record::Event& event, const SecretKey& own);
-/// The same with whatever key is left, of any chain.
+/// The same with any remaining key, for an event of any chain.
 /// \param row  of the session that the event is about
-/// \return the event as it is stored, if what opens it was erased
+/// \return the event as it is stored, if its key was erased
 /// \throws the same
 [[nodiscard]] record::Event readable_event(const record::Event& event,
                                            const record::SessionRow& row,
@@ -59,22 +59,22 @@ using Measures = std::map<std::pair<int, int>, record::TrialMeasures>;
 [[nodiscard]] std::vector<record::TrialRow> open_trials(const record::StudyStore& store,
                                                         const SessionKeys& keys);
 
-/// A study with its key: every event is read once, checked and opened, several sessions at a time.
+/// A study with its key. Every event is read, checked and opened once, in parallel over sessions.
 class OpenedSessions {
  public:
-  /// \throws VerificationError if chains or derived tables are not whole (traces are not checked),
-  ///   or as person_keys
+  /// \throws VerificationError if chains or derived tables are damaged (traces are not checked), or
+  ///   as person_keys
   OpenedSessions(const record::StudyStore& store, const study::StudyKey& key);
   ~OpenedSessions();
   OpenedSessions(const OpenedSessions&) = delete;
   OpenedSessions& operator=(const OpenedSessions&) = delete;
 
   [[nodiscard]] const SessionKeys& keys() const noexcept { return keys_; }
-  /// Those that are kept, as they are stored.
+  /// The kept events (StudyEvents::is_kept), as stored.
   [[nodiscard]] const StudyEvents& events() const noexcept { return events_; }
-  /// As open_trials; once.
-  /// \param measures  gets those of all trials with a trace; for a repeated trial, the last
-  ///   presentation counts
+  /// As open_trials. Call at most once.
+  /// \param measures  receives the measures of all trials with a trace; for a repeated trial, of
+  ///   the last presentation
   [[nodiscard]] std::vector<record::TrialRow> take_trials(Measures& measures);
 
  private:
@@ -85,8 +85,8 @@ class OpenedSessions {
   StudyEvents events_;
 };
 
-/// Checks the chain of every session that has ended and is not erased against the end that was
-/// sealed with it. Somebody without the key can rebuild a chain, but cannot seal its end.
+/// Compares the chain of every ended session that is not erased with its sealed end. Without the
+/// key a chain can be rebuilt, but its end cannot be sealed.
 /// \throws VerificationError, naming the session, if a sealed end belongs to another chain
 void require_sealed_ends(const StudyEvents& events, const SessionKeys& keys);
 

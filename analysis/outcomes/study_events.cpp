@@ -8,8 +8,8 @@ namespace touchtrial::analysis {
 
 namespace {
 
-/// Whether a report has no use for the kind but to open trials.
-bool tells_of_trials(record::EventKind kind) {
+/// Whether reports use this kind only to open trials.
+bool is_trial_kind(record::EventKind kind) {
   switch (kind) {
     case record::EventKind::presented:
     case record::EventKind::first_contact:
@@ -26,19 +26,20 @@ bool tells_of_trials(record::EventKind kind) {
 }  // namespace
 
 bool StudyEvents::is_kept(const record::Event& event) {
-  if (event.kind == record::EventKind::trace_stored) return names_servo(event);
-  return !tells_of_trials(event.kind);
+  if (event.kind == record::EventKind::trace_stored) return has_servo(event);
+  return !is_trial_kind(event.kind);
 }
 
-bool StudyEvents::names_servo(const record::Event& trace_stored) {
+bool StudyEvents::has_servo(const record::Event& trace_stored) {
   return trace_stored.body.find("\"servo\"") != std::string::npos;
 }
 
 void StudyEvents::for_each_of(std::span<const record::EventKind> kinds,
                               const std::function<void(const record::Event&)>& visit) const {
   if (!kept_) return store_->for_each_of(kinds, visit);
-  if (std::ranges::any_of(kinds, tells_of_trials)) {
-    throw std::logic_error("events of trials are not kept; StudyEvents::is_kept has to name them");
+  if (std::ranges::any_of(kinds, is_trial_kind)) {
+    throw std::logic_error(
+        "events of trials are not kept in memory; StudyEvents::is_kept must include them");
   }
   for (const auto& [session, events] : *kept_) {
     for (const record::Event& event : events) {

@@ -1,4 +1,4 @@
-/// \file The events of a study's sessions by kind, from its database or kept in memory.
+/// \file The events of a study's sessions by kind, from its database or from memory.
 #pragma once
 
 #include "record/study_store.hpp"
@@ -14,24 +14,24 @@ namespace touchtrial::analysis {
 /// Events by session, each session's in order.
 using EventsOfSessions = std::map<int, std::vector<record::Event>>;
 
-/// Most events tell of presentations, answers and traces, and a report reads those once, with the
-/// check of their chains (OpenedSessions). All others that a session has are few, and can be kept.
+/// Most events record presentations, answers and traces, which a report reads once while it checks
+/// their chains (OpenedSessions). All other events of a session are few and can be kept in memory.
 class StudyEvents {
  public:
   /// Reads the database each time.
   StudyEvents(const record::StudyStore& store) : store_(&store) {}  // NOLINT: stands for its events
-  /// \param kept  all events that is_kept names
+  /// \param kept  all events for which is_kept is true
   StudyEvents(const record::StudyStore& store, EventsOfSessions kept)
       : store_(&store), kept_(std::move(kept)) {}
 
-  /// A trace-stored event is kept only if it tells of a servo.
+  /// A trace-stored event is kept only if it has servo timing.
   [[nodiscard]] static bool is_kept(const record::Event& event);
-  /// Most traces come from simulated sessions; a body that names no servo need not be parsed.
-  [[nodiscard]] static bool names_servo(const record::Event& trace_stored);
+  /// A cheap test: most traces come from simulated sessions and need not be parsed.
+  [[nodiscard]] static bool has_servo(const record::Event& trace_stored);
 
   [[nodiscard]] const record::StudyStore& store() const noexcept { return *store_; }
-  /// Calls `visit` for the events of these kinds, by session and sequence. Of traces, kept events
-  /// are those that tell of a servo.
+  /// Calls `visit` for the events of these kinds, by session and sequence. If events are kept in
+  /// memory, traces without servo timing are left out.
   /// \throws std::logic_error for a kind that is not kept
   void for_each_of(std::span<const record::EventKind> kinds,
                    const std::function<void(const record::Event&)>& visit) const;

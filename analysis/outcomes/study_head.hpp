@@ -1,4 +1,4 @@
-/// \file The part that all reports have in common, whatever the protocol.
+/// \file The part that the reports of all protocols share.
 #pragma once
 
 #include "analysis/outcomes/collection.hpp"
@@ -13,12 +13,12 @@
 
 namespace touchtrial::analysis {
 
-/// How hands explored the counted trials of one method, each with the same weight. Contact, path,
-/// force and speed are of the trials with a trace that touched the plane.
+/// How hands explored the counted trials of one method, with equal weight for each trial. Contact,
+/// path, force and speed are from trials with a trace that touched the plane.
 struct Explorations {
   std::string method;
   int trials = 0;
-  int without_response = 0;  ///< the time ran out
+  int without_response = 0;  ///< timed out
   Quartiles answer_s;        ///< from the moment the plane can be felt to the answer
   Quartiles contact_s;       ///< at the plane
   Quartiles path_mm;         ///< along the plane, while in contact
@@ -38,23 +38,23 @@ struct StudyHead {
   Collection collection;                       ///< how it was collected
   record::StudyState state{};                  ///< unblinded; an interim look if not closed
   study::Registration registration;            ///< the registration deposited before collection
-  std::vector<std::string> warnings;           ///< how a reader could misread the numbers
+  std::vector<std::string> warnings;           ///< ways to misread the numbers
   std::vector<Explorations> explorations{};    ///< of each method, in the order of Outcomes
   std::vector<Characteristic> demographics{};  ///< of the participants who count, in bands
   std::vector<QuestionSummary> said{};         ///< answers to closing questions
-  std::vector<Look> looks{};                   ///< at outcomes, by whomever
+  std::vector<Look> looks{};                   ///< all looks at outcomes
   std::vector<std::string> departures{};       ///< departures_of
-  StudyCourse course{};                        ///< numbers of people and looks
-  std::optional<PrimaryResult> primary{};      ///< if the protocol has a question that decides
-  std::optional<Prevalence> prevalence{};      ///< if each participant takes a test against chance
+  StudyCourse course{};                        ///< planned and actual numbers of people and looks
+  std::optional<PrimaryResult> primary{};      ///< if the protocol has a registered question
+  std::optional<Prevalence> prevalence{};      ///< if each participant is tested against chance
 };
 
 /// Fills in everything except the warnings, `primary` and `prevalence`.
 [[nodiscard]] StudyHead head_of(const Outcomes& outcomes);
 
 /// The JSON object of a report: the head's members, the protocol's own members, then warnings,
-/// registration, collection, and what was registered with its answer. Indented, ending with a line
-/// feed.
+/// registration, collection, and the registered question with its answer. Indented, ending with a
+/// line feed.
 ///
 /// \param members  the protocol's members, as a JSON object
 [[nodiscard]] std::string framed_json(const StudyHead& head, const std::string& members);

@@ -44,7 +44,7 @@ PersonStatus of_session(const SessionRecord& record, const record::StudyCommitme
   one.group = record.group;
   one.state = standing_of(row);
   one.counts = session_counts(row, commitment);
-  one.may_go_on = row.may_go_on();
+  one.can_resume = row.can_resume();
   one.opened_utc = record.opened_utc;
   one.device = row.device;
   if (record.station) {
@@ -80,7 +80,7 @@ void add_times_and_answers(const record::StudyStore& store, std::vector<PersonSt
   }
 }
 
-/// Those who take somebody's place, and those who have consented, without a session so far.
+/// Adds replacements and consented participants without a session so far.
 void add_people_to_come(const StatusSources& sources, const LastConsents& consents,
                         const std::vector<record::SessionRow>& rows,
                         std::vector<PersonStatus>& people) {
@@ -103,7 +103,7 @@ void add_people_to_come(const StatusSources& sources, const LastConsents& consen
   };
   for (const record::SessionRow& row : rows) {
     if (row.replaced_by.empty()) continue;
-    // Who takes a place begins with the first visit.
+    // A replacement begins with the first visit.
     const bool is_again = row.replaced_by == row.participant;
     add(row.replaced_by, row.erased ? "" : row.participant, row.enrolment,
         is_again ? row.visit : 1);
@@ -119,7 +119,7 @@ std::optional<OrderBlocks> order_blocks(const std::vector<record::SessionRow>& r
   const int orders = prescription.method_orders;
   const bool is_only = commitment.station && commitment.station->name == study::kOnlyStation;
   if (orders < 2 || (!is_only && !sources.station)) return std::nullopt;
-  // Orders are dealt within each group, and which number is in which group is sealed.
+  // Orders are assigned within each group, and group assignments are sealed.
   if (!prescription.groups.empty()) return std::nullopt;
   std::map<int, std::set<int>> filled;  // numbers with a session that counts, by block
   for (const record::SessionRow& row : rows) {
@@ -155,11 +155,11 @@ void add_about_people(const StudyStatus& status, const StatusSources& sources,
   const auto say = [&](const std::vector<std::string>& ids, const std::string& what) {
     if (!ids.empty()) left.push_back(listed(ids, " and ") + ": " + what);
   };
-  say(ids_of(status, [](const PersonStatus& one) { return one.may_go_on; }),
+  say(ids_of(status, [](const PersonStatus& one) { return one.can_resume; }),
       "the session is open; resume it, or end it");
   for (const PersonStatus& one : status.people) {
     if (!one.in_place_of.empty() && one.in_place_of != one.participant) {
-      left.push_back(fmt::format("{} takes the place of {} (enrolment {}), and has no session yet",
+      left.push_back(fmt::format("{} replaces {} (enrolment {}) and has no session yet",
                                  one.participant, one.in_place_of, one.enrolment));
     }
   }
@@ -167,7 +167,7 @@ void add_about_people(const StudyStatus& status, const StatusSources& sources,
              [](const PersonStatus& one) {
                return one.state == "to come" && one.in_place_of == one.participant;
              }),
-      "the session was restarted, and is to come");
+      "the session was restarted and has not begun");
   for (const UpcomingVisit& one : status.upcoming_visits) {
     left.push_back(fmt::format("{}: visit {} of {} is to come{}{}", one.participant, one.visit,
                                status.visits, one.from ? ", from " + utc_words(*one.from) : "",
@@ -185,20 +185,19 @@ void add_about_people(const StudyStatus& status, const StatusSources& sources,
                [&](const PersonStatus& one) {
                  return !one.consent.empty() && one.consent != sources.consent_version;
                }),
-        "consented to another version than " + sources.consent_version +
-            ", which the study asks for");
+        "consented to a version other than " + sources.consent_version +
+            ", which the study requires");
   }
   say(ids_of(status,
              [](const PersonStatus& one) {
                return one.counts && one.was_felt && one.certificate == study::kUnverifiedDevice;
              }),
-      std::string(study::kUnverifiedDevice) +
-          ": the session had no valid certificate of the device");
+      std::string(study::kUnverifiedDevice) + ": the session had no valid device certificate");
   say(ids_of(status,
              [](const PersonStatus& one) {
                return one.counts && one.was_felt && one.certificate.empty();
              }),
-      "the session had no valid certificate of the device");
+      "the session had no valid device certificate");
 }
 
 void add_about_study(const StudyStatus& status, std::vector<std::string>& left) {
@@ -209,15 +208,14 @@ void add_about_study(const StudyStatus& status, std::vector<std::string>& left) 
   }
   if (!status.state.closed && is_full) {
     left.emplace_back(
-        "all participants that are planned are complete: end collection with "
-        "`touchtrial close`");
+        "all planned participants are complete: end collection with `touchtrial close`");
   }
   if (status.state.closed && (!status.state.unblinded || status.state.interim)) {
     left.emplace_back("collection has ended: `touchtrial unblind` opens the outcomes");
   }
 }
 
-/// Words and numbers of a cell; "-" for nothing.
+/// A cell's text; "-" if empty.
 std::string shown_or_dash(const std::string& text) {
   return text.empty() ? "-" : text;
 }
@@ -237,7 +235,7 @@ std::string minute_of(const std::string& iso) {
 
 std::string orders_sentence(const OrderBlocks& blocks) {
   std::string text =
-      fmt::format("orders of methods: {}, dealt in blocks of {} enrolment numbers; {} complete",
+      fmt::format("orders of methods: {}, assigned in blocks of {} enrolment numbers; {} complete",
                   blocks.orders, blocks.orders, counted(blocks.complete, "block"));
   for (const int n : blocks.open) text += fmt::format(", one with {} of {}", n, blocks.orders);
   return text;
@@ -298,7 +296,7 @@ nlohmann::ordered_json person_json(const PersonStatus& one) {
           {"station", one.station},
           {"state", one.state},
           {"counts", one.counts},
-          {"may_go_on", one.may_go_on},
+          {"may_go_on", one.can_resume},
           {"answered", one.answered},
           {"opened_utc", one.opened_utc},
           {"ended_utc", one.ended_utc},
@@ -316,7 +314,7 @@ std::vector<UpcomingVisit> upcoming_visits(const record::StudyStore& store) {
   std::map<int, std::chrono::nanoseconds> opened;
   for (const record::Event& event : store.events(0)) {
     if (event.kind == record::EventKind::session_opened) {
-      opened[record::session_opened_from_json(event.body).session] = event.at;
+      opened[record::from_json<record::SessionOpenedBody>(event.body).session] = event.at;
     }
   }
   using Days = std::chrono::duration<double, std::ratio<86'400>>;
@@ -339,9 +337,9 @@ std::vector<UpcomingVisit> upcoming_visits(const record::StudyStore& store) {
     next.participant = participant;
     next.visit = row->visit + 1;
     if (row->simulated) continue;
-    next.from = after(opened[row->session], prescription.least_days);
-    if (prescription.most_days) {
-      next.until = after(opened[row->session], *prescription.most_days);
+    next.from = after(opened[row->session], prescription.min_days);
+    if (prescription.max_days) {
+      next.until = after(opened[row->session], *prescription.max_days);
     }
   }
   std::ranges::stable_sort(visits, {}, &UpcomingVisit::from);
@@ -359,7 +357,7 @@ StudyStatus status_before(const std::string& study, const std::string& protocol,
     consents[one.participant] = one.consent_version;
   }
   add_people_to_come(sources, consents, {}, status.people);
-  status.left.emplace_back("there is no database yet: the first session makes it");
+  status.left.emplace_back("there is no database yet; the first session creates it");
   add_about_people(status, sources, status.left);
   add_about_study(status, status.left);
   return status;

@@ -58,7 +58,7 @@ double disagreement_of(const CellPairs& pairs, double mean, const Number& deviat
   return mean > 0.0 ? 100.0 * (high - low) / mean : 0.0;
 }
 
-bool changes_as_text_says(const CellPair& pair) {
+bool changes_as_in_text(const CellPair& pair) {
   return pair.after.angular_second_moment > pair.before.angular_second_moment &&
          pair.after.contrast < pair.before.contrast &&
          pair.after.correlation < pair.before.correlation;
@@ -84,7 +84,7 @@ TableSummary summary_of_pairs(const CellPairs& pairs) {
   summary.asm_rises = std::any_of(pairs.begin(), pairs.end(), [](const CellPair& pair) {
     return pair.after.angular_second_moment > pair.before.angular_second_moment;
   });
-  summary.as_text_says = std::all_of(pairs.begin(), pairs.end(), changes_as_text_says);
+  summary.agrees_with_text = std::all_of(pairs.begin(), pairs.end(), changes_as_in_text);
   return summary;
 }
 
@@ -118,7 +118,8 @@ double order_of_entropy(const engine::Evaluation& evaluation) {
       ->order;
 }
 
-/// The rms of the texture of the lowest order over the adaptive one's; 0 if that is flat.
+/// The rms of the lowest order's texture divided by that of the adaptive one; 0 if the latter is
+/// flat.
 double weakest_share(const MeasuredPicture& one) {
   return one.adaptive.rms_grey > 0.0 ? one.fixed[0].rms_grey / one.adaptive.rms_grey : 0.0;
 }
@@ -190,26 +191,26 @@ void add_orders(std::vector<PaperClaim>& claims, const PaperMeasures& measures) 
 }
 
 void add_change(std::vector<PaperClaim>& claims, const PaperMeasures& measures, std::string id,
-                const std::string& says, const PaperStatistic& statistic, bool rises) {
-  const CellChanges ours = measured_changes(measures, statistic);
+                const std::string& statement, const PaperStatistic& statistic, bool rises) {
+  const CellChanges measured = measured_changes(measures, statistic);
   const char* verb = rises ? "rises" : "falls";
-  const int agreeing = rises ? ours.rising : ours.falling;
+  const int agreeing = rises ? measured.rising : measured.falling;
   std::string in_paper = "The paper does not compute it";
   if (statistic.published != nullptr) {
     const CellChanges theirs = published_changes(statistic);
     in_paper = fmt::format("It {} in {} of the paper's {} cells", verb,
                            rises ? theirs.rising : theirs.falling, theirs.of);
   }
-  claims.push_back({std::move(id), "Table 1", says,
-                    fmt::format("{}, and in {} of {} here.", in_paper, agreeing, ours.of), agreeing,
-                    ours.of});
+  claims.push_back({std::move(id), "Table 1", statement,
+                    fmt::format("{}, and in {} of {} here.", in_paper, agreeing, measured.of),
+                    agreeing, measured.of});
   if (statistic.published == nullptr) {
-    claims.back().ours =
-        fmt::format("{}; it {} in {} of {} cells here.", in_paper, verb, agreeing, ours.of);
+    claims.back().measured =
+        fmt::format("{}; it {} in {} of {} cells here.", in_paper, verb, agreeing, measured.of);
   }
 }
 
-/// How wide the exact intervals of the reported accuracies are.
+/// The widths of the exact intervals of the reported accuracies.
 std::string exact_widths() {
   constexpr int kTrials = kPublishedPeople * kPublishedTrialsOfClass;
   double low = 1.0;
@@ -297,8 +298,8 @@ CellChanges measured_changes(const PaperMeasures& measures, const PaperStatistic
   CellChanges changes;
   for (const MeasuredPicture& one : measures.pictures) {
     for (std::size_t i = 0; i < engine::kGlcmOffsets.size(); ++i) {
-      count_change(changes, one.evaluation.original.glcm[i].*statistic.ours,
-                   one.evaluation.adaptive.glcm[i].*statistic.ours);
+      count_change(changes, one.evaluation.original.glcm[i].*statistic.measured,
+                   one.evaluation.adaptive.glcm[i].*statistic.measured);
     }
   }
   return changes;

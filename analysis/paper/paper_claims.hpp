@@ -1,5 +1,5 @@
-/// \file Statements of the source paper held against measures of pictures. Whether ours agree is
-/// always counted from the measures.
+/// \file Statements of the source paper, checked against measures of pictures. Agreement is always
+/// computed from the measures.
 #pragma once
 
 #include "analysis/paper/paper_measures.hpp"
@@ -14,12 +14,12 @@
 
 namespace touchtrial::analysis {
 
-/// A statement of the paper, and how many of our pictures or cells agree with it.
+/// A statement of the paper, and the number of measured pictures or cells that agree with it.
 struct PaperClaim {
   std::string id;
-  std::string where;  ///< "Fig. 3"
-  std::string says;   ///< the statement, in our words
-  std::string ours;   ///< what was measured
+  std::string where;      ///< "Fig. 3"
+  std::string statement;  ///< the statement, rephrased
+  std::string measured;   ///< what was measured
   int agreeing = 0;
   int of = 0;  ///< 0 if nothing here can test the statement
 };
@@ -31,7 +31,7 @@ struct PaperClaim {
 struct PaperStatistic {
   std::string_view name;
   PublishedRow PublishedPicture::*published = nullptr;  ///< null: the paper does not have it
-  double engine::GlcmStatistics::*ours = nullptr;
+  double engine::GlcmStatistics::*measured = nullptr;
   int decimals = 0;
 };
 
@@ -42,7 +42,7 @@ inline constexpr std::array<PaperStatistic, 5> kPaperStatistics = {
      {"correlation", &PublishedPicture::correlation, &engine::GlcmStatistics::correlation, 3},
      {"true entropy, nats", nullptr, &engine::GlcmStatistics::entropy, 3}}};
 
-/// How a statistic changes by extraction, over the cells of a table.
+/// How extraction changes a statistic, over the cells of a table.
 struct CellChanges {
   int rising = 0;
   int falling = 0;
@@ -61,15 +61,15 @@ struct CellChanges {
 struct TableSummary {
   double deviation_before = 0.0;  ///< of the grey levels, implied by contrast and correlation
   double deviation_after = 0.0;
-  /// The largest relative difference, in percent, between the deviations that the four directions
-  /// imply, before or after; small if the cells of contrast and correlation agree.
+  /// The largest relative difference, in percent, between the deviations implied by the four
+  /// directions, before or after; small if contrast and correlation are consistent.
   double disagreement_percent = 0.0;
   double contrast_ratio = 0.0;  ///< after over before; NaN if there was no contrast
   double correlation_after = 0.0;
   bool contrast_rises = false;  ///< in every direction
   bool asm_rises = false;       ///< in any direction
   /// ASM rises, contrast falls and correlation falls, in every direction.
-  bool as_text_says = false;
+  bool agrees_with_text = false;
 };
 
 [[nodiscard]] TableSummary summary_of(const PublishedPicture& picture);
@@ -79,12 +79,13 @@ struct TableSummary {
 /// The smallest mean correlation over directions of a texture in the paper's table.
 [[nodiscard]] double published_least_correlation();
 
-/// Whether a texture's table is like the paper's contradicting picture: contrast rises in every
-/// direction, ASM in none, and the mean correlation is at least the paper's smallest.
+/// Whether a texture's table resembles the picture that contradicts the paper's text: contrast
+/// rises in every direction, ASM in none, and the mean correlation is at least the paper's
+/// smallest.
 [[nodiscard]] bool is_like_contradiction(const TableSummary& summary);
 
-/// The smallest and the largest of a number over pictures, for example "0.02 to 0.18"; "-" if it is
-/// finite for none.
+/// The smallest and the largest of a number over pictures, for example "0.02 to 0.18"; "-" if none
+/// is finite.
 [[nodiscard]] std::string range_over(const std::vector<MeasuredPicture>& pictures, int decimals,
                                      const std::function<double(const MeasuredPicture&)>& number);
 

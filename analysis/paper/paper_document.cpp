@@ -23,7 +23,7 @@ constexpr std::array<double, 3> kSpreads = {0.0, 0.10, 0.20};
 /// Table 3: presentations per person and method, if four pictures are felt five times each.
 constexpr int kTrialsOfMethod = 4 * kPublishedTrialsOfClass;
 
-/// Deviations of one picture that differ by less are the same number, rounded.
+/// Deviations of one picture that differ by less are equal up to the paper's rounding.
 constexpr double kAgreement_percent = 1.0;
 
 std::string decimal(double number, int decimals) {
@@ -46,7 +46,7 @@ Section beside_paper(const PaperMeasures& measures, const std::string& source) {
                           {"found", Align::left},
                           {"verdict", Align::left}}};
   for (const PaperClaim& claim : paper_claims(measures)) {
-    table.rows.push_back({claim.where, claim.says, claim.ours, {verdict_of(claim), true}});
+    table.rows.push_back({claim.where, claim.statement, claim.measured, {verdict_of(claim), true}});
   }
   table.notes = {
       {"A verdict counts pictures, or cells of Table 1 (one statistic of one picture in "
@@ -164,7 +164,7 @@ void add_measured_rows(Table& table, const MeasuredPicture& one) {
     for (const engine::GlcmTable* const picture :
          {&one.evaluation.original.glcm, &one.evaluation.adaptive.glcm}) {
       for (const engine::GlcmStatistics& direction : *picture) {
-        cells.emplace_back(decimal(direction.*statistic.ours, statistic.decimals));
+        cells.emplace_back(decimal(direction.*statistic.measured, statistic.decimals));
       }
     }
     table.rows.push_back(std::move(cells));
@@ -231,7 +231,7 @@ void add_summary(Table& table, std::string name, const TableSummary& summary) {
                         decimal(summary.deviation_after, 1),
                         decimal(summary.deviation_after / summary.deviation_before, 2),
                         decimal(summary.contrast_ratio, 2), decimal(summary.correlation_after, 3),
-                        summary.as_text_says ? "yes" : "no"});
+                        summary.agrees_with_text ? "yes" : "no"});
 }
 
 Table summary_table(const PaperMeasures& measures) {
@@ -260,7 +260,7 @@ Table summary_table(const PaperMeasures& measures) {
   return table;
 }
 
-/// The number of pictures of one reading that are like the paper's pictures in some respect.
+/// The number of pictures that meet a condition under one reading.
 template <typename Condition>
 std::string count_in_reading(const PaperMeasures& measures, std::size_t reading,
                              const Condition& condition) {
@@ -293,10 +293,11 @@ Table readings_table(const PaperMeasures& measures) {
     table.rows.push_back(
         {kTableReadings[i].words, range_in_reading(measures, i, &TableSummary::contrast_ratio, 2),
          range_in_reading(measures, i, &TableSummary::correlation_after, 3),
-         count_in_reading(measures, i, [](const TableSummary& one) { return one.as_text_says; }),
+         count_in_reading(measures, i,
+                          [](const TableSummary& one) { return one.agrees_with_text; }),
          count_in_reading(measures, i,
                           [&](const TableSummary& one) {
-                            return one.as_text_says && one.correlation_after >= least;
+                            return one.agrees_with_text && one.correlation_after >= least;
                           }),
          count_in_reading(measures, i, is_like_contradiction)});
   }
@@ -308,7 +309,7 @@ Table readings_table(const PaperMeasures& measures) {
   return table;
 }
 
-/// The words for the readings under which a picture is as a condition says.
+/// The names of the readings under which a picture meets a condition.
 template <typename Condition>
 std::string readings_with(const PaperMeasures& measures, const Condition& condition) {
   std::string words;
@@ -363,7 +364,7 @@ std::string correlation_words(const PaperMeasures& measures) {
       "correlation change as the text says: {}. The paper gives neither the size of its mask nor "
       "its normalisation, so which one it used cannot be decided.",
       least, readings_with(measures, [&](const TableSummary& one) {
-        return one.as_text_says && one.correlation_after >= least;
+        return one.agrees_with_text && one.correlation_after >= least;
       }));
 }
 

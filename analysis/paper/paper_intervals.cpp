@@ -11,7 +11,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// Rounding may leave the widest spread this far above the root that it is.
+/// Rounding tolerance for a spread equal to widest_spread.
 constexpr double kSpreadRounding = 1e-12;
 
 void require_assumptions(bool in_range) {
@@ -21,7 +21,7 @@ void require_assumptions(bool in_range) {
   }
 }
 
-/// Half the width of a t interval over people whose shares have this variance.
+/// The half-width of a t interval over people whose shares have this variance.
 double half_width(double variance, int people) {
   const boost::math::students_t t(people - 1.0);
   return boost::math::quantile(t, 0.5 + 0.5 * kConfidenceLevel) * std::sqrt(variance / people);

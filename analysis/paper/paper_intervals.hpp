@@ -1,6 +1,6 @@
-/// \file Intervals that a published share of right answers would have, if people differed by a
-/// stated spread. A paper that prints shares alone leaves the spread open, so these are intervals
-/// under an assumption. Source: docs/statistics.md, "Participants as clusters".
+/// \file Intervals for a published share of right answers under an assumed spread between people.
+/// The spread is an assumption because papers often publish only shares. Source:
+/// docs/statistics.md, "Participants as clusters".
 #pragma once
 
 #include "analysis/statistics/proportion.hpp"
@@ -31,8 +31,8 @@ struct AssumedDifference {
 };
 
 /// \param first,second  mean shares of the methods, in (0, 1)
-/// \param spread  standard deviation of people's own differences, >= 0; half of its variance lies
-///   in either method
+/// \param spread  standard deviation of people's own differences, >= 0; each method contributes
+///   half of its variance
 /// \param study  trials per method
 /// \throws std::invalid_argument if an argument is out of range
 [[nodiscard]] AssumedDifference assumed_difference(double first, double second, double spread,

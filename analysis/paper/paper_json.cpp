@@ -58,8 +58,8 @@ std::string paper_json(const PaperMeasures& measures) {
   for (const PaperClaim& claim : paper_claims(measures)) {
     object["claims"].push_back({{"id", claim.id},
                                 {"where", claim.where},
-                                {"says", claim.says},
-                                {"found", claim.ours},
+                                {"says", claim.statement},
+                                {"found", claim.measured},
                                 {"agreeing", claim.agreeing},
                                 {"of", claim.of},
                                 {"verdict", verdict_of(claim)}});

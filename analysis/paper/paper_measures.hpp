@@ -1,5 +1,5 @@
-/// \file The measures that the source paper takes of pictures and their textures, taken of any
-/// pictures. Source: docs/method.md; paper Figs. 1 and 3, Tables 1 and 3.
+/// \file The source paper's measures of pictures and their textures, for any pictures. Source:
+/// docs/method.md; paper Figs. 1 and 3, Tables 1 and 3.
 #pragma once
 
 #include "engine/evaluation.hpp"
@@ -14,7 +14,7 @@
 
 namespace touchtrial::analysis {
 
-/// A picture and the name to report it by.
+/// A picture and its name in reports.
 struct PaperPicture {
   std::string name;
   GreyImage image;
@@ -28,7 +28,7 @@ struct TextureStrength {
   double fine_share = 0.0;  ///< share of its power in the finest sub-bands lh, hl and hh; 0 if flat
 };
 
-/// Another way to read what the paper leaves open.
+/// One interpretation of the details that the paper leaves open.
 struct TableReading {
   const char* words;
   engine::Norm norm = engine::Norm::additive;

@@ -116,7 +116,7 @@ Picture methods_picture(std::span<const PaperPicture> pictures) {
       alt_of(tiles), tiles);
 }
 
-/// One number of each picture's textures over the fixed order.
+/// A panel of one number of each picture's textures, as a function of the fixed order.
 Panel orders_panel(std::span<const MeasuredPicture> pictures, std::string label,
                    double engine::OrderFigures::*number) {
   Panel panel;

@@ -1,6 +1,6 @@
-/// \file The numbers that the source paper prints: its Table 1, the accuracies of its Fig. 6 and
-/// the improvement that it states. Source: Haptic Texture Rendering of 2D Image Based on Adaptive
-/// Fractional Differential Method.
+/// \file The source paper's published numbers: Table 1, the accuracies of Fig. 6 and the stated
+/// improvement. Source: Haptic Texture Rendering of 2D Image Based on Adaptive Fractional
+/// Differential Method.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ struct PublishedRow {
   PublishedCells texture;
 };
 
-/// Table 1 by picture. `entropy` is the column that the paper calls so.
+/// Table 1 by picture. `entropy` is the column with that name in the paper.
 struct PublishedPicture {
   PublishedRow asm_;
   PublishedRow entropy;

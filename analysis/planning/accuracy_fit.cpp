@@ -8,10 +8,10 @@
 namespace touchtrial::planning {
 namespace {
 
-/// Scales the likelihood and its tolerance; the accuracies alone decide where its maximum lies.
+/// Scales the likelihood and its tolerance; does not move the maximum.
 constexpr double kTrialsAClass = 100.0;
 
-/// Accuracies by class; which wrong answers were given is unknown. Layouts, images and methods are
+/// Accuracies by class, without the distribution of wrong answers. Layouts, images and methods are
 /// presented equally often.
 class AccuracyEvidence final : public FitEvidence {
  public:
@@ -61,8 +61,8 @@ double AccuracyEvidence::log_likelihood(const AnswerTable& table, Cells* slopes)
   double sum = 0.0;
   std::vector<double> slope(right.size());
   for (std::size_t c = 0; c < right.size(); ++c) {
-    const double correct = believed(right[c]);
-    const double wrong = believed(1.0 - right[c]);
+    const double correct = clamped_probability(right[c]);
+    const double wrong = clamped_probability(1.0 - right[c]);
     sum += kTrialsAClass *
            (accuracies_[c] * std::log(correct) + (1.0 - accuracies_[c]) * std::log(wrong));
     slope[c] = kTrialsAClass * (accuracies_[c] / correct - (1.0 - accuracies_[c]) / wrong);
@@ -100,13 +100,13 @@ void warn_of_misses(AccuracyFit& fit) {
 }
 
 void warn_of_bounds(const FitProblem& problem, const std::vector<double>& at, AccuracyFit& fit) {
-  constexpr double kHair = 1e-4;
+  constexpr double kBoundTolerance = 1e-4;
   const Bounds& bounds = problem.bounds();
   for (std::size_t i = 0; i < at.size(); ++i) {
     const Parameter& parameter = problem.parameters()[i];
     const bool is_lapse = parameter.kind == ParameterKind::lapse;
-    const bool at_lower = at[i] - bounds.lower[i] < kHair && !is_lapse;
-    if (!at_lower && bounds.upper[i] - at[i] >= kHair) continue;
+    const bool at_lower = at[i] - bounds.lower[i] < kBoundTolerance && !is_lapse;
+    if (!at_lower && bounds.upper[i] - at[i] >= kBoundTolerance) continue;
     std::string name = "the bias for the first position";
     if (parameter.kind == ParameterKind::feature_noise) name = "feature_noise";
     if (is_lapse) name = "lapse";

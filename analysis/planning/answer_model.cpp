@@ -24,9 +24,9 @@ constexpr int kThresholdGroups = 4;
 /// fixed order.
 constexpr int kPieces = 4;
 
-/// What a layout adds to the supports of the pictures.
+/// The biases that a layout adds to the supports of the pictures.
 struct LayoutBias {
-  std::vector<double> of_class;  ///< log odds, equal for everybody
+  std::vector<double> of_class;  ///< log odds, the same for everybody
   std::vector<double> nearness;  ///< nearness_of
 };
 
@@ -75,7 +75,7 @@ std::size_t place_in(const std::vector<std::string>& classes, const std::string&
   return static_cast<std::size_t>(found - classes.begin());
 }
 
-/// Turns the pieces' sums into probabilities that include lapses.
+/// Converts the pieces' sums to probabilities that include lapses.
 void settle(std::span<const AnswerTable> pieces, int row, double lapse, std::span<double> answers,
             std::span<double> slopes) {
   for (const AnswerTable& piece : pieces) {
@@ -89,13 +89,13 @@ void settle(std::span<const AnswerTable> pieces, int row, double lapse, std::spa
   for (double& value : slopes) value *= (1.0 - lapse) / lines;
 }
 
-/// Which of the equally likely groups a line's person belongs to.
+/// The equally likely groups that a line's person belongs to.
 struct PersonGroup {
   std::uint8_t acuity;
   std::uint8_t threshold;
 };
 
-/// The supports of the groups of people that a subject model has: all, where they differ.
+/// The supports for each group of people in a subject model; one group if people do not differ.
 class GroupSupports {
  public:
   GroupSupports(const simulation::SubjectModel& subject,
@@ -164,9 +164,9 @@ struct AnswerModel::State {
   void add_piece(int place, int piece, const simulation::SubjectModel& subject,
                  const GroupSupports& groups, const std::vector<LayoutBias>& layouts, BankPart part,
                  AnswerTable& sums) const;
-  void add_likings(const simulation::SubjectModel& subject, std::span<const double> numbers,
-                   const LayoutBias& layout, const std::vector<int>& pictures,
-                   std::vector<double>& at) const;
+  void add_preferences(const simulation::SubjectModel& subject, std::span<const double> numbers,
+                       const LayoutBias& layout, const std::vector<int>& pictures,
+                       std::vector<double>& at) const;
   [[nodiscard]] std::vector<int> pictures_of(const simulation::SubjectModel& subject) const;
 
   simulation::FeltKnowledge knowledge;
@@ -224,11 +224,11 @@ std::vector<int> AnswerModel::State::pictures_of(const simulation::SubjectModel&
   return pictures;
 }
 
-/// Adds the preferences of this line's person to those that everybody has.
-void AnswerModel::State::add_likings(const simulation::SubjectModel& subject,
-                                     std::span<const double> numbers, const LayoutBias& layout,
-                                     const std::vector<int>& pictures,
-                                     std::vector<double>& at) const {
+/// Adds the preferences of this line's person to the common ones.
+void AnswerModel::State::add_preferences(const simulation::SubjectModel& subject,
+                                         std::span<const double> numbers, const LayoutBias& layout,
+                                         const std::vector<int>& pictures,
+                                         std::vector<double>& at) const {
   const auto of_person = numbers.subspan(static_cast<std::size_t>(dimensions));
   for (std::size_t k = 0; k < at.size(); ++k) {
     const auto picture = static_cast<std::size_t>(pictures[k]);
@@ -264,7 +264,7 @@ void AnswerModel::State::add_piece(int place, int piece, const simulation::Subje
       felt_by.noise(direction, slope);
       for (std::size_t l = 0; l < layouts.size(); ++l) {
         for (std::size_t k = 0; k < prototypes; ++k) at[k] = felt_at[k] + bias[l][k];
-        if (people_differ) add_likings(subject, numbers, layouts[l], pictures, at);
+        if (people_differ) add_preferences(subject, numbers, layouts[l], pictures, at);
         add_winners(at, slope, pictures, radial, 1.0, sums.answers(static_cast<int>(l), 0),
                     sums.slopes(static_cast<int>(l), 0));
       }

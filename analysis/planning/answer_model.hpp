@@ -1,5 +1,5 @@
-/// \file How likely each answer to each stimulus is, given a subject model: computed from felt
-/// explorations, without drawing answers. Source: docs/planning.md, "Probabilities of answers".
+/// \file Answer probabilities for each stimulus under a subject model, computed from felt
+/// explorations without drawing answers. Source: docs/planning.md, "Probabilities of answers".
 #pragma once
 
 #include "engine/pack/pack.hpp"
@@ -20,7 +20,8 @@ namespace touchtrial::planning {
 /// Class index of the picture at each position.
 using PictureLayout = std::vector<int>;
 
-/// \return by class, how near its picture lies to the first position: 1 at the first, 0 at the last
+/// \return by class, the nearness of its picture to the first position: 1 at the first, 0 at the
+///   last
 [[nodiscard]] std::vector<double> nearness_of(const PictureLayout& layout);
 
 /// Probabilities of answers by layout, stimulus (place in the bank) and answered class.
@@ -77,11 +78,11 @@ struct BankPart {
 /// averaged over the bank's explorations and over the people of the subject's population.
 ///
 /// The classifier's supports are linear in the perceived features, so noise moves them along
-/// straight lines. Each exploration has a fixed set of noise directions (shifted Sobol points); the
-/// model integrates over all amounts of noise along a direction in closed form. Every call uses the
-/// same points, so the result is a continuous, almost smooth function of the parameters. The points
-/// also represent differences between people, except that noises come in eight, and
-/// thresholds in four equally likely groups. Immutable, thread-safe; refers to none of its
+/// straight lines. Each exploration has a fixed set of noise directions (shifted Sobol points), and
+/// the model integrates over the amount of noise along each direction in closed form. Every call
+/// uses the same points, so the result is a continuous, almost smooth function of the parameters.
+/// The points also represent differences between people, except that noise is divided into eight
+/// and thresholds into four equally likely groups. Immutable, thread-safe; refers to none of its
 /// arguments.
 class AnswerModel {
  public:
@@ -115,7 +116,7 @@ class AnswerModel {
 struct FeltStudyOptions {
   int explorations = 1000;  ///< of each stimulus
   int directions = 1;       ///< of noise for each exploration
-  /// Of the training, where a seed has the same effect as in `simulate`, and of the bank's paths.
+  /// For the training, with the same effect as the seed of `simulate`, and for the bank's paths.
   std::uint64_t seed = 1;
   int jobs = 1;  ///< threads, >= 1; results do not depend on them
 };

@@ -9,9 +9,9 @@
 namespace touchtrial::planning {
 namespace {
 
-/// A fitted model's neighbourhood: log-linear in the changes of the numbers, and normalised.
-/// Probabilities and their slopes at the fit are the fitted model's, and the likelihood has one
-/// maximum. Immutable, thread-safe.
+/// A local approximation of a fitted model: log-linear in the changes of the numbers, and
+/// normalised. It has the fitted model's probabilities and slopes at the fit, and its likelihood
+/// has one maximum. Immutable, thread-safe.
 class LocalAnswers {
  public:
   explicit LocalAnswers(const Fitted& fitted);
@@ -36,7 +36,7 @@ class LocalAnswers {
   std::vector<Cells> log_slopes_;  ///< [layout][cell][number]
 };
 
-/// Rarer answers keep their probability: their slopes say nothing about the neighbourhood.
+/// Rarer answers keep their probability, because their slopes hold only at the fit itself.
 constexpr double kRare = 1e-6;
 
 LocalAnswers::LocalAnswers(const Fitted& fitted)
@@ -134,7 +134,7 @@ bool people_differ(const simulation::SubjectModel& subject) {
          subject.position_bias_spread > 0.0 || subject.class_bias_spread > 0.0;
 }
 
-/// Deviates of the pool's people: always the same ones, in a random order.
+/// Deviates of the pool's people: a fixed set in random order.
 std::vector<double> deviates(RandomStream& random) {
   std::vector<double> groups = normal_groups(kPool);
   shuffle(std::span(groups), random);

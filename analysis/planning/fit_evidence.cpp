@@ -122,7 +122,7 @@ double g_squared(const Confusions& observed, const Confusions& expected) {
   return std::max(0.0, 2.0 * sum);
 }
 
-double believed(double probability) noexcept {
+double clamped_probability(double probability) noexcept {
   return std::clamp(probability, kMinProbability, 1.0);
 }
 
@@ -155,7 +155,7 @@ double CountsEvidence::log_likelihood(const AnswerTable& table, Cells* slopes) c
       if (count == 0.0) continue;
       const auto answers =
           table.answers(static_cast<int>(layout), static_cast<int>(cell / classes));
-      const double probability = believed(answers[cell % classes]);
+      const double probability = clamped_probability(answers[cell % classes]);
       sum += count * std::log(probability);
       if (slopes != nullptr) (*slopes)[layout][cell] = count / probability;
     }

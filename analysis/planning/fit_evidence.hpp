@@ -1,5 +1,5 @@
-/// \file What a subject model is fitted to: counts of answers by stimulus, layout and class, and
-/// how likely they are given probabilities of answers.
+/// \file The data that a subject model is fitted to: counts of answers by stimulus, layout and
+/// class, and their likelihood.
 #pragma once
 
 #include "analysis/outcomes/outcomes.hpp"
@@ -13,7 +13,7 @@
 
 namespace touchtrial::planning {
 
-/// One participant's answers. Counts are whole numbers unless they stand for a population.
+/// One participant's answers. Counts are whole numbers unless they represent a population.
 struct CountedPerson {
   int layout = 0;              ///< index into FitCounts::layouts
   std::vector<double> counts;  ///< [stimulus x classes + answer]
@@ -29,8 +29,8 @@ struct FitCounts {
   int no_response = 0;  ///< counted trials without an answer, which are left out
 };
 
-/// Counts the trials with an answer that enter accuracy (Outcomes leaves out erased, excluded,
-/// replaced, stopped and other-kind sessions). Catch trials do not count.
+/// Counts the answered trials that enter accuracy, without catch trials. Outcomes already leaves
+/// out erased, excluded, replaced, stopped and other-kind sessions.
 /// \param schedules  of the sessions, for their layouts
 /// \param stimuli  of the study, sorted
 /// \throws StudyError if no trial remains
@@ -41,7 +41,7 @@ struct FitCounts {
 /// Numbers by layout and cell of a table, [layout][stimulus x classes + answer].
 using Cells = std::vector<std::vector<double>>;
 
-/// How often one stimulus was presented: the sum of its answers.
+/// The number of presentations of one stimulus: the sum of its answers.
 /// \param row  the stimulus's first cell
 [[nodiscard]] double presentations(const std::vector<double>& cells, std::size_t row,
                                    std::size_t classes);
@@ -72,11 +72,11 @@ class FitEvidence {
   [[nodiscard]] virtual double log_likelihood(const AnswerTable& table, Cells* slopes) const = 0;
 };
 
-/// The least probability that an observed answer is taken to have.
+/// The minimum probability of an observed answer, which keeps its logarithm finite.
 inline constexpr double kMinProbability = 1e-12;
 
 /// \return the probability, between kMinProbability and 1
-[[nodiscard]] double believed(double probability) noexcept;
+[[nodiscard]] double clamped_probability(double probability) noexcept;
 
 /// \return the table's probabilities
 [[nodiscard]] Cells cells_of(const AnswerTable& table, const FitCounts& counts);

@@ -1,4 +1,4 @@
-/// \file The likelihood of the evidence as a smooth function of a subject's free parameters.
+/// \file The log likelihood as a smooth function of a subject's free parameters.
 #pragma once
 
 #include "analysis/planning/answer_model.hpp"
@@ -11,10 +11,10 @@
 
 namespace touchtrial::planning {
 
-/// More lapses than this leave answers at chance.
+/// The maximum lapse rate; beyond it, answers are at chance.
 inline constexpr double kMaxLapse = 0.98;
 
-/// The parameters that are estimated; the others stay as in the subject model.
+/// The parameters to estimate; the others keep their values from the subject model.
 struct FreeParameters {
   bool feature_noise = true;
   bool lapse = true;
@@ -33,9 +33,9 @@ struct Parameter {
   friend bool operator==(const Parameter&, const Parameter&) = default;
 };
 
-/// Free parameters as numbers: ln(feature_noise), the lapse, and biases as log odds. The sum of the
-/// class biases is 0, so that one of them, the eliminated one, follows from the others. Refers to
-/// model and evidence, which must outlive it.
+/// Free parameters as numbers: ln(feature_noise), the lapse, and biases as log odds. The class
+/// biases sum to 0, so one of them, the eliminated one, follows from the others. Keeps references
+/// to model and evidence, which must outlive it.
 class FitProblem {
  public:
   /// \param subject  values of the fixed parameters, and the label swaps
@@ -58,8 +58,8 @@ class FitProblem {
   [[nodiscard]] Optimum maximised(std::vector<double> start, const Bounds& bounds,
                                   const OptimiserOptions& options) const;
 
-  /// Probabilities and their derivatives by each number: by a difference for the noise, exact for
-  /// the other numbers.
+  /// Probabilities and their derivatives by each number: a finite difference for the noise, exact
+  /// for the others.
   struct Tangent {
     AnswerTable table;
     std::vector<Cells> slopes;  ///< by number

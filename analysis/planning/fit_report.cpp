@@ -30,13 +30,13 @@ std::string estimates_text(const SubjectFit& fit, const FitOrigin& origin) {
     const std::string simulated =
         one.bootstrap ? fmt::format("[{:.3f}, {:.3f}]", one.bootstrap->low, one.bootstrap->high)
                       : "-";
-    // The error is that of ln(feature_noise).
+    // The error applies to ln(feature_noise).
     const double error = one.monte_carlo_error * (one.name == "feature_noise" ? one.value : 1.0);
     table.add({title_of(one), fmt::format("{:.3f}", one.value),
                fmt::format("[{}, {}]", end_text(one.profile.lower), end_text(one.profile.upper)),
                simulated, one.standard_error ? fmt::format("{:.3f}", error) : "-"});
   }
-  return analysis::heading("what the answers tell about the participants", origin.simulated) +
+  return analysis::heading("what the answers reveal about the participants", origin.simulated) +
          table.text();
 }
 
@@ -44,13 +44,12 @@ std::string people_text(const SubjectFit& fit) {
   if (!fit.people) return "";
   const PeopleSpread& people = *fit.people;
   return analysis::wrapped(
-      "  ",
-      fmt::format(
-          "spread of noise between people: {:.3f}, 95 % [{}, {}]; people who do not differ: "
-          "p = {}; the subject's spread of {:.3f}: p = {}, {}",
-          people.spread, end_text(people.interval.lower), end_text(people.interval.upper),
-          analysis::p_value(people.alike_p), fit.given_spread, analysis::p_value(people.given_p),
-          fit.spread_taken ? "replaced by the estimate" : "kept"));
+      "  ", fmt::format("spread of noise between people: {:.3f}, 95 % [{}, {}]; no spread: p = {}; "
+                        "the subject's spread of {:.3f}: p = {}, {}",
+                        people.spread, end_text(people.interval.lower),
+                        end_text(people.interval.upper), analysis::p_value(people.equal_p),
+                        fit.assumed_spread, analysis::p_value(people.assumed_p),
+                        fit.spread_replaced ? "replaced by the estimate" : "kept"));
 }
 
 std::string swap_text(const SubjectFit& fit) {
@@ -78,7 +77,7 @@ std::string confusion_text(const SubjectFit& fit, std::size_t method, const FitO
     table.add(std::move(row));
   }
   return analysis::heading(
-             fit.methods[method] + ": observed answers, and those that the fit expects",
+             fit.methods[method] + ": observed answers, and those expected from the fit",
              origin.simulated) +
          table.text();
 }
@@ -103,8 +102,8 @@ std::string biases_text(const simulation::SubjectModel& subject) {
   return text;
 }
 
-/// For which device the numbers hold: the answers', if they are simulated, and that of the
-/// explorations, which always are.
+/// The devices for which the numbers hold: that of the answers if they are simulated, and that of
+/// the explorations, which always are.
 std::string device_lines(const FitOrigin& origin) {
   return analysis::simulated_on_line(origin.answers_on) +
          (origin.felt_on.empty() ? "" : "explorations ") +
@@ -136,7 +135,7 @@ Json estimate_json(const ParameterEstimate& estimate) {
   Json object = {{"name", estimate.name}};
   if (!estimate.label.empty()) object["label"] = estimate.label;
   object["value"] = estimate.value;
-  // The errors are those of ln(feature_noise).
+  // The errors apply to ln(feature_noise).
   const double unit = estimate.name == "feature_noise" ? estimate.value : 1.0;
   object["standard_error"] = nullptr;
   if (estimate.standard_error) object["standard_error"] = number(*estimate.standard_error * unit);
@@ -161,18 +160,18 @@ Json people_json(const SubjectFit& fit) {
   const PeopleSpread& people = *fit.people;
   return {{"spread", people.spread},
           {"interval", {number(people.interval.lower), number(people.interval.upper)}},
-          {"alike_p", people.alike_p},
-          {"given_spread", fit.given_spread},
-          {"given_p", people.given_p},
-          {"taken", fit.spread_taken}};
+          {"alike_p", people.equal_p},
+          {"given_spread", fit.assumed_spread},
+          {"given_p", people.assumed_p},
+          {"taken", fit.spread_replaced}};
 }
 
-/// Null: the ideal device that nobody named.
+/// Null for the default, ideal device.
 Json device_json(const device::DeviceModel& model) {
   return model.name.empty() ? Json() : Json::parse(device::device_model_json(model));
 }
 
-/// Each simulated study's subject by the keys that are its own.
+/// Each simulated study's subject, by kDrawnKeys.
 Json draws_json(const SubjectFit& fit) {
   Json all = Json::array();
   for (const simulation::SubjectModel& subject : fit.draws) {
@@ -222,7 +221,7 @@ std::string fit_text(const SubjectFit& fit, const FitOrigin& origin) {
 
 std::string fit_text(const AccuracyFit& fit, const FitOrigin& origin) {
   std::string text = device_lines(origin) + origin.study + ": a subject for published accuracies\n";
-  analysis::TextTable table({"class", "published", "expected of the fit", "difference, points"});
+  analysis::TextTable table({"class", "published", "expected from the fit", "difference, points"});
   for (std::size_t c = 0; c < fit.classes.size(); ++c) {
     table.add({fit.classes[c], analysis::percent_of_share(fit.wanted[c]),
                analysis::percent_of_share(fit.reached[c]),
@@ -231,8 +230,9 @@ std::string fit_text(const AccuracyFit& fit, const FitOrigin& origin) {
   text += table.text() + analysis::wrapped("  ", biases_text(fit.subject));
   const bool others_fit = fit.warnings.empty();
   text += analysis::wrapped(
-      "  ", fmt::format("{} parameters for {} numbers{}", fit.parameters, fit.classes.size(),
-                        others_fit ? ": other subjects fit as well, see docs/planning.md" : ""));
+      "  ",
+      fmt::format("{} parameters for {} numbers{}", fit.parameters, fit.classes.size(),
+                  others_fit ? ": other subjects fit equally well, see docs/planning.md" : ""));
   if (!fit.warnings.empty()) text += analysis::heading("to bear in mind", origin.simulated);
   for (const std::string& warning : fit.warnings) text += analysis::wrapped("  - ", warning);
   return text;

@@ -1,4 +1,4 @@
-/// \file A fit in words and in JSON. Format: docs/data-dictionary.md, "Fit".
+/// \file A fit as text and as JSON. Format: docs/data-dictionary.md, "Fit".
 #pragma once
 
 #include "analysis/planning/subject_fit.hpp"
@@ -10,10 +10,10 @@
 
 namespace touchtrial::planning {
 
-/// The keys of a subject file that differ from draw to draw of a fit; its JSON has them by draw.
+/// The subject-file keys that differ between draws of a fit; the JSON lists them for each draw.
 inline constexpr std::array<std::string_view, 3> kDrawnKeys{"feature_noise", "lapse", "bias"};
 
-/// What a fit was made from.
+/// The inputs of a fit.
 struct FitOrigin {
   std::string study;
   std::string subject;     ///< file of the subject model that the search started from

@@ -34,9 +34,9 @@ Optimum best_of_grid(const FitProblem& problem, simulation::SubjectModel subject
   return best;
 }
 
-/// Drops free preferences: all layouts are then alike, so a look at the grid is cheap.
-Start coarse_look(const AnswerModel& model, const FitEvidence& evidence,
-                  simulation::SubjectModel subject, const FreeParameters& free) {
+/// Ignores free preferences: all layouts are then equivalent, which makes the grid cheap.
+Start search_coarsely(const AnswerModel& model, const FitEvidence& evidence,
+                      simulation::SubjectModel subject, const FreeParameters& free) {
   const FitProblem problem(model, evidence, subject, free);
   if (free.position) subject.position_bias = 0.0;
   if (free.classes) subject.class_bias.clear();
@@ -71,29 +71,29 @@ Start fitted(const AnswerModel& model, const FitEvidence& evidence,
 }
 
 /// A swap of one more pair, fitted.
-struct Tried {
+struct TriedSwap {
   SwapCandidate candidate;
   Start fit;
 };
 
-std::vector<Tried> best_pairs(const AnswerModel& model, const FitEvidence& evidence,
-                              const Start& without, const FreeParameters& free) {
+std::vector<TriedSwap> best_pairs(const AnswerModel& model, const FitEvidence& evidence,
+                                  const Start& without, const FreeParameters& free) {
   std::vector<std::pair<Start, std::pair<std::string, std::string>>> looks;
   for (const auto& pair : pairs_left(without.subject, model.classes())) {
     simulation::SubjectModel subject = without.subject;
     subject.label_swap.push_back(pair);
-    looks.emplace_back(coarse_look(model, evidence, subject, free), pair);
+    looks.emplace_back(search_coarsely(model, evidence, subject, free), pair);
   }
   std::ranges::stable_sort(looks, std::ranges::greater{},
                            [](const auto& look) { return look.first.value; });
   if (looks.size() > kFitted) looks.resize(kFitted);
-  std::vector<Tried> tried;
+  std::vector<TriedSwap> tried;
   for (const auto& [look, pair] : looks) {
     Start fit = fitted(model, evidence, look.subject, free);
     tried.push_back({{pair, fit.value - without.value, false}, std::move(fit)});
   }
   std::ranges::stable_sort(tried, std::ranges::greater{},
-                           [](const Tried& one) { return one.candidate.gain; });
+                           [](const TriedSwap& one) { return one.candidate.gain; });
   return tried;
 }
 
@@ -120,13 +120,13 @@ SwapSearch search_swaps(const AnswerModel& model, const FitEvidence& evidence,
   if (free.swaps) subject.label_swap.clear();
   Start now = fitted(model, evidence, subject, free);
   while (free.swaps) {
-    std::vector<Tried> tried = best_pairs(model, evidence, now, free);
+    std::vector<TriedSwap> tried = best_pairs(model, evidence, now, free);
     const bool take = !tried.empty() && tried.front().candidate.gain > search.threshold;
     if (take) {
       tried.front().candidate.taken = true;
       now = std::move(tried.front().fit);
     }
-    for (const Tried& one : tried) search.candidates.push_back(one.candidate);
+    for (const TriedSwap& one : tried) search.candidates.push_back(one.candidate);
     if (!take) break;
   }
   search.subject = std::move(now.subject);

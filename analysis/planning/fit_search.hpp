@@ -14,11 +14,11 @@ namespace touchtrial::planning {
 [[nodiscard]] Optimum best_of_starts(const FitProblem& problem,
                                      const simulation::SubjectModel& subject);
 
-/// The gain of log likelihood that a label swap needs: ln(20 x pairs).
+/// The gain in log likelihood required to accept a label swap: ln(20 x pairs).
 /// \param pairs  number of pairs of labels that could be swapped
 [[nodiscard]] double swap_threshold(int pairs) noexcept;
 
-/// A subject with the label swaps that the answers call for, everything else fitted.
+/// A fitted subject with the label swaps that the answers support.
 struct SwapSearch {
   simulation::SubjectModel subject;
   std::vector<SwapCandidate> candidates;
@@ -27,8 +27,8 @@ struct SwapSearch {
 
 /// Adds label swaps one at a time. Each step tries every pair of labels that is not swapped yet on
 /// a coarse grid of noise and lapse, fits the two best, and takes the better one if its gain
-/// exceeds the threshold: the answers are then 20 times likelier than without it, even if a swap of
-/// any pair was beforehand no likelier than none.
+/// exceeds the threshold. The odds for a swap are then 20 to 1 even if, beforehand, a swap of some
+/// pair was only as likely as none.
 /// \param subject  start of the search; its own swaps are dropped if swaps are free
 [[nodiscard]] SwapSearch search_swaps(const AnswerModel& model, const FitEvidence& evidence,
                                       simulation::SubjectModel subject, const FreeParameters& free);

@@ -20,7 +20,7 @@ std::vector<double> information_of(const FitCounts& counts, const FitProblem::Ta
       const double presented = presentations(sums[layout], row, classes);
       const auto answers =
           table.answers(static_cast<int>(layout), static_cast<int>(cell / classes));
-      const double weight = presented / believed(answers[cell % classes]);
+      const double weight = presented / clamped_probability(answers[cell % classes]);
       for (std::size_t i = 0; i < slopes.size(); ++i) {
         for (std::size_t j = 0; j < slopes.size(); ++j) {
           information[i * slopes.size() + j] +=
@@ -49,27 +49,28 @@ std::optional<std::vector<double>> inverse_of(std::vector<double> matrix, std::s
 }
 
 /// Square root of 3.84, the 95 % point of chi-square with one degree of freedom.
-constexpr double kRoot = 1.959964;
+constexpr double kNormalQuantile = 1.959964;
 constexpr double kCloseEnough = 0.02;
 constexpr int kMaxFits = 12;
-/// An end nearer to a bound than this is the bound, which says nothing about the data.
-constexpr double kHair = 1e-6;
-/// In standard errors: only failed fits end nearer to the best point.
+/// An end closer to a bound than this is the bound itself, which carries no information about the
+/// data.
+constexpr double kBoundTolerance = 1e-6;
+/// In standard errors; only failed fits end closer to the best point.
 constexpr double kCollapsed = 1e-3;
 
-/// The best point with one number held. Its root is the square root of twice the log likelihood
-/// that is lost.
-struct Held {
+/// The best point with one number fixed. `root` is the square root of twice the loss of log
+/// likelihood.
+struct ConstrainedFit {
   std::vector<double> at;
   double root = 0.0;
 };
 
-Held fitted_with(const Fitted& fitted, std::size_t number, double value,
-                 const std::vector<double>& start) {
+ConstrainedFit fitted_with(const Fitted& fitted, std::size_t number, double value,
+                           const std::vector<double>& start) {
   Bounds bounds = fitted.problem.bounds();
   bounds.lower[number] = value;
   bounds.upper[number] = value;
-  OptimiserOptions options{.tolerance = 1e-5, .most_evaluations = 40};
+  OptimiserOptions options{.tolerance = 1e-5, .max_evaluations = 40};
   for (std::size_t i = 0; i < start.size(); ++i) {
     options.scales.push_back(std::sqrt(fitted.covariance[i * start.size() + i]));
   }
@@ -77,7 +78,7 @@ Held fitted_with(const Fitted& fitted, std::size_t number, double value,
   return {held.at, std::sqrt(std::max(0.0, 2.0 * (fitted.best.value - held.value)))};
 }
 
-/// The best point with one number changed; the other numbers follow by the covariance.
+/// The best point with one number changed and the others moved along by the covariance.
 std::vector<double> moved(const Fitted& fitted, std::size_t number, double value) {
   std::vector<double> start = fitted.best.at;
   const std::size_t n = start.size();
@@ -89,14 +90,14 @@ std::vector<double> moved(const Fitted& fitted, std::size_t number, double value
   return start;
 }
 
-/// Fits again from the best point where a bad start leaves the likelihood too low.
-Held best_with(const Fitted& fitted, std::size_t number, double value,
-               const std::vector<double>& start) {
-  Held held = fitted_with(fitted, number, value, start);
-  if (held.root < kRoot) return held;
+/// Refits from the best point if a bad start left the likelihood too low.
+ConstrainedFit best_with(const Fitted& fitted, std::size_t number, double value,
+                         const std::vector<double>& start) {
+  ConstrainedFit held = fitted_with(fitted, number, value, start);
+  if (held.root < kNormalQuantile) return held;
   std::vector<double> plain = fitted.best.at;
   plain[number] = value;
-  Held again = fitted_with(fitted, number, value, plain);
+  ConstrainedFit again = fitted_with(fitted, number, value, plain);
   return again.root < held.root ? again : held;
 }
 
@@ -109,21 +110,22 @@ std::optional<double> end_of(const Fitted& fitted, std::size_t number, double bo
     return sign > 0.0 ? std::min(value, bound) : std::max(value, bound);
   };
   const auto is_end = [&](double value) {
-    return std::abs(value - bound) > kHair && std::abs(value - middle) > kCollapsed * deviation;
+    return std::abs(value - bound) > kBoundTolerance &&
+           std::abs(value - middle) > kCollapsed * deviation;
   };
   double near = middle;
   double near_root = 0.0;
-  double value = inside(middle + sign * kRoot * deviation);
+  double value = inside(middle + sign * kNormalQuantile * deviation);
   std::vector<double> start = moved(fitted, number, value);
   for (int fit = 0; fit < kMaxFits; ++fit) {
-    const Held held = best_with(fitted, number, value, start);
-    if (std::abs(held.root - kRoot) < kCloseEnough) {
+    const ConstrainedFit held = best_with(fitted, number, value, start);
+    if (std::abs(held.root - kNormalQuantile) < kCloseEnough) {
       return is_end(value) ? std::optional(value) : std::nullopt;
     }
-    if (held.root < kRoot && value == bound) return std::nullopt;
+    if (held.root < kNormalQuantile && value == bound) return std::nullopt;
     const double rise = (held.root - near_root) / (value - near);
     const double farthest = middle + 3.0 * (value - middle) + sign * 0.1 * deviation;
-    double next = sign * rise > 0.0 ? value + (kRoot - held.root) / rise : farthest;
+    double next = sign * rise > 0.0 ? value + (kNormalQuantile - held.root) / rise : farthest;
     if (sign * (next - farthest) > 0.0) next = farthest;
     if (sign * (next - middle) <= 0.0) next = 0.5 * (middle + value);
     start = held.at;

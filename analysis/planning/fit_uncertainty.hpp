@@ -1,6 +1,6 @@
-/// \file How uncertain a fit's numbers are: covariance, profile intervals, studies simulated from
-/// the fit, and the error that the bank's finite size leaves.
-/// Private to analysis/planning. Source: docs/planning.md, "Uncertainty".
+/// \file The uncertainty of a fit: covariance, profile intervals, parametric bootstrap, and the
+/// Monte Carlo error from the bank's finite size. Private to analysis/planning. Source:
+/// docs/planning.md, "Uncertainty".
 #pragma once
 
 #include "analysis/planning/fit_evidence.hpp"
@@ -12,21 +12,21 @@
 
 namespace touchtrial::planning {
 
-/// A fitted problem and what its uncertainty is computed from.
+/// A fitted problem with the inputs for its uncertainty.
 struct Fitted {
   const FitProblem& problem;
   const FitCounts& counts;
   Optimum best;
   FitProblem::Tangent tangent;
-  bool informed = false;           ///< the answers tell about every number
+  bool informed = false;           ///< the answers carry information about every number
   std::vector<double> covariance;  ///< [number x numbers + number]; vague unless informed
 };
 
 /// \param best  of the problem
 [[nodiscard]] Fitted fitted_at(const FitProblem& problem, const FitCounts& counts, Optimum best);
 
-/// The interval of a number within which twice the log likelihood, all other numbers fitted anew,
-/// falls by less than 3.84 (95 %). An end is missing if the likelihood does not fall that far
+/// The 95 % profile interval of a number: twice the log likelihood, with all other numbers
+/// refitted, falls by less than 3.84. An end is missing if the likelihood does not fall that far
 /// before the bound of the search, or if no end was found. Cost: some 5 fits a side, 24 at most.
 [[nodiscard]] OpenInterval profile_interval(const Fitted& fitted, std::size_t number);
 
@@ -43,8 +43,8 @@ struct FitBootstrap {
 [[nodiscard]] FitBootstrap bootstrap_fit(const Fitted& fitted, int draws, std::uint64_t seed,
                                          int jobs);
 
-/// The standard error that the bank's finite size causes in each fitted number. It is estimated
-/// from eight parts of the bank, whose probabilities differ, and so the score differs too.
+/// The standard error of each fitted number due to the bank's finite size. It is estimated from the
+/// variation of the score between eight parts of the bank.
 /// \return one error for each number; zeros unless the fit is informed
 [[nodiscard]] std::vector<double> monte_carlo_errors(const Fitted& fitted);
 

@@ -52,13 +52,13 @@ void warn_of_extremes(const SubjectFit& fit, std::vector<std::string>& warnings)
   const Margins margins = margins_of(fit);
   if (margins.correct == margins.all) {
     warnings.push_back(
-        "every answer is right: the data set no lower limit to noise and lapses, and the biases "
-        "are arbitrary");
+        "every answer is right: noise and lapses have no lower limit, and the biases are "
+        "arbitrary");
   }
   if (margins.correct == 0.0) {
     warnings.push_back(
-        "no answer is right: this is worse than chance, which noise and lapses cannot explain; "
-        "look at the label swaps");
+        "no answer is right, which is worse than chance: noise and lapses cannot explain this; "
+        "check the label swaps");
   }
 }
 
@@ -87,24 +87,23 @@ void warn_of_guessing(const SubjectFit& fit, std::vector<std::string>& warnings)
     if (p <= kGuessing) return;
   }
   warnings.push_back(
-      "the answers cannot be told from guessing: they depend on what was presented by no more "
-      "than chance; noise and lapses have no upper limit");
+      "the answers cannot be distinguished from guessing: they depend on the stimulus no more than "
+      "by chance; noise and lapses have no upper limit");
 }
 
-/// Warns of people who differ more, or less, than the subject model says.
+/// Warns if people differ more, or less, than in the subject model.
 void warn_of_spread(const SubjectFit& fit, std::vector<std::string>& warnings) {
-  if (!fit.people || fit.people->given_p > kMisfit) return;
+  if (!fit.people || fit.people->assumed_p > kMisfit) return;
   const std::string what = fmt::format(
       "participants differ {} than the subject says (spread of noise {:.2f}, p = {:.3g})",
-      fit.people->spread > fit.given_spread ? "more" : "less", fit.given_spread,
-      fit.people->given_p);
+      fit.people->spread > fit.assumed_spread ? "more" : "less", fit.assumed_spread,
+      fit.people->assumed_p);
   warnings.push_back(
-      fit.spread_taken ? what + fmt::format(": everything was fitted with the spread of their own "
-                                            "answers, {:.2f}",
-                                            fit.people->spread)
-                       : what +
-                             ": the fit describes people who are not these; leave out --fix "
-                             "spread");
+      fit.spread_replaced
+          ? what + fmt::format(": everything was fitted with the spread of their own "
+                               "answers, {:.2f}",
+                               fit.people->spread)
+          : what + ": the fit does not describe these people; leave out --fix spread");
 }
 
 void warn_of_classes(const SubjectFit& fit, std::vector<std::string>& warnings) {
@@ -112,7 +111,7 @@ void warn_of_classes(const SubjectFit& fit, std::vector<std::string>& warnings) 
   for (std::size_t c = 0; c < fit.classes.size(); ++c) {
     if (margins.presented[c] == 0.0) {
       warnings.push_back(fmt::format(
-          "\"{}\" was never presented: its confusions come from the model alone", fit.classes[c]));
+          "\"{}\" was never presented: its confusions come only from the model", fit.classes[c]));
     }
     if (margins.answered[c] == 0.0) {
       warnings.push_back(fmt::format("\"{}\" was never answered: the bias against it has no limit",
@@ -141,26 +140,24 @@ void warn_of_flatness(const SubjectFit& fit, std::vector<std::string>& warnings)
   const auto r = fit.noise_lapse_correlation;
   if (r && std::abs(*r) > kHardlyApart) {
     warnings.push_back(
-        fmt::format("noise and lapse can hardly be told apart (their estimates correlate {:.2f}): "
+        fmt::format("noise and lapse can hardly be separated (their estimates correlate {:.2f}): "
                     "fix one of them with --fix",
                     *r));
   }
   for (const ParameterEstimate& one : fit.estimates) {
     const std::string name = name_of(one);
     if (!one.standard_error) {
-      warnings.push_back(name +
-                         " cannot be told from the others by these answers: fix it with --fix");
+      warnings.push_back(
+          name + " cannot be separated from the others with these answers: fix it with --fix");
       continue;
     }
     const bool no_lapses = one.name == "lapse" && one.value == 0.0;
     if (one.at_bound && !no_lapses) {
       warnings.push_back(name +
-                         " lies at an end of the searched range: the answers set no limit to it");
+                         " lies at an end of the searched range: the answers do not limit it");
     }
     if (one.monte_carlo_error > kLargeMonteCarloShare * *one.standard_error) {
-      warnings.push_back(name +
-                         " depends on which explorations the bank happens to have: give more "
-                         "--explorations");
+      warnings.push_back(name + " depends on the sample of explorations: give more --explorations");
     }
   }
 }
@@ -186,13 +183,12 @@ std::vector<std::string> fit_warnings(const FitCounts& counts, const SubjectFit&
   std::vector<std::string> warnings;
   if (counts.people.size() == 1) {
     warnings.push_back(
-        "one participant: the fit describes this person, and says nothing about differences "
-        "between people");
+        "one participant: the fit describes this person, not differences between people");
   }
   if (free.position && !used.position) {
     warnings.push_back(
-        "all participants had the pictures in one order: a preference for positions cannot be told "
-        "from one for classes, and stays as the subject model has it");
+        "all participants had the pictures in the same order: a preference for positions cannot be "
+        "separated from one for classes, and keeps the subject model's value");
   }
   warn_of_spread(fit, warnings);
   warn_of_extremes(fit, warnings);
@@ -206,12 +202,12 @@ std::vector<std::string> fit_warnings(const FitCounts& counts, const SubjectFit&
   }
   if (counts.methods.size() > 1) {
     warnings.push_back(
-        "one noise, lapse and bias for all methods: methods differ only in what is felt");
+        "noise, lapse and bias are the same for all methods: methods differ only in what is felt");
   }
   if (const std::string ignored = keys_that_fits_ignore(fit.subject); !ignored.empty()) {
     warnings.push_back(
-        "the fit takes all trials of a person as alike, and one training for all; "
-        "it ignores what the subject model says of " +
+        "the fit treats all trials of a person alike, with one training for everybody; it ignores "
+        "the subject model's values of " +
         ignored + ", and so finds the noise of an average trial");
   }
   if (fit.p && *fit.p < kMisfit) {

@@ -33,8 +33,9 @@ constexpr const char* kBlank = "blank plane";
 
 constexpr const char* kTitle = "Strength of the stimuli";
 constexpr const char* kWhatItIs =
-    "Decibels by which a stimulus's gain lies above the one at which a simulated person tells it "
-    "from the blank plane in 79 % of three intervals, from one published curve of thresholds to "
+    "Decibels by which a stimulus's gain lies above the one at which a simulated person "
+    "distinguishes it from the blank plane with 79 % right in three intervals, from one published "
+    "curve of thresholds to "
     "the other: the conservative one (tan_1994) and the sensitive one (israr_2006). The blank "
     "plane itself: power above the curve. Vibrations are those of the tip of a modelled device in "
     "a simulated hand.";
@@ -44,8 +45,8 @@ constexpr const char* kWhatPilotsSay =
     "its detection study (/rendering/gains/curve), carried to these stimuli by a modelled device "
     "in a simulated hand. The blank plane itself: power above the curve.";
 constexpr const char* kWhatSimulatedPilotsSay =
-    "SIMULATED: decibels above what simulated pilots would tell from the blank plane in 79 % of "
-    "three intervals, a rehearsal of the detection study that people must take.";
+    "SIMULATED: decibels above the level that simulated pilots distinguish from the blank plane "
+    "with 79 % right in three intervals; a rehearsal of the detection study with people.";
 constexpr const char* kWhoseItIs =
     "Provisional: until a detection study of pilots takes the curve's place (docs/perception.md). "
     "The curves are other people's, passive and steady; active movement raises thresholds. Whether "
@@ -99,7 +100,7 @@ void add_rows(analysis::Table& table, const study::Study& study, const StimulusL
   row(kBlank, levels.blank);
 }
 
-/// The factor on gains by which every stimulus has the wanted level by both curves.
+/// The gain factor at which every stimulus reaches the required level by both curves.
 std::string gain_needed(const StimulusLevels& levels, const std::string& device) {
   double low_db = 1e9;
   for (const PlaneLevels& own : levels.levels) {
@@ -150,7 +151,7 @@ analysis::Table table_by_bands(const study::Study& study, const StimulusLevels& 
   return table;
 }
 
-/// Levels of one stimulus less those of another on a device, by curve.
+/// Levels of one stimulus minus those of another on a device, by curve.
 std::vector<double> differences_db(const PlaneLevels& one, const PlaneLevels& other,
                                    const std::string& device) {
   std::vector<double> differences;
@@ -160,8 +161,8 @@ std::vector<double> differences_db(const PlaneLevels& one, const PlaneLevels& ot
   return differences;
 }
 
-/// The two stimuli of different classes whose levels are nearest, by the curve that tells them
-/// apart best.
+/// The two stimuli of different classes with the nearest levels, by the curve that separates them
+/// best.
 std::string nearest_words(const study::Study& study, const StimulusLevels& levels,
                           const std::string& device) {
   double nearest_db = 1e9;
@@ -186,7 +187,7 @@ std::string nearest_words(const study::Study& study, const StimulusLevels& level
   return words;
 }
 
-/// The median simulated person's impression of a level: its strength, and the noise of that.
+/// The median simulated person's perceived strength of a level, with its noise.
 struct StrengthSense {
   double floor;
   double noise;
@@ -202,13 +203,13 @@ struct StrengthSense {
   }
 };
 
-/// A stimulus as somebody sees it who judges by strength alone.
-struct Strong {
+/// A stimulus for an observer who judges by strength alone.
+struct StrengthStimulus {
   double level_db;  ///< at its own gain
   int class_index;
 };
 
-/// Gains evenly over a range, re a stimulus's own.
+/// Evenly spaced gains relative to a stimulus's own.
 std::vector<double> roved_gains_db(double rove_db) {
   constexpr int kGains = 128;
   if (rove_db == 0.0) return {0.0};
@@ -218,14 +219,15 @@ std::vector<double> roved_gains_db(double rove_db) {
 }
 
 /// \return the share of right answers by the nearest strength, over the gains that are presented
-double right_by_strength(std::vector<Strong> stimuli, const StrengthSense& sense, double rove_db) {
-  std::ranges::stable_sort(stimuli, {}, &Strong::level_db);
+double accuracy_by_strength(std::vector<StrengthStimulus> stimuli, const StrengthSense& sense,
+                            double rove_db) {
+  std::ranges::stable_sort(stimuli, {}, &StrengthStimulus::level_db);
   std::vector<double> strengths;
-  for (const Strong& one : stimuli) strengths.push_back(sense.strength(one.level_db));
+  for (const StrengthStimulus& one : stimuli) strengths.push_back(sense.strength(one.level_db));
   const boost::math::normal normal;
   const std::vector<double> gains_db = roved_gains_db(rove_db);
   double right = 0.0;
-  for (const Strong& shown : stimuli) {
+  for (const StrengthStimulus& shown : stimuli) {
     for (const double gain_db : gains_db) {
       const double strength = sense.strength(shown.level_db + gain_db);
       const auto below = [&](std::size_t edge) {
@@ -242,7 +244,7 @@ double right_by_strength(std::vector<Strong> stimuli, const StrengthSense& sense
   return right / static_cast<double>(stimuli.size() * gains_db.size());
 }
 
-/// What level alone gives away, by device, curve and method.
+/// The accuracy possible from level alone, by device, curve and method.
 struct LevelAlone {
   std::string device;
   engine::ThresholdCurve curve;
@@ -256,14 +258,14 @@ std::vector<LevelAlone> by_level_alone(const study::Study& study, const Stimulus
   const StrengthSense sense;
   for (std::size_t place = 0; place < levels.blank.size(); ++place) {
     for (int method = 0; method < study.presented_methods(); ++method) {
-      std::vector<Strong> stimuli;
+      std::vector<StrengthStimulus> stimuli;
       for (std::size_t i = 0; i < levels.stimuli.size(); ++i) {
         if (levels.stimuli[i].method != method) continue;
         stimuli.push_back({levels.levels[i][place].db, levels.stimuli[i].class_index});
       }
       if (stimuli.empty()) continue;
       found.push_back({levels.blank[place].device, levels.blank[place].curve, method,
-                       right_by_strength(std::move(stimuli), sense, study.trials.rove_db)});
+                       accuracy_by_strength(std::move(stimuli), sense, study.trials.rove_db)});
     }
   }
   return found;
@@ -286,8 +288,8 @@ std::string level_alone_words(const study::Study& study, const StimulusLevels& l
   }
   if (words.empty()) return words;
   return fmt::format(
-      "A simulated person who judged by strength alone, and not by pattern, would be right in so "
-      "many answers (chance {:.0f} %), over curves and methods{}: {}.{}",
+      "A simulated person who judged only by strength, not by pattern, would have this share of "
+      "right answers (chance {:.0f} %), over curves and methods{}: {}.{}",
       100.0 / static_cast<double>(study.classes.size()),
       study.trials.rove_db > 0.0
           ? fmt::format(", with gains roved over {:g} dB", study.trials.rove_db)
@@ -295,7 +297,7 @@ std::string level_alone_words(const study::Study& study, const StimulusLevels& l
       words,
       study.rendering.equalise == engine::Equalise::level
           ? ""
-          : " \"equalise\": \"level\" takes that away.");
+          : " \"equalise\": \"level\" removes that cue.");
 }
 
 Json json_of(const PlaneLevels& levels) {
@@ -381,7 +383,7 @@ std::string levels_sentence(const StimulusLevels& levels) {
                          : "by thresholds measured in this laboratory");
 }
 
-/// The section with all but its warnings folded.
+/// The section with everything folded except its warnings.
 analysis::Section folded(analysis::Section section) {
   std::vector<analysis::Block> shown;
   for (analysis::Block& block : section.blocks) {
@@ -392,10 +394,10 @@ analysis::Section folded(analysis::Section section) {
   return section;
 }
 
-/// Results with another section, which stands before the methods.
-class ResultsAndMore : public analysis::Results {
+/// Results with an additional section before the methods.
+class ResultsWithSection : public analysis::Results {
  public:
-  ResultsAndMore(std::unique_ptr<const analysis::Results> results, analysis::Section section)
+  ResultsWithSection(std::unique_ptr<const analysis::Results> results, analysis::Section section)
       : results_(std::move(results)), section_(std::move(section)) {}
 
   const analysis::StudyHead& head() const override { return results_->head(); }
@@ -416,22 +418,22 @@ class ResultsAndMore : public analysis::Results {
   analysis::Section section_;
 };
 
-class LevelledResults final : public ResultsAndMore {
+class LevelledResults final : public ResultsWithSection {
  public:
   LevelledResults(std::unique_ptr<const analysis::Results> results, study::Study study,
                   StimulusLevels levels)
-      : ResultsAndMore(std::move(results), folded(levels_section(study, levels))),
+      : ResultsWithSection(std::move(results), folded(levels_section(study, levels))),
         study_(std::move(study)),
         levels_(std::move(levels)) {}
 
   analysis::Document document(const analysis::Provenance& provenance,
                               const analysis::Pictures& pictures) const override {
-    analysis::Document document = ResultsAndMore::document(provenance, pictures);
+    analysis::Document document = ResultsWithSection::document(provenance, pictures);
     analysis::add_to_stimuli(document, levels_sentence(levels_));
     return document;
   }
   std::string json() const override {
-    Json object = Json::parse(ResultsAndMore::json());
+    Json object = Json::parse(ResultsWithSection::json());
     object["levels"] = json_of_all(study_, levels_);
     return json_text(object);
   }
@@ -478,7 +480,7 @@ std::string all_levels_json(const study::Study& study, const StimulusLevels& lev
 }
 
 std::vector<std::string> level_warnings(const study::Study& study, const StimulusLevels& levels) {
-  // A level that the study states is held by its gains, and thresholds are there to be found.
+  // A stated level is reached by setting the gains, and a threshold study measures its levels.
   if (study.device.empty() || study.level || !study::chooses_classes(study)) return {};
   const std::string device = devices_of(levels).front();
   std::size_t weak = 0;
@@ -519,7 +521,7 @@ std::unique_ptr<const analysis::Results> with_levels(
 
 std::unique_ptr<const analysis::Results> with_levels_note(
     std::unique_ptr<const analysis::Results> results) {
-  return std::make_unique<ResultsAndMore>(
+  return std::make_unique<ResultsWithSection>(
       std::move(results),
       analysis::Section{"levels",
                         kTitle,

@@ -1,4 +1,4 @@
-/// \file The levels of a study's stimuli in words, tables and JSON. What they are: docs/perception.md.
+/// \file The levels of a study's stimuli as text, tables and JSON. Definition: docs/perception.md.
 #pragma once
 
 #include "analysis/report/page/document.hpp"
@@ -12,23 +12,25 @@
 
 namespace touchtrial::planning {
 
-/// One table of stimuli by device, with the ranges over the curves; for one device a second one by
-/// bands; how far the stimuli are apart; and what level alone gives away.
+/// A section with a table of stimuli by device, with the ranges over the curves. It also has a
+/// table by bands if there is one device, the distances between stimuli, and the accuracy possible
+/// from level alone.
 [[nodiscard]] analysis::Section levels_section(const study::Study& study,
                                                const simulation::StimulusLevels& levels);
 
-/// A list as `prepare --json` has it, as JSON: docs/data-dictionary.md, "levels".
+/// Levels as JSON, as in `prepare --json`: docs/data-dictionary.md, "levels".
 [[nodiscard]] std::string levels_json(const simulation::PlaneLevels& levels);
-/// How far each two stimuli are apart; empty for more than 40 stimuli.
+/// The differences of all pairs of stimuli; empty for more than 40 stimuli.
 [[nodiscard]] std::string differences_json(const study::Study& study,
                                            const simulation::StimulusLevels& levels);
 
-/// Both of every stimulus and of the blank plane: the member "levels" of `report --json`.
+/// Levels and differences of all stimuli and of the blank plane: the member "levels" of `report
+/// --json`.
 [[nodiscard]] std::string all_levels_json(const study::Study& study,
                                           const simulation::StimulusLevels& levels);
 
-/// One line, with its key, if stimuli are too weak on the study's device by either curve. None for
-/// a study without a device, one that states its level, and one that looks for thresholds.
+/// A one-line warning with its key if stimuli are too weak on the study's device by either curve.
+/// Empty for a study without a device, with a stated level, or that measures thresholds.
 [[nodiscard]] std::vector<std::string> level_warnings(const study::Study& study,
                                                       const simulation::StimulusLevels& levels);
 
@@ -40,7 +42,7 @@ namespace touchtrial::planning {
     std::unique_ptr<const analysis::Results> results, const study::Study& study,
     simulation::StimulusLevels levels);
 
-/// Results with a section that says where the levels are, which were not computed.
+/// Results with a section that states how to get the levels, which were not computed.
 [[nodiscard]] std::unique_ptr<const analysis::Results> with_levels_note(
     std::unique_ptr<const analysis::Results> results);
 

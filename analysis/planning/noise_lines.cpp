@@ -32,7 +32,7 @@ double product(const double* a, const double* b, int count) noexcept {
   return sum;
 }
 
-/// Uses the middle of the bits' cell of width 2^-53, so that the uniform number is never 0 or 1.
+/// Uses the middle of a cell of width 2^-53, so the uniform number is never 0 or 1.
 double normal_of(std::uint64_t bits) {
   constexpr int kUnused = 11;
   const double uniform = (static_cast<double>(bits >> kUnused) + 0.5) * 0x1.0p-53;
@@ -46,7 +46,7 @@ constexpr int kCells = 2048;
 /// A length beyond sqrt(d) + kFarTail has a probability of about 1e-16.
 constexpr double kFarTail = 8.5;
 
-/// The largest support at t = -infinity: the one with the smallest slope.
+/// The winner at t = -infinity: the prototype with the smallest slope.
 std::size_t first_winner(std::span<const double> at, std::span<const double> slope) noexcept {
   std::size_t best = 0;
   for (std::size_t k = 1; k < at.size(); ++k) {
@@ -61,7 +61,7 @@ struct Crossing {
   double t = std::numeric_limits<double>::infinity();
 };
 
-/// The next prototype that overtakes the winner, and where.
+/// The next prototype that overtakes the winner, and the crossing point.
 Crossing next_winner(std::span<const double> at, std::span<const double> slope,
                      std::size_t winner) noexcept {
   Crossing next{winner};
@@ -74,7 +74,7 @@ Crossing next_winner(std::span<const double> at, std::span<const double> slope,
   return next;
 }
 
-/// Shares a probability among the pictures of all prototypes that equal the winner everywhere.
+/// Splits a probability among the pictures of all prototypes that equal the winner everywhere.
 void share(std::span<const double> at, std::span<const double> slope, std::span<const int> picture,
            std::size_t winner, double probability, std::span<double> answers) noexcept {
   const auto stands_for_its_picture = [&](std::size_t k) {

@@ -1,6 +1,6 @@
-/// \file A classifier's supports for prototypes, how noise moves them along straight lines, and how
-/// likely each picture wins along such a line.
-/// Source: docs/planning.md, "Probabilities of answers". Private to analysis/planning.
+/// \file A classifier's supports for prototypes, how noise moves them along straight lines, and the
+/// probability that each picture wins along such a line. Source: docs/planning.md, "Probabilities
+/// of answers". Private to analysis/planning.
 #pragma once
 
 #include "engine/perception/felt_classifier.hpp"
@@ -26,8 +26,8 @@ class LinearSupports {
  public:
   /// Evaluates a FeltClassifier at the examples' mean and one step along each feature. Cost: some
   /// 30 us.
-  /// \param noise  its own part > 0
-  /// \param floor  of the person, if there is one
+  /// \param noise  of the person's features; its independent part must be > 0
+  /// \param floor  the person's, if there is one
   LinearSupports(const simulation::FeltKnowledge& knowledge, engine::FeltNoise noise,
                  const std::optional<simulation::FeltFloor>& floor = {});
 
@@ -36,8 +36,8 @@ class LinearSupports {
   /// \param supports  receives one number per prototype
   void at(engine::FeltFeatures felt, std::span<double> supports) const noexcept;
 
-  /// What the noise of every feature adds to the supports: a linear function of
-  /// independent standard normals.
+  /// The effect of all features' noise on the supports: a linear function of independent standard
+  /// normals.
   /// \param normals  noise_dimensions(prototypes) numbers
   /// \param supports  receives one number per prototype
   void noise(std::span<const double> normals, std::span<double> supports) const noexcept;
@@ -58,7 +58,7 @@ class NoisePoints {
  public:
   /// \param dimensions  of each point, >= 1
   /// \param count  number of points
-  /// \param index  selects the shift: each index gives other points
+  /// \param index  selects the shift: each index gives different points
   NoisePoints(int dimensions, std::size_t count, std::uint64_t seed, std::uint64_t index);
 
   [[nodiscard]] std::span<const double> point(std::size_t i) const noexcept {
@@ -80,7 +80,7 @@ class NoisePoints {
 class RadialDistribution {
  public:
   /// \param dimensions  d, >= 1
-  /// \throws std::invalid_argument if it is smaller
+  /// \throws std::invalid_argument if dimensions < 1
   explicit RadialDistribution(int dimensions);
 
   struct Value {
@@ -90,7 +90,7 @@ class RadialDistribution {
   [[nodiscard]] Value at(double t) const noexcept;
 
  private:
-  double reach_;  ///< longer lengths are neglected
+  double reach_;  ///< longer lengths are ignored
   double step_;
   std::vector<double> beyond_;   ///< P(absolute length > i steps)
   std::vector<double> density_;  ///< its density per step

@@ -71,7 +71,7 @@ Optimum maximise(const SmoothFunction& function, std::vector<double> start, cons
   nlopt_set_upper_bounds(solver.get(), divided(bounds.upper, search.scales).data());
   nlopt_set_max_objective(solver.get(), &evaluate, &search);
   nlopt_set_ftol_rel(solver.get(), options.tolerance);
-  nlopt_set_maxeval(solver.get(), options.most_evaluations);
+  nlopt_set_maxeval(solver.get(), options.max_evaluations);
   std::vector<double> scaled = divided(start, search.scales);
   double value = 0.0;
   // The best point is the answer, whether the search converged or not.

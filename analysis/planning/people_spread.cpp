@@ -27,14 +27,14 @@ constexpr double kHalfChiSquare = 1.920729;
 
 using Curve = boost::math::interpolators::makima<std::vector<double>>;
 
-/// One participant's answers that were given at all.
-struct GivenAnswer {
+/// One cell of a participant's counts that is not 0.
+struct AnswerCount {
   std::size_t cell = 0;
   double count = 0.0;
 };
 struct Person {
   int layout = 0;
-  std::vector<GivenAnswer> answers;
+  std::vector<AnswerCount> answers;
 };
 
 std::vector<Person> chosen(std::span<const CountedPerson> people) {
@@ -63,14 +63,14 @@ class SpreadLikelihood {
   SpreadLikelihood(const NoiseAnswers& answers, std::span<const CountedPerson> people)
       : answers_(answers), people_(chosen(people)), groups_(normal_groups(kGroupsOfPeople)) {
     for (std::size_t i = 0; i < answers.answers.size(); ++i) {
-      places_.push_back(answers.least_log_noise + static_cast<double>(i) * answers.step);
+      places_.push_back(answers.min_log_noise + static_cast<double>(i) * answers.step);
     }
   }
 
-  [[nodiscard]] double least() const { return places_.front(); }
-  [[nodiscard]] double most() const { return places_.back(); }
+  [[nodiscard]] double min_log_noise() const { return places_.front(); }
+  [[nodiscard]] double max_log_noise() const { return places_.back(); }
 
-  /// Every person's log likelihood by ln noise.
+  /// Each person's log likelihood as a function of ln noise.
   [[nodiscard]] std::vector<Curve> curves(double lapse) const {
     std::vector<Curve> all;
     for (const Person& person : people_) {
@@ -95,8 +95,8 @@ class SpreadLikelihood {
                                       double lapse) const {
     const double guessed = lapse / static_cast<double>(answers_.classes);
     double sum = 0.0;
-    for (const GivenAnswer& one : person.answers) {
-      sum += one.count * std::log(believed((1.0 - lapse) * felt[one.cell] + guessed));
+    for (const AnswerCount& one : person.answers) {
+      sum += one.count * std::log(clamped_probability((1.0 - lapse) * felt[one.cell] + guessed));
     }
     return sum;
   }
@@ -107,7 +107,8 @@ class SpreadLikelihood {
     std::array<double, kGroupsOfPeople> logs{};
     double largest = -std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < logs.size(); ++i) {
-      logs[i] = curve(std::clamp(log_noise + spread * groups_[i], least(), most()));
+      logs[i] =
+          curve(std::clamp(log_noise + spread * groups_[i], min_log_noise(), max_log_noise()));
       largest = std::max(largest, logs[i]);
     }
     double sum = 0.0;
@@ -121,7 +122,7 @@ class SpreadLikelihood {
   std::vector<double> places_;
 };
 
-/// Which of noise, lapse and spread may change.
+/// The numbers that may change.
 struct Free {
   bool noise = true;
   bool lapse = true;
@@ -141,9 +142,9 @@ double slope(const std::function<double(double)>& value, double at, double lower
 
 Point maximised(const SpreadLikelihood& likelihood, const Point& start, const Free& free) {
   const auto bound = [](bool is_free, double fixed, double end) { return is_free ? end : fixed; };
-  const Bounds bounds{{bound(free.noise, start.log_noise, likelihood.least()),
+  const Bounds bounds{{bound(free.noise, start.log_noise, likelihood.min_log_noise()),
                        bound(free.lapse, start.lapse, 0.0), bound(free.spread, start.spread, 0.0)},
-                      {bound(free.noise, start.log_noise, likelihood.most()),
+                      {bound(free.noise, start.log_noise, likelihood.max_log_noise()),
                        bound(free.lapse, start.lapse, kMaxLapse),
                        bound(free.spread, start.spread, kSpreads.back())}};
   const SmoothFunction function = [&](std::span<const double> at, std::span<double> slopes) {
@@ -161,12 +162,13 @@ Point maximised(const SpreadLikelihood& likelihood, const Point& start, const Fr
   };
   const Optimum best =
       maximise(function, {start.log_noise, start.lapse, start.spread}, bounds,
-               {.tolerance = 1e-7, .most_evaluations = 40, .scales = {0.2, 0.05, 0.2}});
+               {.tolerance = 1e-7, .max_evaluations = 40, .scales = {0.2, 0.05, 0.2}});
   return {best.at[0], best.at[1], best.at[2], best.value};
 }
 
-/// The best points with the spread held, for each of some spreads. Each also starts from its
-/// neighbours' points: with more spread, fewer lapses explain the same errors.
+/// The best points for each of a list of fixed spreads. Each search also starts from its
+/// neighbours' points, because the likelihood can have several maxima: with more spread, fewer
+/// lapses explain the same errors.
 std::vector<Point> profile(const SpreadLikelihood& likelihood, const SpreadStart& start,
                            const Free& free) {
   std::vector<Point> points;
@@ -175,7 +177,8 @@ std::vector<Point> profile(const SpreadLikelihood& likelihood, const SpreadStart
     const Point found = maximised(likelihood, from, free);
     if (found.value > points[i].value) points[i] = found;
   };
-  Point from{std::clamp(start.log_noise, likelihood.least(), likelihood.most()), start.lapse};
+  Point from{std::clamp(start.log_noise, likelihood.min_log_noise(), likelihood.max_log_noise()),
+             start.lapse};
   for (std::size_t i = 0; i < kSpreads.size(); ++i) {
     points.emplace_back();
     improve(i, i == 0 ? from : points[i - 1]);
@@ -208,8 +211,8 @@ OpenInterval interval_of(const std::vector<Point>& points, const Point& best) {
   return interval;
 }
 
-/// The p of a spread by the likelihood ratio. A spread of 0 is the end of the possible ones, where
-/// the ratio is 0 half of the time.
+/// The p of a spread by the likelihood ratio. A spread of 0 lies on the boundary, where the ratio
+/// is 0 half of the time.
 double p_of(double lost, bool at_the_end) {
   if (lost <= 0.0) return 1.0;
   const boost::math::chi_squared_distribution<> chi_squared(1.0);
@@ -219,10 +222,10 @@ double p_of(double lost, bool at_the_end) {
 
 void check(const NoiseAnswers& answers, const SpreadStart& start) {
   if (answers.answers.size() < 4 || !(answers.step > 0.0) || answers.classes < 1) {
-    throw std::invalid_argument("people_spread: four amounts of noise or more, and classes");
+    throw std::invalid_argument("people_spread: needs four or more amounts of noise, and classes");
   }
   if (!(start.spread >= 0.0) || !(start.lapse >= 0.0 && start.lapse <= kMaxLapse)) {
-    throw std::invalid_argument("people_spread: a spread and a lapse are 0 or more");
+    throw std::invalid_argument("people_spread: spread and lapse must be >= 0");
   }
 }
 

@@ -1,4 +1,4 @@
-/// \file How much participants differ in the noise of their sense, by each participant's own
+/// \file The spread of sensory noise between participants, estimated from each participant's own
 /// answers. Source: docs/planning.md, "Spread between people"; Self, Liang 1987 (the test of no
 /// difference).
 #pragma once
@@ -11,7 +11,7 @@
 
 namespace touchtrial::planning {
 
-/// An interval; an end is missing where the data set none.
+/// An interval; an end that the data do not determine is missing.
 struct OpenInterval {
   std::optional<double> lower;
   std::optional<double> upper;
@@ -19,17 +19,17 @@ struct OpenInterval {
 
 /// Probabilities of answers without lapses, for evenly spaced amounts of noise.
 struct NoiseAnswers {
-  double least_log_noise = 0.0;  ///< ln of the first amount
-  double step = 0.25;            ///< of ln noise, > 0
+  double min_log_noise = 0.0;  ///< ln of the first amount
+  double step = 0.25;          ///< of ln noise, > 0
   std::size_t classes = 0;
   std::vector<Cells> answers;  ///< [amount][layout][stimulus x classes + answer], 4 or more
 };
 
-/// Where the search starts, and which numbers may change besides the spread.
+/// The start of the search, and the numbers that may change besides the spread.
 struct SpreadStart {
   double log_noise = 0.0;
   double lapse = 0.0;
-  double spread = 0.0;  ///< that is tested against the participants' answers, >= 0
+  double spread = 0.0;  ///< the spread to test against the participants' answers, >= 0
   bool noise_is_free = true;
   bool lapse_is_free = true;
 };
@@ -39,15 +39,16 @@ struct PeopleSpread {
   OpenInterval interval;  ///< 95 %, by the profile likelihood
   double log_noise = 0.0;
   double lapse = 0.0;
-  double alike_p = 1.0;  ///< of people who do not differ, by the likelihood ratio
-  double given_p = 1.0;  ///< of people who differ as much as SpreadStart says
+  double equal_p = 1.0;    ///< of a spread of 0, by the likelihood ratio
+  double assumed_p = 1.0;  ///< of SpreadStart::spread
 };
 
-/// The most people whose answers are used; of more, as many are evenly chosen.
+/// The maximum number of people whose answers are used; an even selection of larger samples.
 inline constexpr std::size_t kMaxPeopleOfSpread = 400;
 
-/// Maximises the likelihood of all participants' answers if each has one noise in all trials, whose
-/// logarithm is normal over people; everybody lapses equally often. Cost: under 1 s for 20 people.
+/// Maximises the likelihood of all participants' answers. Each participant has one noise in all
+/// trials, whose logarithm is normally distributed over people; all have the same lapse rate. Cost:
+/// under 1 s for 20 people.
 /// \return nothing with fewer than two people
 /// \throws std::invalid_argument if an argument is out of range
 [[nodiscard]] std::optional<PeopleSpread> people_spread(const NoiseAnswers& answers,

@@ -16,7 +16,7 @@ std::map<std::string_view, const Planner*>& known_planners() {
   return all;
 }
 
-/// Where a study with tracks is found: "the protocol NAME, such as FILE".
+/// Names a protocol with tracks and its shipped study: "the protocol NAME, such as FILE".
 std::string words_of_tracks() {
   for (const auto& [protocol, planner] : known_planners()) {
     if (planner->study_with_tracks().empty()) continue;
@@ -32,15 +32,15 @@ std::string_view Planner::study_with_tracks() const {
 }
 
 std::string Planner::procedure(const study::Study& study, int, const std::vector<bool>&) const {
-  throw UsageError(
-      one_line(fmt::format("{}: has the protocol {}, whose trials no procedure chooses; "
-                           "`touchtrial procedure` needs a study of {}",
-                           study.source, study.protocol_name(), words_of_tracks())));
+  throw UsageError(one_line(fmt::format(
+      "{}: the protocol {} has no adaptive procedure; `touchtrial procedure` needs a study of {}",
+      study.source, study.protocol_name(), words_of_tracks())));
 }
 
 std::vector<std::pair<std::string, double>> Planner::pilot_thresholds(
     const analysis::Outcomes&, const std::string& place) const {
-  throw StudyError(one_line(place + ": is no detection study along gain that asks which interval"));
+  throw StudyError(
+      one_line(place + ": is not a detection study along gain with the task \"which interval\""));
 }
 
 void add_planner(std::string_view protocol, const Planner& planner) {

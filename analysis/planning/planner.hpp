@@ -1,5 +1,4 @@
-/// \file The interface of a protocol's planning: what commands that plan ask of a protocol. They
-/// know the planning of a protocol only by this interface.
+/// \file The interface between planning commands and the protocols.
 #pragma once
 
 #include "analysis/outcomes/outcomes.hpp"
@@ -18,9 +17,9 @@
 
 namespace touchtrial::planning {
 
-/// The options of `power`. Those from `methods` on are of some protocols only (Planner::options).
+/// The options of `power`. Only some protocols accept those from `methods` on (Planner::options).
 struct PowerOptions {
-  PowerPlan plan;  ///< settled; some protocols alone use explorations and trainings
+  PowerPlan plan;  ///< validated; only some protocols use explorations and trainings
   int jobs = 1;    ///< threads; results do not depend on them
   bool json = false;
 
@@ -35,12 +34,13 @@ struct PowerOptions {
   int pool = 100;  ///< simulated participants from whom samples are drawn
 };
 
-/// What a planner uses of the program. What it does not need is not made.
+/// Program functions that a planner may call. Inputs are made only when needed.
 struct PowerTools {
-  std::function<simulation::SubjectModel()> subject;  ///< that the user named, or the built-in one
-  std::function<study::StudyKey()> key;               ///< of the study, for simulations
+  std::function<simulation::SubjectModel()>
+      subject;                           ///< the user's subject model, or the built-in one
+  std::function<study::StudyKey()> key;  ///< of the study, for simulations
   std::function<void(const study::StudyKey&)> prepare;  ///< makes what its pack lacks
-  /// A bar that shows how far the work is that the words name.
+  /// A progress bar with this label.
   std::function<study::Progress(const std::string&)> progress;
 };
 
@@ -49,22 +49,21 @@ class Planner {
  public:
   virtual ~Planner() = default;
 
-  /// Options of `power` that it takes beside those of every protocol, as "--methods".
+  /// Options of `power` that it accepts in addition to the common ones, for example "--methods".
   [[nodiscard]] virtual std::span<const std::string_view> options() const = 0;
   /// Simulates a study many times.
   /// \return what `power` prints
   /// \throws UsageError if an option is impossible for the study
-  /// \throws StudyError if the study has no power
+  /// \throws StudyError if power is undefined for the study
   [[nodiscard]] virtual std::string power(const study::Study& study, const PowerOptions& options,
                                           const PowerTools& tools) const = 0;
 
-  /// A study that comes with the program and has the tracks of `procedure`; empty: the protocol has
-  /// none.
+  /// A shipped study with tracks for `procedure`; empty: the protocol has no tracks.
   [[nodiscard]] virtual std::string_view study_with_tracks() const;
-  /// One track of a study after a list of answers, each right or not.
+  /// Replays answers, each right or wrong, through one track of a study.
   /// \param track  from 1
   /// \return what `procedure` prints
-  /// \throws UsageError if the protocol has no tracks, the track is not there, or there are more
+  /// \throws UsageError if the protocol has no tracks, the track does not exist, or there are more
   ///   answers than trials
   [[nodiscard]] virtual std::string procedure(const study::Study& study, int track,
                                               const std::vector<bool>& answers) const;
@@ -72,7 +71,7 @@ class Planner {
   /// Mean measured thresholds of detection along gain, dB, of each class's label, at the share of
   /// right answers that levels count from.
   /// \param outcomes  unblinded
-  /// \param place  with which an error begins
+  /// \param place  prefix of error messages
   /// \throws StudyError if the study measured no such thresholds, or too few
   [[nodiscard]] virtual std::vector<std::pair<std::string, double>> pilot_thresholds(
       const analysis::Outcomes& outcomes, const std::string& place) const;
@@ -82,11 +81,11 @@ class Planner {
 /// \param protocol  the protocol's name; both arguments must outlive the program's use of them
 void add_planner(std::string_view protocol, const Planner& planner);
 
-/// \param what  is asked of it, in words: "`power`"
+/// \param what  what needs the planner, for the message: "`power`"
 /// \throws StudyError if the study's protocol has no planner
 [[nodiscard]] const Planner& planner_of(const study::Study& study, const std::string& what);
 
-/// The protocols whose studies take an option of `power`; none if those of all take it.
+/// The protocols whose studies accept an option of `power`; empty if all do.
 /// \param option  as "--methods"
 [[nodiscard]] std::vector<std::string_view> protocols_with(std::string_view option);
 

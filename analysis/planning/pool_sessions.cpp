@@ -14,10 +14,10 @@
 namespace touchtrial::planning {
 namespace {
 
-/// An order that tells of its answers.
-class NotedOrder final : public study::Order {
+/// An order that reports its answers to an observer.
+class ObservedOrder final : public study::Order {
  public:
-  NotedOrder(std::unique_ptr<study::Order> order, const NoteAnswer& note)
+  ObservedOrder(std::unique_ptr<study::Order> order, const AnswerObserver& note)
       : Order(order->schedule(), SecretKey{}), order_(std::move(order)), note_(note) {}
 
   study::Trial at(const study::Trial& scheduled) const override { return order_->at(scheduled); }
@@ -33,15 +33,15 @@ class NotedOrder final : public study::Order {
 
  private:
   std::unique_ptr<study::Order> order_;
-  const NoteAnswer& note_;
+  const AnswerObserver& note_;
 };
 
 /// \return whether the session reached its end
-bool hold_session(const PoolSetting& setting, int number, int visit,
-                  simulation::SimulatedParticipant& participant, const NoteAnswer& note) {
+bool run_pool_session(const PoolSetting& setting, int number, int visit,
+                      simulation::SimulatedParticipant& participant, const AnswerObserver& note) {
   const study::StudyKey& key = setting.key;
   const study::ScheduleDraw draw = key.draw_of(number, study::Draws::rehearsal, visit);
-  auto order = std::make_unique<NotedOrder>(study::make_order(key.study, draw), note);
+  auto order = std::make_unique<ObservedOrder>(study::make_order(key.study, draw), note);
   const study::Schedule schedule = order->schedule();
   record::BufferedEvents unread;
   session::Session session(std::move(order), key.study.trials,
@@ -64,10 +64,10 @@ bool hold_session(const PoolSetting& setting, int number, int visit,
 
 }  // namespace
 
-bool hold_pool_sessions(const PoolSetting& setting, int number, const NoteAnswer& note) {
+bool run_pool_sessions(const PoolSetting& setting, int number, const AnswerObserver& note) {
   const auto participant = setting.population.participant(number);
   for (int visit = 1; visit <= setting.key.study.visits.count; ++visit) {
-    if (!hold_session(setting, number, visit, *participant, note)) return false;
+    if (!run_pool_session(setting, number, visit, *participant, note)) return false;
   }
   return true;
 }

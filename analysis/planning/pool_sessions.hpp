@@ -1,5 +1,5 @@
-/// \file Whole sessions of one simulated participant in virtual time, of which nothing is stored:
-/// for pools of people, from whom planning draws samples.
+/// \file Whole sessions of one simulated participant in virtual time, without storing anything.
+/// Planning draws samples from pools of such participants.
 #pragma once
 
 #include "protocols/session/stimulus_source.hpp"
@@ -12,7 +12,7 @@
 
 namespace touchtrial::planning {
 
-/// What the sessions of a pool share; everything must outlive them.
+/// Settings shared by the sessions of a pool; everything must outlive them.
 struct PoolSetting {
   const study::StudyKey& key;
   const session::StimulusSource& source;
@@ -21,16 +21,16 @@ struct PoolSetting {
 };
 
 /// Called with each answer to a trial of the schedule, in order.
-/// \param order  whose trial it is
-/// \param shown  as it was presented
-using NoteAnswer =
+/// \param order  the order that chose the trial
+/// \param shown  the trial as presented
+using AnswerObserver =
     std::function<void(const study::Order& order, const study::Trial& shown, const Answer& answer)>;
 
-/// Holds the participant's sessions at all visits, those of `simulate` with the population's seed.
-/// Thread-safe if `note` is.
+/// Runs the participant's sessions at all visits, identical to those of `simulate` with the
+/// population's seed. Thread-safe if `note` is.
 /// \param number  of the participant, from 1
-/// \return whether all sessions reached their end; there are none after one that did not
-[[nodiscard]] bool hold_pool_sessions(const PoolSetting& setting, int number,
-                                      const NoteAnswer& note);
+/// \return whether all sessions reached their end; stops after the first that did not
+[[nodiscard]] bool run_pool_sessions(const PoolSetting& setting, int number,
+                                     const AnswerObserver& note);
 
 }  // namespace touchtrial::planning

@@ -27,7 +27,7 @@ void settle_sizes(PowerPlan& plan) {
     throw UsageError("--participants: no size is given; give one or more, for instance 8,12,16");
   }
   if (plan.participants.size() > kMaxPowerSizes) {
-    throw UsageError(fmt::format("--participants: {} sizes are given; give {} at most",
+    throw UsageError(fmt::format("--participants: {} sizes are given; give at most {}",
                                  plan.participants.size(), kMaxPowerSizes));
   }
   for (const int size : plan.participants) {
@@ -41,7 +41,7 @@ void settle_sizes(PowerPlan& plan) {
   }
 }
 
-/// Tells subject models apart: words name the main numbers alone.
+/// Distinguishes subject models whose main numbers, the only ones in the text, are equal.
 std::string digest_of(const simulation::SubjectModel& subject) {
   constexpr std::size_t kShown = 12;
   FieldHasher hasher;
@@ -52,7 +52,7 @@ std::string digest_of(const simulation::SubjectModel& subject) {
 
 }  // namespace
 
-void settle(PowerPlan& plan) {
+void validate_plan(PowerPlan& plan) {
   settle_sizes(plan);
   require_range("--runs", plan.runs, 1, kMaxPowerRuns);
   require_range("--explorations", plan.explorations, 1, kMaxExplorations);
@@ -60,13 +60,14 @@ void settle(PowerPlan& plan) {
   const std::int64_t all =
       static_cast<std::int64_t>(plan.participants.size()) * std::int64_t{plan.runs};
   if (all > kMaxPowerRunsInAll) {
-    throw UsageError(fmt::format(
-        "--runs: {} runs of {} sizes are {} in all; give fewer runs or sizes, {} in all at most",
-        plan.runs, plan.participants.size(), all, kMaxPowerRunsInAll));
+    throw UsageError(
+        fmt::format("--runs: {} runs of {} sizes are {} in total; give fewer runs or sizes, at "
+                    "most {} in total",
+                    plan.runs, plan.participants.size(), all, kMaxPowerRunsInAll));
   }
 }
 
-std::vector<int> numbers_named(std::string_view text, const std::string& option,
+std::vector<int> parse_numbers(std::string_view text, const std::string& option,
                                const std::string& what) {
   std::vector<int> numbers;
   for (std::size_t begin = 0; begin <= text.size();) {
@@ -85,7 +86,7 @@ std::vector<int> numbers_named(std::string_view text, const std::string& option,
 
 std::string words_of(const simulation::SubjectModel& subject) {
   return fmt::format(
-      "{}, {}, sense {}, feature_noise {} (spread {}), lapse {} (spread {}); all of it {}",
+      "{}, {}, sense {}, feature_noise {} (spread {}), lapse {} (spread {}); digest {}",
       subject.source.empty() ? "built-in subject"
                              : one_line(std::filesystem::path(subject.source).filename().string()),
       device::words_of_simulated(subject.device), simulation::name_of_sense(subject.sense),

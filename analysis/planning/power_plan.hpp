@@ -1,4 +1,4 @@
-/// \file The plan of a power run, and words that the reports of all protocols' runs share. Source:
+/// \file The plan of a power run, and texts that the power reports of all protocols share. Source:
 /// docs/planning.md.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace touchtrial::planning {
 inline constexpr int kMaxPowerRuns = 100'000;
 inline constexpr int kMaxPowerParticipants = 10'000;
 inline constexpr std::size_t kMaxPowerSizes = 64;
-/// Runs of all sizes together.
+/// The maximum total number of runs over all sizes.
 inline constexpr std::int64_t kMaxPowerRunsInAll = 1'000'000;
 
 struct PowerPlan {
@@ -29,15 +29,15 @@ struct PowerPlan {
   double margin = 0.0;      ///< of the primary test; 0: none
 };
 
-/// Sorts the sizes and checks the plan.
+/// Sorts the sizes and validates the plan.
 /// \throws UsageError if a size appears twice or a number is out of range
-void settle(PowerPlan& plan);
+void validate_plan(PowerPlan& plan);
 
-/// Whole numbers as they are typed: "8,12,16".
+/// Parses a comma-separated list of whole numbers: "8,12,16".
 /// \param option  for the message
-/// \param what  they are, for the message: "a number of participants"
-/// \throws UsageError if a part is not a whole number from 0 on
-[[nodiscard]] std::vector<int> numbers_named(std::string_view text, const std::string& option,
+/// \param what  the meaning of a number, for the message: "a number of participants"
+/// \throws UsageError if a part is not a whole number >= 0
+[[nodiscard]] std::vector<int> parse_numbers(std::string_view text, const std::string& option,
                                              const std::string& what);
 
 /// \return a subject model on one line: its file, its main numbers, and a digest of all of them

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLowTail = 0.025;
 constexpr double kHighTail = 0.975;
-// Finished shares after the stages, by experience.
+// Empirical progress after each stage.
 constexpr double kSearched = 0.3;
 constexpr double kProfiled = 0.9;
 
@@ -34,7 +34,7 @@ Fitted at_best(const FitProblem& problem, const FitCounts& counts,
   return fitted_at(problem, counts, std::move(best));
 }
 
-/// A number as people read it.
+/// A number in reported units.
 double readable(const Parameter& parameter, double number) {
   return parameter.kind == ParameterKind::feature_noise ? std::exp(number) : number;
 }
@@ -53,7 +53,7 @@ std::string name_of(const Parameter& parameter) {
   return "";
 }
 
-/// An interval as people read it. A lapse cannot be less than 0, so that this end is always known.
+/// An interval in reported units. A lapse cannot be below 0, so its lower end always exists.
 OpenInterval readable(const Parameter& parameter, OpenInterval interval) {
   if (interval.lower) interval.lower = readable(parameter, *interval.lower);
   if (interval.upper) interval.upper = readable(parameter, *interval.upper);
@@ -81,7 +81,8 @@ ParameterEstimate estimate_of(const Fitted& fitted, std::size_t number, double m
   return estimate;
 }
 
-/// The estimate's value in a bootstrap draw; the eliminated class's follows from the other classes.
+/// The estimate's value in a bootstrap draw; that of the eliminated class follows from the other
+/// classes.
 double number_of(const Fitted& fitted, const ParameterEstimate& estimate,
                  const std::vector<double>& numbers) {
   double others = 0.0;
@@ -162,7 +163,7 @@ std::optional<PeopleSpread> spread_of(const AnswerModel& model, const FitCounts&
   one.feature_noise_spread = 0.0;
   one.lapse = 0.0;
   one.lapse_spread = 0.0;
-  for (double at = answers.least_log_noise; at <= std::log(kMaxNoise); at += answers.step) {
+  for (double at = answers.min_log_noise; at <= std::log(kMaxNoise); at += answers.step) {
     one.feature_noise = std::exp(at);
     answers.answers.push_back(cells_of(model.answers(one, counts.layouts), counts));
   }
@@ -174,7 +175,7 @@ std::optional<PeopleSpread> spread_of(const AnswerModel& model, const FitCounts&
 /// Whether the answers rule out the spread that a subject has.
 bool rules_out(const PeopleSpread& people) {
   constexpr double kLevel = 0.05;
-  return people.given_p <= kLevel;
+  return people.assumed_p <= kLevel;
 }
 
 simulation::SubjectModel with_spread(simulation::SubjectModel subject, const PeopleSpread& people,
@@ -220,11 +221,11 @@ SubjectFit fit_subject(const AnswerModel& model, const FitCounts& counts,
   if (counts.layouts.size() < 2 && used.classes) used.position = false;
   const SwapSearch search = search_swaps(model, evidence, subject, used);
   SubjectFit fit = described(counts);
-  fit.given_spread = subject.feature_noise_spread;
+  fit.assumed_spread = subject.feature_noise_spread;
   fit.people = spread_of(model, counts, search.subject, used);
-  fit.spread_taken = used.spread && fit.people && rules_out(*fit.people);
+  fit.spread_replaced = used.spread && fit.people && rules_out(*fit.people);
   const simulation::SubjectModel start =
-      fit.spread_taken ? with_spread(search.subject, *fit.people, used) : search.subject;
+      fit.spread_replaced ? with_spread(search.subject, *fit.people, used) : search.subject;
   if (progress) progress(kSearched);
   const FitProblem problem(model, evidence, start, used);
   const FitProblem otherwise(model, evidence, start, used, 1);

@@ -38,13 +38,13 @@ struct ParameterEstimate {
 /// A label swap that was considered.
 struct SwapCandidate {
   std::pair<std::string, std::string> labels;
-  double gain = 0.0;  ///< of log likelihood, everything else fitted anew
+  double gain = 0.0;  ///< in log likelihood, with everything else refitted
   bool taken = false;
 };
 
 struct SubjectFit {
   simulation::SubjectModel subject;  ///< fitted; fixed parameters are the given subject's
-  /// Refitted to each of the simulated studies: what the answers leave open.
+  /// Refitted to each simulated study: the uncertainty that the answers leave.
   std::vector<simulation::SubjectModel> draws;
   std::vector<ParameterEstimate> estimates;
   std::vector<SwapCandidate> swaps;  ///< the most likely ones, best first
@@ -63,31 +63,31 @@ struct SubjectFit {
   int bootstraps = 0;
   std::optional<double> noise_lapse_correlation;  ///< of the two estimates
   std::optional<PeopleSpread> people;             ///< nothing with one participant
-  double given_spread = 0.0;          ///< of noise between people, as the given subject has it
-  bool spread_taken = false;          ///< the given spread was replaced by the participants'
-  std::vector<std::string> warnings;  ///< one line each
+  double assumed_spread = 0.0;                    ///< of noise between people, in the given subject
+  bool spread_replaced = false;                   ///< the given spread was replaced by the estimate
+  std::vector<std::string> warnings;              ///< one line each
 };
 
 /// Receives the finished share of a fit, 0 .. 1.
 using FitProgress = std::function<void(double share)>;
 
-/// Maximises the likelihood of the counts, from several fixed starts. A label swap is taken if it
-/// makes the answers 20 times likelier than any other explanation, all pairs together. Then the
-/// spread of noise between people is estimated from each participant's own answers; if they rule
-/// out the given spread (p <= 0.05), everything is fitted anew with the estimated one. Cost: some
-/// 200 to 1,000 evaluations of the model; a bootstrap draw refits a log-linear model with the fit's
-/// probabilities and slopes. The result depends on the arguments alone.
+/// Maximises the likelihood of the counts, from several fixed starts. A label swap is accepted if
+/// its gain exceeds swap_threshold. Then the spread of noise between people is estimated from each
+/// participant's own answers. If they rule out the given spread (p <= 0.05), everything is refitted
+/// with the estimated one. Cost: some 200 to 1,000 evaluations of the model; a bootstrap draw
+/// refits a log-linear model with the fit's probabilities and slopes. The result depends on the
+/// arguments alone.
 /// \param model  of the same study, with `subject`'s hand and training
 /// \param subject  start of the search, and values of the fixed parameters
 [[nodiscard]] SubjectFit fit_subject(const AnswerModel& model, const FitCounts& counts,
                                      const simulation::SubjectModel& subject,
                                      const FitOptions& options, const FitProgress& progress = {});
 
-/// What a fit, which takes all trials of all people as alike, ignores of the model: the keys with
-/// commas between them; "" if it ignores nothing.
+/// The keys of the model that a fit ignores because it treats all trials of all people alike,
+/// separated by commas; "" if none.
 [[nodiscard]] std::string keys_that_fits_ignore(const simulation::SubjectModel& subject);
 
-/// What the data of a finished fit cannot tell, one line each.
+/// What the data of a finished fit leave undetermined, one line each.
 /// \param free  parameters that were to be estimated
 /// \param used  parameters that could be estimated
 [[nodiscard]] std::vector<std::string> fit_warnings(const FitCounts& counts, const SubjectFit& fit,
@@ -98,16 +98,16 @@ struct AccuracyFit {
   simulation::SubjectModel subject;
   std::vector<std::string> classes;
   std::vector<double> wanted;   ///< by class, 0 .. 1
-  std::vector<double> reached;  ///< by class, expected of the fitted subject
+  std::vector<double> reached;  ///< by class, expected from the fitted subject
   int parameters = 0;           ///< number of estimated parameters
   double log_likelihood = 0.0;
   double best_log_likelihood = 0.0;  ///< of a model that reaches the accuracies exactly
   std::vector<std::string> warnings;
 };
 
-/// The subject whose accuracies are the most likely, by a binomial likelihood with equally many
-/// trials for each class. With as many parameters as classes, many subjects usually reach the
-/// accuracies exactly, and this is one of them. Label swaps are not searched.
+/// The maximum-likelihood subject for these accuracies, by a binomial likelihood with the same
+/// number of trials for each class. With at least as many parameters as classes, usually many
+/// subjects reach the accuracies exactly, and this is one of them. Label swaps are not searched.
 /// Source: docs/planning.md, "Published accuracies".
 /// \param wanted  by class, 0 .. 1
 /// \param layouts  of the participants

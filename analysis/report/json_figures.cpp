@@ -1,6 +1,7 @@
 #include "analysis/report/json_figures.hpp"
 
 #include "analysis/report/bibliography.hpp"
+#include "analysis/report/measure.hpp"
 
 #include <cmath>
 
@@ -9,6 +10,14 @@ namespace touchtrial::analysis {
 nlohmann::ordered_json figure_json(std::optional<double> figure) {
   if (!figure || !std::isfinite(*figure)) return nullptr;
   return *figure;
+}
+
+DataCell data_cell(const nlohmann::ordered_json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_boolean()) return flag(value.get<bool>());
+  if (value.is_number_integer()) return value.get<std::int64_t>();
+  if (value.is_number()) return value.get<double>();
+  return std::monostate{};
 }
 
 nlohmann::ordered_json interval_json(const Interval& interval) {
@@ -42,12 +51,6 @@ std::optional<Interval> known(const Interval& interval, const Proportion& of) {
 void put_mean(nlohmann::ordered_json& object, const MeanEstimate& mean) {
   object["mean"] = figure_json(mean.mean);
   object["interval"] = interval_json(mean.known_interval());
-}
-
-void put_proportion(nlohmann::ordered_json& object, const Proportion& proportion) {
-  object["n"] = proportion.n;
-  object["correct"] = proportion.correct;
-  object["p"] = figure_json(proportion.share());
 }
 
 void put_stamp(nlohmann::ordered_json& object, bool simulated, const std::string& device) {

@@ -44,9 +44,6 @@ template <typename Range, typename One>
 /// Adds mean and interval to an object.
 void put_mean(nlohmann::ordered_json& object, const MeanEstimate& mean);
 
-/// Adds n, correct and p to an object, after the members that it already has.
-void put_proportion(nlohmann::ordered_json& object, const Proportion& proportion);
-
 [[nodiscard]] nlohmann::ordered_json statistics_json(const engine::GlcmStatistics& statistics);
 /// The statistics by the degrees of their direction.
 [[nodiscard]] nlohmann::ordered_json glcm_json(const engine::GlcmTable& glcm);

@@ -1,18 +1,22 @@
 /// \file Numbers of a report, each described once: the member of results.json, the title and the
-/// cells of a table's column, and the note that says what it is. Tables and JSON objects are made
-/// of lists of them. All functions are thread-safe.
+/// cells of a table's column, the columns of a CSV file, and the note that says what it is. Tables,
+/// JSON objects and CSV files are made of lists of them. All functions are thread-safe.
 #pragma once
 
+#include "analysis/exports/data_table.hpp"
 #include "analysis/report/json_figures.hpp"
 #include "analysis/report/page/document.hpp"
 #include "analysis/report/page/wording.hpp"
 #include "analysis/statistics/descriptive.hpp"
+#include "analysis/statistics/prevalence.hpp"
 
 #include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <iterator>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -28,6 +32,9 @@ struct Measure {
   Align align = Align::right;
   std::vector<Cited> notes{};  ///< stand below a table that has the column
   bool only_known = false;     ///< leave the column out if no row has the number
+  /// Columns of a CSV file: one for a number, one for each end or member of an interval or object;
+  /// an empty name leaves that part out.
+  std::vector<std::string> columns{};
 
   /// The same number with a note.
   [[nodiscard]] Measure with(std::string text, std::vector<Source> sources = {}) && {
@@ -38,10 +45,39 @@ struct Measure {
     only_known = true;
     return std::move(*this);
   }
+  /// The same number with cells of its own.
+  [[nodiscard]] Measure shown(std::string heading, std::function<Cell(const Row&)> written) && {
+    title = std::move(heading);
+    cell = std::move(written);
+    return std::move(*this);
+  }
+  [[nodiscard]] Measure in_csv(std::vector<std::string> names) && {
+    columns = std::move(names);
+    return std::move(*this);
+  }
 };
 
 template <typename Row>
 using MeasureList = std::vector<Measure<Row>>;
+
+/// The lists one after the other.
+template <typename Row>
+[[nodiscard]] MeasureList<Row> joined_measures(std::vector<MeasureList<Row>> lists) {
+  MeasureList<Row> all;
+  for (MeasureList<Row>& one : lists) std::ranges::move(one, std::back_inserter(all));
+  return all;
+}
+
+/// The list with columns for members that had none.
+/// \param titles  of the columns, by member
+template <typename Row>
+[[nodiscard]] MeasureList<Row> titled(
+    MeasureList<Row> list, const std::vector<std::pair<std::string, std::string>>& titles) {
+  for (const auto& [member, title] : titles) {
+    std::ranges::find(list, member, &Measure<Row>::member)->title = title;
+  }
+  return list;
+}
 
 /// \name Kinds of measures. `get` takes a row.
 /// \{
@@ -84,17 +120,61 @@ template <typename Row, typename Written, typename Get>
 
 /// A column that no file has, of numbers that stand in it by themselves.
 template <typename Row, typename Get>
-[[nodiscard]] Measure<Row> shown_of(std::string title, Get get) {
+[[nodiscard]] Measure<Row> column_of(std::string title, Get get) {
   return {"", std::move(title), {}, [get](const Row& row) { return Cell(std::invoke(get, row)); }};
 }
 
 /// A member that no table has.
 template <typename Row, typename Get>
-[[nodiscard]] Measure<Row> kept_of(std::string member, Get get) {
+[[nodiscard]] Measure<Row> member_of(std::string member, Get get) {
   return {std::move(member),
           "",
           [get](const Row& row) { return nlohmann::ordered_json(std::invoke(get, row)); },
           {}};
+}
+
+/// A number that no table has.
+template <typename Row, typename Get>
+[[nodiscard]] Measure<Row> number_member(std::string member, Get get) {
+  return member_of<Row>(std::move(member),
+                        [get](const Row& row) { return figure_json(std::invoke(get, row)); });
+}
+
+/// \}
+
+/// \name Measures of a part of a row. `get` takes a row and gives the part, an optional one, or a
+/// pointer to it; of a part that does not exist every number is unknown.
+/// \{
+
+/// The part, or null.
+template <typename Part, typename Got>
+[[nodiscard]] const Part* part_in(const Got& got) {
+  if constexpr (std::is_same_v<Part, Got>) {
+    return &got;
+  } else {
+    return got ? &*got : nullptr;
+  }
+}
+
+/// The measures of a part as those of the row.
+template <typename Row, typename Part, typename Get>
+[[nodiscard]] MeasureList<Row> measures_in(Get get, const MeasureList<Part>& of_part) {
+  MeasureList<Row> all;
+  for (const Measure<Part>& one : of_part) {
+    Measure<Row> outer{one.member, one.title,      {},         {}, one.align,
+                       one.notes,  one.only_known, one.columns};
+    const auto of = [get](auto written, auto missing) {
+      return [get, written, missing](const Row& row) -> decltype(missing) {
+        const auto& got = std::invoke(get, row);
+        const Part* part = part_in<Part, std::remove_cvref_t<decltype(got)>>(got);
+        return part == nullptr ? missing : written(*part);
+      };
+    };
+    if (one.json) outer.json = of(one.json, nlohmann::ordered_json());
+    if (one.cell) outer.cell = of(one.cell, Cell(kNoFigure));
+    all.push_back(std::move(outer));
+  }
+  return all;
 }
 
 /// \}
@@ -141,6 +221,43 @@ template <typename Row>
   return array_json(rows, [&](const Row& row) { return object_of(row, measures); });
 }
 
+/// One member that is an object: the measures of a part of the row; null without the part.
+template <typename Row, typename Part, typename Get>
+[[nodiscard]] Measure<Row> object_in(std::string member, Get get, MeasureList<Part> of_part) {
+  return member_of<Row>(
+      std::move(member),
+      [get, of_part = std::move(of_part)](const Row& row) -> nlohmann::ordered_json {
+        const auto& got = std::invoke(get, row);
+        const Part* part = part_in<Part, std::remove_cvref_t<decltype(got)>>(got);
+        return part == nullptr ? nlohmann::ordered_json() : object_of(*part, of_part);
+      });
+}
+
+/// The cell of a CSV file with a number or text of results.json.
+[[nodiscard]] DataCell data_cell(const nlohmann::ordered_json& value);
+
+/// A CSV file's table: the columns of the measures that have some, in their order.
+template <typename Row>
+[[nodiscard]] DataTable data_table_of(const std::vector<Row>& rows,
+                                      const MeasureList<Row>& measures) {
+  DataTable table;
+  table.rows.resize(rows.size());
+  for (const Measure<Row>& one : measures) {
+    std::ranges::copy_if(one.columns, std::back_inserter(table.columns),
+                         [](const std::string& name) { return !name.empty(); });
+    for (std::size_t i = 0; i < rows.size() && !one.columns.empty(); ++i) {
+      const nlohmann::ordered_json value = one.json(rows[i]);
+      auto part = value.begin();
+      for (const std::string& name : one.columns) {
+        const bool is_whole = !value.is_structured();
+        if (!name.empty()) table.rows[i].push_back(data_cell(is_whole ? value : *part));
+        if (!is_whole) ++part;
+      }
+    }
+  }
+  return table;
+}
+
 /// Fills a table without columns: one for each measure that has a title, one row for each row, and
 /// the measures' notes.
 template <typename Row>
@@ -160,5 +277,8 @@ template <typename Row>
   }
   return table;
 }
+
+/// The share of people who would pass their own test.
+[[nodiscard]] MeasureList<Prevalence> prevalence_measures();
 
 }  // namespace touchtrial::analysis

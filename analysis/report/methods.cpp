@@ -21,7 +21,7 @@ std::optional<double> rate_of(const record::StudyStore& store) {
     if (session.erased) continue;
     for (const record::Event& event : store.events(session.session)) {
       if (event.kind != record::EventKind::trace_stored) continue;
-      const double rate_hz = record::trace_body_from_json(event.body).rate_hz;
+      const double rate_hz = record::from_json<record::TraceBody>(event.body).rate_hz;
       return rate_hz > 0.0 ? std::optional(rate_hz) : std::nullopt;
     }
   }

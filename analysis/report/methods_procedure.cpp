@@ -62,7 +62,8 @@ std::string instructions_sentence(const study::SessionPlan& session) {
                     "): hold the stylus like a pencil with the forearm on a rest, stroke sideways "
                     "in long even strokes at {:g} to {:g} mm/s, press with {:g} to {:g} N, and "
                     "neither tap nor drill.",
-                    study::kSlowestMmS, study::kFastestMmS, study::kLightestN, study::kStrongestN);
+                    study::kMinStrokeMmS, study::kMaxStrokeMmS, study::kMinPressureN,
+                    study::kMaxPressureN);
 }
 
 std::string practice_sentence(const study::Study& study,
@@ -90,7 +91,7 @@ std::string free_sentence(const study::Study& study) {
   std::string text =
       fmt::format("The plane could be explored freely for {} s at most; {}.",
                   number_text(trials.explore_limit_s), after_time(trials.on_timeout));
-  if (trials.answer_after != study::LeastTouch{0.0, 0.0}) {
+  if (trials.answer_after != study::MinTouch{0.0, 0.0}) {
     text += " An answer needed a touch: " + study::touch_words(trials.answer_after) + ".";
   }
   return text +

@@ -34,11 +34,11 @@ int method_orders_of(const json& configuration) {
 }
 
 study::ValidityRule validity_rule_of(const json& rule) {
-  return {.least_exploring_s = rule.at("exploring_s").get<double>(),
-          .least_contact_s = rule.at("contact_s").get<double>(),
-          .least_path_mm = rule.at("path_mm").get<double>(),
-          .least_median_n = rule.at("least_median_n").get<double>(),
-          .largest_median_n = rule.at("largest_median_n").get<double>(),
+  return {.min_exploring_s = rule.at("exploring_s").get<double>(),
+          .min_contact_s = rule.at("contact_s").get<double>(),
+          .min_path_mm = rule.at("path_mm").get<double>(),
+          .min_median_n = rule.at("least_median_n").get<double>(),
+          .max_median_n = rule.at("largest_median_n").get<double>(),
           .saturated_share = rule.at("saturated_share").get<double>()};
 }
 
@@ -63,9 +63,9 @@ Prescription prescription_of(const json& configuration) {
   if (configuration.contains("visits")) {
     prescription.visits = configuration["visits"].at("count").get<int>();
     prescription.visits_needed = configuration["visits"].at("needed").get<int>();
-    prescription.least_days = configuration["visits"].value("least_days", 0.0);
+    prescription.min_days = configuration["visits"].value("least_days", 0.0);
     if (const json most = configuration["visits"].value("most_days", json()); most.is_number()) {
-      prescription.most_days = most.get<double>();
+      prescription.max_days = most.get<double>();
     }
   }
   if (configuration.contains("groups")) {

@@ -66,13 +66,13 @@ std::string words_on_worth(const PrimaryResult& result) {
   const double worth = *result.smallest_effect;
   const std::string least = value_text(result, worth);
   if (interval->low >= worth) {
-    return " The interval lies above " + least + ", the smallest registered as worth having.";
+    return " The interval lies above " + least + ", the smallest effect registered as relevant.";
   }
   if (interval->high < worth) {
-    return " The interval lies below " + least + ", the smallest registered as worth having.";
+    return " The interval lies below " + least + ", the smallest effect registered as relevant.";
   }
   return " The interval contains " + least +
-         ", the smallest registered as worth having: whether it is reached is undecided.";
+         ", the smallest effect registered as relevant: whether it is reached is undecided.";
 }
 
 /// What the interval says of the margin: "as good" may be better, or still a little worse.

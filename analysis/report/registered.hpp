@@ -16,7 +16,7 @@ namespace touchtrial::analysis {
 
 enum class Verdict {
   supported,       ///< the registered test rejects, in the registered direction
-  not_supported,   ///< it does not, and what would be worth having is excluded, or was not stated
+  not_supported,   ///< it does not, and the smallest relevant effect is excluded, or was not stated
   undecided,       ///< the study cannot tell, or not by the registered test
   estimated,       ///< an estimate was registered, without a test, and here it is
   not_registered,  ///< nothing was registered that could be decided
@@ -117,7 +117,7 @@ struct StudyCourse {
 /// from the data, if the test or the interval needs more participants, if the study is open, ended
 /// before its planned number of participants, or has a p that is within its level after an
 /// unregistered look, or after a registered one with more participants than planned; and if p is
-/// above its level while the interval contains the smallest effect worth having, does not lie below
+/// above its level while the interval contains the smallest relevant effect, does not lie below
 /// minus the margin, or does not exist; or if an equality is not shown, and no difference lies
 /// beyond its margin; or if a method seems as good that is not shown to be above chance, or whose
 /// rival is not.

@@ -1,7 +1,9 @@
 #include "analysis/outcomes/departures.hpp"
 #include "analysis/outcomes/study_head.hpp"
-#include "analysis/report/json_figures.hpp"
+#include "analysis/report/measure.hpp"
 #include "core/utc.hpp"
+
+#include <fmt/format.h>
 
 namespace touchtrial::analysis {
 namespace {
@@ -181,21 +183,6 @@ Json primary_object(const StudyHead& head) {
   return object;
 }
 
-Json prevalence_object(const std::optional<Prevalence>& prevalence) {
-  if (!prevalence) return nullptr;
-  Json object{{"estimate", figure_json(prevalence->estimate)},
-              {"interval", interval_json(prevalence->interval)},
-              {"passed", prevalence->passed},
-              {"participants", prevalence->participants},
-              {"level", figure_json(prevalence->level)}};
-  put_method(object,
-             "a lower bound of the share of people who can: those who would pass their own test "
-             "against chance in as many trials; posterior mode and 95 % highest posterior density "
-             "under a uniform prior; level: the mean probability of passing by chance",
-             {"ince2021"});
-  return object;
-}
-
 Json looks_array(const std::vector<Look>& looks, bool is_public) {
   Json all = Json::array();
   for (const Look& look : looks) {
@@ -212,10 +199,37 @@ Json looks_array(const std::vector<Look>& looks, bool is_public) {
 
 }  // namespace
 
+MeasureList<Prevalence> prevalence_measures() {
+  using Row = Prevalence;
+  return {
+      number_of<Row>("estimate", "would pass", share_figure, &Row::estimate)
+          .with(
+              "Would pass: the share of people who would pass their own test in as many trials, a "
+              "lower bound of those who can; posterior mode and 95% highest posterior density. "
+              "By chance alone: the mean level that participants' tests attain.",
+              {Source::ince}),
+      interval_of<Row>("interval", "95% (%)", share_range, &Row::interval),
+      member_of<Row>("passed", &Row::passed)
+          .shown("passed alone",
+                 [](const Row& one) { return fmt::format("{}/{}", one.passed, one.participants); }),
+      member_of<Row>("participants", &Row::participants),
+      number_of<Row>("level", "by chance alone", share_figure, &Row::level),
+      member_of<Row>(
+          "method",
+          [](const Row&) {
+            return "a lower bound of the share of people who can: those who would pass "
+                   "their own test against chance in as many trials; posterior mode and "
+                   "95 % highest posterior density under a uniform prior; level: the mean "
+                   "probability of passing by chance";
+          }),
+      member_of<Row>("references", [](const Row&) { return Json::array({"ince2021"}); })};
+}
+
 void put_registered(nlohmann::ordered_json& object, const StudyHead& head) {
   object["registered"] = registered_object(head.registration);
   object["primary"] = primary_object(head);
-  object["prevalence"] = prevalence_object(head.prevalence);
+  object["prevalence"] =
+      head.prevalence ? object_of(*head.prevalence, prevalence_measures()) : Json(nullptr);
   object["looks"] = looks_array(head.looks, head.collection.is_public);
   object["departures"] = head.departures;
 }

@@ -1,5 +1,6 @@
 #include "analysis/report/results.hpp"
 
+#include "analysis/report/page/frame_sections.hpp"
 #include "core/errors.hpp"
 #include "study/protocol.hpp"
 
@@ -40,7 +41,7 @@ class QuestionAlone final : public Results {
   const StudyHead& head() const override { return head_; }
   std::string json() const override { return framed_json(head_, "{}"); }
   Document document(const Provenance& provenance, const Pictures&) const override {
-    std::vector<Section> quality = quality_document(quality_, provenance).sections;
+    std::vector<Section> quality = quality_sections(quality_);
     std::erase_if(quality, [](const Section& one) { return one.id == "participants"; });
     return framed_document(head_, {"result", "Result", {}}, std::move(quality), provenance);
   }

@@ -24,8 +24,8 @@ namespace touchtrial::analysis {
 namespace {
 
 constexpr const char* kUnblinds =
-    "This sheet unblinds: it says which code is which stimulus. Keep it with the key, away from "
-    "participants and from whoever runs sessions.";
+    "This sheet unblinds: it shows which code is which stimulus. Keep it with the key, away from "
+    "participants and experimenters.";
 constexpr int kPictureSide_px = 240;
 constexpr int kPatchSide_px = 16;
 /// Pixels of style sheets: four rows fill a printed page.
@@ -54,7 +54,7 @@ struct Group {
   std::vector<study::KeyedStimulus> stimuli;
 };
 
-/// Those of each method, then those of practice.
+/// The groups of each method, then of practice.
 std::vector<Group> groups_of(const study::StudyKey& key) {
   std::vector<Group> groups;
   for (const study::StudyMethod& method : key.study.methods) {
@@ -94,7 +94,7 @@ GreyImage fitted(const GreyImage& image) {
   return engine::resized(image, side(image.height()), side(image.width()));
 }
 
-/// The texture with its contrast enlarged, equally for all stimuli.
+/// The texture with its contrast enhanced equally for all stimuli.
 GreyImage enhanced_picture(Plane<float> texture) {
   constexpr float kContrast = 3.0F;
   for (float& grey : texture.samples()) grey *= kContrast;
@@ -143,9 +143,9 @@ class Stimuli {
          engine::png_bytes(engine::force_arrows(texture, force, patch, kPictureSide_px))});
   }
 
-  /// On the pictures, as `prepare` prints them; empty if there are none.
+  /// Warnings about the pictures, as `prepare` prints them; empty if there are none.
   [[nodiscard]] Warnings remarks() const {
-    return {{remarks_.begin(), remarks_.end()}, "Of the pictures"};
+    return {{remarks_.begin(), remarks_.end()}, "Warnings about the pictures"};
   }
 
   [[noreturn]] void refuse(const std::string& what) const {
@@ -154,10 +154,10 @@ class Stimuli {
   }
 
  private:
-  /// What the field was made of.
+  /// The part of the picture that the field was made from.
   [[nodiscard]] GreyImage felt_part(const GreyImage& picture,
                                     const study::StimulusIndex& stimulus) const {
-    if (!key_.study.is_practised(stimulus.class_index)) return picture;
+    if (!key_.study.is_practice_class(stimulus.class_index)) return picture;
     return study::middle_of(picture, study::plane_of(key_.study));
   }
 
@@ -166,8 +166,8 @@ class Stimuli {
                                                        const std::filesystem::path& name) const {
     const engine::PackEntry& entry = pack_.entry(keyed.code);
     if (!study::is_made_from(entry, key_, image, keyed.stimulus)) {
-      refuse("field " + keyed.code + " was not made from " +
-             one_line((key_.study.folder / name).string()) + " as it is now");
+      refuse("field " + keyed.code + " was not made from the current " +
+             one_line((key_.study.folder / name).string()));
     }
     if (!pack_.is_intact(keyed.code)) refuse("field " + keyed.code + " is damaged");
     return entry;
@@ -181,12 +181,11 @@ class Stimuli {
 Picture picture_of(const Tiles& tiles, std::size_t number) {
   std::string alt = "Rows:";
   for (const std::string& label : tiles.labels) alt += " " + label + ";";
-  return picture_of_tiles(
-      fmt::format("stimuli-{}", number),
-      "The picture as participants see it; its texture, mid-grey where there is none, with three "
-      "times its contrast; the lateral force in its strongest part, as the pack holds it, from "
-      "bright to dark.",
-      alt + " columns: picture, texture, lateral force.", tiles);
+  return picture_of_tiles(fmt::format("stimuli-{}", number),
+                          "The picture as participants see it; its texture with three times the "
+                          "contrast, mid-grey where there is none; the lateral force in its "
+                          "strongest part, from the pack, with arrows from bright to dark.",
+                          alt + " columns: picture, texture, lateral force.", tiles);
 }
 
 }  // namespace
@@ -195,10 +194,10 @@ Document make_stimulus_sheet(const study::StudyKey& key, const engine::Pack& pac
                              const std::function<void(int done, int of)>& progress) {
   const std::size_t all = key.fields().size();
   if (all > kMaxSheetStimuli) {
-    throw UsageError(fmt::format(
-        "stimuli sheet: the study has {} stimuli, more than the {} that one sheet holds; make "
-        "sheets of studies with fewer images",
-        all, kMaxSheetStimuli));
+    throw UsageError(
+        fmt::format("stimuli sheet: the study has {} stimuli, and a sheet holds at most {}; make a "
+                    "sheet of a study with fewer images",
+                    all, kMaxSheetStimuli));
   }
   Stimuli stimuli(key, pack);
   if (pack.manifest().study_id != key.study_id) {

@@ -13,12 +13,12 @@ namespace touchtrial::analysis {
 /// Documents with more stimuli are too large to open.
 inline constexpr std::size_t kMaxSheetStimuli = 500;
 
-/// Reads fields from the pack and pictures from the study's images. A section a method, and one for
-/// practice: its stimuli by class, with their numbers, then pictures, textures and forces, four
-/// stimuli at a time.
+/// Reads fields from the pack and pictures from the study's images. There is one section for each
+/// method and one for practice, with stimuli by class: first their numbers, then pictures, textures
+/// and forces, four stimuli at a time.
 /// \param progress  called after each stimulus with the number done and their total; may be empty
-/// \throws VerificationError if the pack is not the key's, or a field is damaged or not made from
-///   its image: the remedy is to prepare the study again
+/// \throws VerificationError if the pack is not the key's, or a field is damaged or was not made
+///   from its image. Preparing the study again repairs this
 /// \throws UsageError if there are more than kMaxSheetStimuli
 /// \throws FileError if an image or a field cannot be read
 /// \throws StudyError as study::plane_of, if there is practice

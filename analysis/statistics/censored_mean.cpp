@@ -45,14 +45,14 @@ double log_above(double z) {
   return -0.5 * z * z - kLogRootTwoPi - std::log(fraction);
 }
 
-/// That of its probability between two ends.
+/// The logarithm of the standard normal's probability between two ends.
 double log_between(double low, double high) {
   if (low + high < 0.0) return log_between(-high, -low);
   if (high == kInfinity) return log_above(low);
   const double width = high - low;
   const double middle = 0.5 * (low + high);
   if (width * std::max(1.0, middle) < 1e-4) {
-    // The difference of two tails would have few digits left; the density is nearly even here.
+    // Subtracting two tails would cancel most digits; the density is almost uniform here.
     const double bend = (middle * middle - 1.0) * width * width / 24.0;
     return -0.5 * middle * middle - kLogRootTwoPi + std::log(width) + std::log1p(bend);
   }
@@ -64,13 +64,13 @@ double log_between(double low, double high) {
   return above_low + std::log(-std::expm1(log_above(high) - above_low));
 }
 
-/// Participants of whom the same is known.
+/// Participants with the same bounds.
 struct Alike {
   Bounds bounds;
   int people = 0;
 };
 
-/// What one participant's bounds add to the logarithm of the likelihood, and to its slopes.
+/// One participant's contribution to the log likelihood and its derivatives.
 struct Share {
   double value = 0.0;
   double by_mean = 0.0;
@@ -95,23 +95,23 @@ Share share_of(const Bounds& bounds, double mean, double precision) {
   return share;
 }
 
-/// The likelihood of a normal distribution by its mean and its precision, here 1 / SD. In 1 / SD
-/// and mean / SD it is concave (Olsen 1978), so with the mean held it has one most likely
-/// precision, and the likelihood of that precision rises up to one mean and falls after it.
+/// The likelihood of a normal distribution as a function of its mean and its precision, here 1 /
+/// SD. It is concave in 1 / SD and mean / SD (Olsen 1978). So for each mean there is one most
+/// likely precision, and the profile likelihood has one maximum.
 class NormalLikelihood {
  public:
-  /// \pre there are two known values that differ
+  /// \pre at least two known values differ
   explicit NormalLikelihood(std::span<const Bounds> people);
 
   [[nodiscard]] double known() const noexcept { return known_; }
   [[nodiscard]] double most_likely_mean() const;
-  /// The logarithm of the likelihood of the most likely precision with this mean.
+  /// The profile log likelihood of a mean.
   [[nodiscard]] double profile(double mean) const { return sum_at(mean, precision_at(mean)).value; }
-  /// The SD of a sample whose most likely mean this is.
+  /// The most likely SD for this mean.
   [[nodiscard]] double sd_at(double mean) const {
     return std::sqrt(known_ / (known_ - 1.0)) / precision_at(mean);
   }
-  /// The mean at which a function becomes 0 that is >= 0 at `from` and falls along the step.
+  /// The mean at which `function`, which is >= 0 at `from` and decreases along the step, reaches 0.
   template <typename Function>
   [[nodiscard]] double zero_beyond(const Function& function, double from, double step) const;
 
@@ -200,7 +200,7 @@ void require_bounds(std::span<const Bounds> people) {
   for (const Bounds& one : people) {
     // Also refuses NaN.
     if (!(one.low <= one.high) || (one.exact() && !std::isfinite(one.low))) {
-      throw std::invalid_argument("bounds need a low end that is not above the high one");
+      throw std::invalid_argument("the low end of bounds must not be above the high end");
     }
   }
 }
@@ -238,7 +238,7 @@ bool all_hold(std::span<const Bounds> people, double value) {
 }
 
 /// The distance, in twice the logarithm of the likelihood, within which the interval lies.
-double most_ratio(double known, double level) {
+double max_ratio(double known, double level) {
   const boost::math::students_t_distribution<> distribution(known - 1.0);
   const double t = boost::math::quantile(distribution, 0.5 + level / 2.0);
   return known * std::log1p(t * t / (known - 1.0));
@@ -249,7 +249,7 @@ void put_likely(CensoredMean& result, std::span<const Bounds> people, double lev
   const double mean = likelihood.most_likely_mean();
   result.mean = without_noise(mean);
   result.sd = likelihood.sd_at(mean);
-  const double least = likelihood.profile(mean) - 0.5 * most_ratio(likelihood.known(), level);
+  const double least = likelihood.profile(mean) - 0.5 * max_ratio(likelihood.known(), level);
   const auto inside = [&](double at) { return likelihood.profile(at) - least; };
   result.interval = {without_noise(likelihood.zero_beyond(inside, mean, -*result.sd)),
                      without_noise(likelihood.zero_beyond(inside, mean, *result.sd))};

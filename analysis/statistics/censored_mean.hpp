@@ -1,7 +1,7 @@
-/// \file The mean over participants of whom some are known by bounds alone, as by a threshold beyond
-/// the levels that were tried: the normal distribution that is most likely for everybody. Who is
-/// left out because of a bound lies on its side, so the mean of the others is not that of all.
-/// Sources: docs/thresholds.md, "Groups"; Tobin 1958; Olsen 1978.
+/// \file The mean over participants when some values are censored, for example a threshold beyond
+/// the levels that were tried: the maximum-likelihood normal distribution of all participants.
+/// Dropping censored participants would bias the mean. Sources: docs/thresholds.md, "Groups"; Tobin
+/// 1958; Olsen 1978.
 #pragma once
 
 #include "analysis/statistics/mean_test.hpp"
@@ -13,7 +13,8 @@
 
 namespace touchtrial::analysis {
 
-/// Where one participant's value lies. Two equal ends: it is known. An infinite end is open.
+/// The interval that contains one participant's value. Equal ends: the value is known. An infinite
+/// end is open.
 struct Bounds {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
@@ -22,10 +23,10 @@ struct Bounds {
   friend bool operator==(const Bounds&, const Bounds&) = default;
 };
 
-/// Where first minus second lies.
+/// The bounds of first minus second.
 [[nodiscard]] Bounds difference_of(const Bounds& first, const Bounds& second) noexcept;
 
-/// What a sample lacks.
+/// What an estimate lacks.
 enum class Lack {
   nothing,
   values,  ///< fewer than two are known: no interval, and no mean unless there is one participant
@@ -35,13 +36,13 @@ enum class Lack {
 
 /// In the unit of the values.
 struct CensoredMean {
-  int participants = 0;  ///< everybody, also those of whom nothing is known
-  int exact = 0;         ///< of them, those whose value is known
+  int participants = 0;  ///< including those without any bound
+  int exact = 0;         ///< of them, those with a known value
   std::optional<double> mean{};
   std::optional<Interval> interval{};
   std::optional<double> sd{};      ///< between participants
-  Bounds median_within{};          ///< of everybody; open without participants
-  std::optional<double> median{};  ///< if the bounds leave one
+  Bounds median_within{};          ///< bounds of the median of all; open without participants
+  std::optional<double> median{};  ///< if the bounds determine it
   Lack lack = Lack::values;
 };
 
@@ -54,14 +55,15 @@ struct CensoredMean {
 [[nodiscard]] CensoredMean censored_mean(std::span<const Bounds> people,
                                          double level = kConfidenceLevel);
 
-/// The test of that mean by the same likelihood ratio. If all are known it is Student's.
+/// The test of that mean by the same likelihood ratio. If all values are known, it is Student's t
+/// test.
 /// \param null  the mean under the null hypothesis
 /// \return nothing where censored_mean has no interval
 /// \throws std::invalid_argument as censored_mean does, or if `null` is not finite
 [[nodiscard]] std::optional<double> censored_p(std::span<const Bounds> people, double null,
                                                Sides sides);
 
-/// Student's t of that mean, if everybody's value is known.
+/// Student's t of that mean; nothing unless all values are known.
 [[nodiscard]] std::optional<TStatistic> known_t_statistic(std::span<const Bounds> people);
 
 }  // namespace touchtrial::analysis

@@ -64,23 +64,24 @@ double ratio(const Integer& part, const Integer& whole) {
   return std::ldexp(quotient.convert_to<double>(), -bits_short);
 }
 
-/// Counting the orders of longer blocks would take too long.
-constexpr int kLongestCountedBlock = 400;
+/// Longer blocks would take too long to count.
+constexpr int kMaxCountedBlock = 400;
 /// Probabilities below this at a distribution's ends are left out.
 constexpr double kNegligible = 1e-290;
-/// A p is never 0. All probabilities left out as negligible add up to less than this.
+/// The floor of p: more than the sum of all probabilities left out as negligible.
 constexpr double kMinP = 1e-280;
 
 void require_in_range(int classes, int index) {
   if (index < 0 || index >= classes) {
-    throw std::invalid_argument("a chance test got a class that is out of range");
+    throw std::invalid_argument("a chance test's class is out of range");
   }
 }
 
 void require_valid(int classes, std::span<const AnsweredBlock> blocks) {
   for (const AnsweredBlock& block : blocks) {
     if (block.presented.size() != block.answered.size()) {
-      throw std::invalid_argument("a chance test needs an answer, or none, for every trial");
+      throw std::invalid_argument(
+          "a chance test needs as many answers (or missing ones) as presentations");
     }
     for (const int shown : block.presented) require_in_range(classes, shown);
     for (const std::optional<int>& answer : block.answered) {
@@ -158,7 +159,8 @@ void count_orders(int classes, std::span<const AnsweredBlock> blocks, KnownMatch
   test.attainable = right.largest_tail(kSignificanceLevel);
 }
 
-/// The largest of the falling above(0), above(1), .., above(most) that does not exceed the level.
+/// The largest of above(0), above(1), .., above(most), which decrease, that does not exceed the
+/// level.
 template <typename Tail>
 double largest_tail_of(const Tail& above, int most) {
   int low = -1;  // its tail exceeds the level
@@ -186,7 +188,7 @@ void take_binomial(int classes, std::span<const AnsweredBlock> blocks, ChanceTes
 }
 
 /// The largest of the p values (b + 1) / (deals + 1) that does not exceed the level.
-double largest_share_below_level(const std::map<int, int>& counts, int deals) {
+double max_share_below_level(const std::map<int, int>& counts, int deals) {
   int tail = 0;
   double share = 0.0;
   for (auto one = counts.rbegin(); one != counts.rend(); ++one) {
@@ -218,14 +220,14 @@ void deal_anew(int classes, std::span<const AnsweredBlock> blocks, const Redrawn
     ++counts[right];
     if (right >= test.correct) ++as_many;
   }
-  test.attainable = largest_share_below_level(counts, deals);
+  test.attainable = max_share_below_level(counts, deals);
   test.expected = sum / deals;
   test.p = p_of_draws(as_many, deals);
   test.exact = false;
   test.deals = deals;
 }
 
-/// Shuffles a block's presentations. Repeatable if it is asked for the deals in ascending order.
+/// Shuffles a block's presentations. Reproducible if deals are requested in ascending order.
 RedrawnBlock any_order(std::span<const AnsweredBlock> blocks, RandomStream& random) {
   return [blocks, &random](std::size_t block, int /*deal*/) {
     std::vector<int> presented = blocks[block].presented;
@@ -236,7 +238,7 @@ RedrawnBlock any_order(std::span<const AnsweredBlock> blocks, RandomStream& rand
 
 bool can_be_counted(std::span<const AnsweredBlock> blocks) {
   return std::all_of(blocks.begin(), blocks.end(), [](const AnsweredBlock& block) {
-    return block.presented.size() <= std::size_t{kLongestCountedBlock};
+    return block.presented.size() <= std::size_t{kMaxCountedBlock};
   });
 }
 
@@ -253,7 +255,8 @@ std::vector<double> match_probabilities(const ClassCounts& counts, int trials) {
   require_fitting(counts, trials);
   Polynomial ways{1};
   for (const auto& [shown, chosen] : counts) ways = product(ways, rooks_on(shown, chosen));
-  // Orders that match in at least k chosen places: the rest stands in any of (trials - k)! ways.
+  // Orders that match in at least k chosen places: the others can be arranged in (trials - k)!
+  // ways.
   Integer rest = 1;
   for (int i = 2; i <= trials - static_cast<int>(ways.size()) + 1; ++i) rest *= i;
   for (std::size_t k = ways.size(); k-- > 0;) {
@@ -267,10 +270,10 @@ std::vector<double> match_probabilities(const ClassCounts& counts, int trials) {
 }
 
 std::optional<ChanceTest> chance_test(int classes, std::span<const AnsweredBlock> blocks,
-                                      DealtOrder order, const RedrawnBlock& redraw, int deals,
+                                      OrderRule order, const RedrawnBlock& redraw, int deals,
                                       KnownMatches* known) {
   require_valid(classes, blocks);
-  if (order == DealtOrder::redrawn && !redraw) {
+  if (order == OrderRule::redrawn && !redraw) {
     throw std::invalid_argument("a chance test of redrawn blocks needs the rule that redraws them");
   }
   ChanceTest test;
@@ -280,15 +283,15 @@ std::optional<ChanceTest> chance_test(int classes, std::span<const AnsweredBlock
   }
   if (test.trials == 0) return std::nullopt;
   switch (order) {
-    case DealtOrder::permuted: {
+    case OrderRule::permuted: {
       KnownMatches own;
       test_permuted(classes, blocks, deals, known != nullptr ? *known : own, test);
       break;
     }
-    case DealtOrder::independent:
+    case OrderRule::independent:
       take_binomial(classes, blocks, test);
       break;
-    case DealtOrder::redrawn:
+    case OrderRule::redrawn:
       deal_anew(classes, blocks, redraw, deals, test);
       break;
   }

@@ -1,8 +1,8 @@
-/// \file Whether participants did better than answers that do not depend on what was presented.
-/// Trials of a balanced order depend on each other, so a binomial test does not hold; instead,
-/// stimuli are dealt anew over the design that was used. Sources: docs/statistics.md, "At least one
-/// participant"; Phipson, Smyth 2010; Riordan 1958, chapters 7 and 8 (rook polynomials, matching
-/// with multiplicities).
+/// \file A randomisation test of whether participants did better than answers that do not depend on
+/// what was presented. In a balanced order trials are not independent, so a binomial test is
+/// invalid; instead, the stimuli are reassigned to trials under the design that was used. Sources:
+/// docs/statistics.md, "At least one participant"; Phipson, Smyth 2010; Riordan 1958, chapters 7
+/// and 8 (rook polynomials, matching with multiplicities).
 #pragma once
 
 #include <cstdint>
@@ -21,8 +21,8 @@ struct AnsweredBlock {
   std::vector<std::optional<int>> answered;  ///< class indices; nothing: no response
 };
 
-/// Which other orders of a block were possible.
-enum class DealtOrder {
+/// How a block's order was drawn, and so which other orders were possible.
+enum class OrderRule {
   permuted,     ///< any order of these presentations: exact, by counting
   independent,  ///< every presentation drawn on its own: exact, binomial
   redrawn,      ///< orders that `redraw` makes by the study's rule: Monte Carlo
@@ -50,18 +50,17 @@ struct ChanceTest {
 /// For every class, how often it was presented and how often it was answered.
 using ClassCounts = std::vector<std::pair<int, int>>;
 
-/// match_probabilities of counts that have occurred, so that several tests can share the work.
+/// A cache of match_probabilities, which several tests can share.
 using KnownMatches = std::map<ClassCounts, std::vector<double>>;
 
-/// Upper-tail probability of the number of right answers in all blocks together.
-/// `permuted` counts orders exactly with match_probabilities and convolves blocks; the error is
-/// below 1e-12.
+/// Upper-tail probability of the number of right answers in all blocks together. `permuted` counts
+/// orders exactly with match_probabilities and convolves blocks; the error is below 1e-12.
 /// \param redraw  needed only for `redrawn`
-/// \param known  is used and completed, if not null
+/// \param known  a cache that is used and extended, if not null
 /// \return nothing without trials
 /// \throws std::invalid_argument if a class is out of range, lengths differ, or `redraw` is missing
 [[nodiscard]] std::optional<ChanceTest> chance_test(
-    int classes, std::span<const AnsweredBlock> blocks, DealtOrder order,
+    int classes, std::span<const AnsweredBlock> blocks, OrderRule order,
     const RedrawnBlock& redraw = {}, int deals = 9999, KnownMatches* known = nullptr);
 
 /// \param counts  each >= 0

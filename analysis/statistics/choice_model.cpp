@@ -27,8 +27,7 @@ bool every_class_occurs(const ConfusionMatrix& confusion) {
   return true;
 }
 
-/// Tells whether wrong answers lead from one class to another in any number of steps (1) or not
-/// (0).
+/// Whether wrong answers lead from one class to another in any number of steps (1) or not (0).
 Plane<int> reachable(const ConfusionMatrix& confusion) {
   const int classes = confusion.classes();
   Plane<int> ways(classes, classes);
@@ -62,9 +61,9 @@ bool fitted_together(const ChoiceModel& model, int i, int j) {
   return i != j && model.group[i] == model.group[j];
 }
 
-/// How far the weights are improved.
+/// When the iteration stops.
 struct Effort {
-  int most_sweeps = 100'000;
+  int max_sweeps = 100'000;
   double least_change = 1e-13;
 };
 
@@ -76,7 +75,7 @@ class Weights {
  public:
   Weights(const ConfusionMatrix& confusion, const ChoiceModel& model, const Effort& effort)
       : confusion_(confusion), model_(model), weights_(model.group.size(), 1.0) {
-    for (int sweep = 0; sweep < effort.most_sweeps && !converged_; ++sweep) {
+    for (int sweep = 0; sweep < effort.max_sweeps && !converged_; ++sweep) {
       converged_ = change_of_sweep() < effort.least_change;
     }
   }
@@ -171,7 +170,7 @@ void find_biases(const Weights& weights, ChoiceModel& model) {
   for (std::size_t i = 0; i < model.group.size(); ++i) model.bias[i] /= sum[model.group[i]];
 }
 
-/// How far the table is from the model, and in how many ways it could be.
+/// Computes G^2 and its degrees of freedom.
 void find_distance(const ConfusionMatrix& confusion, ChoiceModel& model) {
   int pairs = 0;
   for (int i = 0; i < confusion.classes(); ++i) {
@@ -192,7 +191,7 @@ void judge_fit(ChoiceModel& model) {
   model.p = boost::math::cdf(boost::math::complement(chi_squared, model.g_squared));
 }
 
-/// Groups, expected counts and their distance; nothing else is wanted of a drawn table.
+/// Computes groups, expected counts and G^2, which is all that a drawn table needs.
 /// \param model  outlives the weights
 Weights fit(const ConfusionMatrix& confusion, const Effort& effort, ChoiceModel& model) {
   find_groups(confusion, model);
@@ -203,26 +202,26 @@ Weights fit(const ConfusionMatrix& confusion, const Effort& effort, ChoiceModel&
   return weights;
 }
 
-/// Draws tables with as many answers to every class as there were, and the model's probabilities.
+/// Draws tables from the model's probabilities, with the observed number of answers to each class.
 class DrawnTables {
  public:
   explicit DrawnTables(const ChoiceModel& model)
-      : least_(model.expected.height(), model.expected.width() - 1) {
-    for (int i = 0; i < least_.height(); ++i) {
+      : min_(model.expected.height(), model.expected.width() - 1) {
+    for (int i = 0; i < min_.height(); ++i) {
       const auto expected = model.expected.row(i);
       const double all = std::accumulate(expected.begin(), expected.end(), 0.0);
       trials_.push_back(std::lround(all));
-      for (int answer = 0; answer < least_.width(); ++answer) {
-        least_.at(i, answer) = least_above(answer, expected, all);
+      for (int answer = 0; answer < min_.width(); ++answer) {
+        min_.at(i, answer) = min_above(answer, expected, all);
       }
     }
   }
 
   [[nodiscard]] ConfusionMatrix draw(RandomStream& random) const {
-    ConfusionMatrix drawn(least_.height());
+    ConfusionMatrix drawn(min_.height());
     std::vector<std::int64_t> later;  // answers than each
-    for (int i = 0; i < least_.height(); ++i) {
-      const auto least = least_.row(i);
+    for (int i = 0; i < min_.height(); ++i) {
+      const auto least = min_.row(i);
       later.assign(least.size(), 0);
       const std::int64_t trials = trials_[static_cast<std::size_t>(i)];
       for (std::int64_t trial = 0; trial < trials; ++trial) {
@@ -234,13 +233,13 @@ class DrawnTables {
         drawn.add({i, static_cast<int>(k)}, static_cast<int>(left - later[k]));
         left = later[k];
       }
-      drawn.add({i, least_.width()}, static_cast<int>(left));
+      drawn.add({i, min_.width()}, static_cast<int>(left));
     }
     return drawn;
   }
 
  private:
-  /// The answer that a uniform number gives; never decreases with the number.
+  /// The answer for a uniform number; does not decrease with it.
   static int answer_of(double uniform, std::span<const double> expected, double all) {
     double left = uniform * all;
     int answer = 0;
@@ -249,8 +248,8 @@ class DrawnTables {
     return answer;
   }
 
-  /// The least uniform number with a later answer; 1 if there is none. By bisection.
-  static double least_above(int answer, std::span<const double> expected, double all) {
+  /// The smallest uniform number with a later answer, by bisection; 1 if there is none.
+  static double min_above(int answer, std::span<const double> expected, double all) {
     constexpr std::int64_t kUniforms = std::int64_t{1} << 53U;  // those of RandomStream, in order
     const auto uniform = [](std::int64_t number) {
       return static_cast<double>(number) / static_cast<double>(kUniforms);
@@ -268,7 +267,7 @@ class DrawnTables {
     return uniform(high);
   }
 
-  Plane<double> least_;               ///< of each class and each answer but the last
+  Plane<double> min_;                 ///< of each class and each answer but the last
   std::vector<std::int64_t> trials_;  ///< of each class
 };
 
@@ -287,7 +286,7 @@ std::optional<ChoiceModel> choice_model(const ConfusionMatrix& confusion) {
 std::optional<double> choice_model_p(const ChoiceModel& model, int draws, std::uint64_t index) {
   if (draws < 1) throw std::invalid_argument("a bootstrap needs at least one draw");
   if (model.degrees_of_freedom == 0) return std::nullopt;
-  constexpr Effort kOfDraws{.most_sweeps = 500, .least_change = 1e-7};
+  constexpr Effort kOfDraws{.max_sweeps = 500, .least_change = 1e-7};
   constexpr double kTie = 1e-9;
   const DrawnTables tables(model);
   RandomStream random(0, "choice model", index);

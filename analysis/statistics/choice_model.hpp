@@ -1,8 +1,8 @@
-/// \file The similarity choice model: which classes feel alike, and which answers are preferred
-/// whatever is felt.
-/// P(answer j | class i) = bias_j similarity_ij / sum_k bias_k similarity_ik, similarity symmetric
-/// with 1 on its diagonal. Source: docs/statistics.md, "Choice model"; Luce 1963; Townsend, Landon
-/// 1982; why zeros matter: docs/decisions/README.md, decision 37.
+/// \file The similarity choice model: how alike classes feel, and how strongly each answer is
+/// preferred whatever is felt: P(answer j | class i) = bias_j similarity_ij / sum_k bias_k
+/// similarity_ik, similarity symmetric with 1 on its diagonal. Source: docs/statistics.md, "Choice
+/// model"; Luce 1963; Townsend, Landon 1982; why zeros matter: docs/decisions/README.md, decision
+/// 37.
 #pragma once
 
 #include "analysis/statistics/confusion.hpp"
@@ -14,33 +14,33 @@
 
 namespace touchtrial::analysis {
 
-/// Zeros leave some parameters without a value, which are then NaN; the expected counts always
-/// exist. Classes between which wrong answers lead both ways, directly or over others, form a
-/// group: biases can be compared only within a group.
+/// Zero counts leave some parameters undefined (NaN); the expected counts always exist. Classes
+/// that wrong answers connect in both directions, directly or through other classes, form a group.
+/// Biases can be compared only within a group.
 struct ChoiceModel {
-  /// K x K, >= 0; 0 for classes that were never taken for each other. NaN where one of the two was
-  /// never answered right, and where across groups only one was taken for the other.
+  /// K x K, >= 0; 0 for classes that were never confused. NaN if either class was never answered
+  /// right, or if classes of different groups were confused in one direction only.
   Plane<double> similarity;
   std::vector<double> bias;    ///< of each answer, sums to 1 in a group; NaN if never right
   std::vector<int> group;      ///< of each class, numbered from 0 in the order of first classes
   int groups = 1;              ///< with 1, all biases can be compared
   Plane<double> expected;      ///< K x K: the counts that the model expects
   double g_squared = 0.0;      ///< likelihood ratio against the saturated model
-  int degrees_of_freedom = 0;  ///< (K - 1)(K - 2) / 2, fewer where zeros leave nothing to fit
+  int degrees_of_freedom = 0;  ///< (K - 1)(K - 2) / 2, fewer if zero counts leave nothing to fit
   std::optional<double> p;     ///< of g_squared under chi-square; nothing at 0 degrees
-  int draws = 0;               ///< of tables for the next number
+  int draws = 0;               ///< tables drawn for drawn_p
   std::optional<double> drawn_p{};  ///< choice_model_p, if it was computed
   bool converged = false;           ///< the biases changed by less than 1e-12 in the last step
 };
 
 /// Maximum likelihood over trials with a response, by iterative scaling of the quasi-symmetric
-/// table. Where the maximum lies at infinity, only the parameters that exist are estimated.
+/// table. Parameters whose maximum lies at infinity are not estimated.
 /// \return nothing if a class was never presented with a response, or never answered
 [[nodiscard]] std::optional<ChoiceModel> choice_model(const ConfusionMatrix& confusion);
 
 /// The p of g_squared by a parametric bootstrap: the share of tables drawn from the fitted model,
-/// with as many answers to each class, whose own fit is as bad; (b + 1) / (m + 1). It needs no
-/// large counts, as chi-square does.
+/// with the same number of answers to each class, that fit at least as badly; (b + 1) / (m + 1).
+/// Unlike chi-square, it does not need large counts.
 /// \param draws  m, >= 1; cost: each draws all trials once
 /// \param index  chooses the stream of random numbers
 /// \return nothing at 0 degrees of freedom

@@ -20,7 +20,7 @@ void require_arguments(std::size_t participants, int draws, double level) {
   if (draws < 1) throw std::invalid_argument("a bootstrap needs at least one draw");
   require_level(level);
   if (participants > std::numeric_limits<std::uint32_t>::max()) {
-    throw std::invalid_argument("a bootstrap takes fewer than 2^32 participants");
+    throw std::invalid_argument("a bootstrap needs fewer than 2^32 participants");
   }
 }
 
@@ -34,7 +34,7 @@ class IndexDraws {
         bound_(static_cast<std::uint32_t>(bound)),
         excess_((0U - bound_) % bound_) {}
 
-  /// Calls `take` with one index after the other.
+  /// Calls `take` with each index.
   template <typename Take>
   void each(std::size_t count, const Take& take) {
     while (count > 0) {
@@ -183,7 +183,8 @@ JackknifeEstimate jackknife(double all, std::span<const double> without, const I
   require_level(level);
   require_finite(without, "a jackknife");
   require_finite(std::span(&all, 1), "a jackknife");
-  if (without.size() < 2) throw std::invalid_argument("a jackknife needs two participants or more");
+  if (without.size() < 2)
+    throw std::invalid_argument("a jackknife needs at least two participants");
   const auto n = static_cast<double>(without.size());
   const double mean = mean_of(without);
   const double estimate = n * all - (n - 1.0) * mean;

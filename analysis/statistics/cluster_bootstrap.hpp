@@ -52,7 +52,7 @@ inline constexpr std::size_t kMinForBootstrap = 6;
                                                      int draws = kBootstrapDraws,
                                                      double level = kConfidenceLevel);
 
-/// A statistic of the participants with these indices, each as often as it is among them.
+/// A statistic of the participants with these indices; an index that appears twice counts twice.
 using StatisticOfDrawn = std::function<double(std::span<const std::size_t> drawn)>;
 
 /// The interval of any statistic over participants, by the same method.

@@ -15,7 +15,7 @@ namespace touchtrial::analysis {
 /// \throws std::invalid_argument if a confidence level is not in (0, 1)
 inline void require_level(double level) {
   if (!(level > 0.0 && level < 1.0)) {
-    throw std::invalid_argument("a confidence level lies between 0 and 1");
+    throw std::invalid_argument("a confidence level must be in (0, 1)");
   }
 }
 

@@ -167,7 +167,7 @@ LabelMatching best_label_matching(const ConfusionMatrix& confusion) {
   Plane<std::int64_t> cost(classes, classes);
   for (int i = 0; i < classes; ++i) {
     for (int j = 0; j < classes; ++j) {
-      // One trial weighs more than all labels that keep their place together.
+      // One trial outweighs all unchanged labels together.
       cost.at(i, j) = -(std::int64_t{confusion.count(i, j)} * (classes + 1) + (i == j ? 1 : 0));
     }
   }
@@ -189,7 +189,7 @@ double label_swap_p(const ConfusionMatrix& confusion, const LabelMatching& best)
     matched += confusion.count(i, best.answer_of[i]);
   }
   if (matched == 0) return 1.0;
-  // The number of orders of `moved` labels in which none keeps its place.
+  // The number of derangements of `moved` labels.
   double exchanges = 1.0;
   for (int k = 1; k <= moved; ++k) exchanges = k * exchanges + (k % 2 == 0 ? 1.0 : -1.0);
   const boost::math::binomial_distribution<> coins(own + matched, 0.5);

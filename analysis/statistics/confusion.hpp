@@ -1,5 +1,5 @@
-/// \file Which class was taken for which, and the accuracy that the best exchange of labels gives.
-/// Source of the latter: docs/statistics.md, "Swapped labels"; Kuhn 1955.
+/// \file The confusion matrix, and the accuracy under the best exchange of labels. Source of the
+/// latter: docs/statistics.md, "Swapped labels"; Kuhn 1955.
 #pragma once
 
 #include "analysis/statistics/proportion.hpp"
@@ -17,14 +17,14 @@ struct Choice {
   std::optional<int> answered;
 };
 
-/// Counts of trials: rows are the presented class, columns the answer; trials without a response
-/// are counted beside them.
+/// Counts of trials: rows are the presented class, columns the answer. Trials without a response
+/// are counted separately.
 class ConfusionMatrix {
  public:
   /// \throws std::invalid_argument if there is no class, or a choice's class is out of range
   explicit ConfusionMatrix(int classes, std::span<const Choice> choices = {});
 
-  /// \param times  how many trials are alike
+  /// \param times  the number of such trials
   /// \throws std::invalid_argument if a class is out of range
   void add(const Choice& choice, int times = 1);
 
@@ -34,7 +34,7 @@ class ConfusionMatrix {
   }
   [[nodiscard]] int no_response(int presented) const noexcept { return no_response_[presented]; }
 
-  /// Trials that presented a class, those without a response included.
+  /// Trials that presented a class, including those without a response.
   [[nodiscard]] int presented(int presented) const noexcept;
   /// Trials with one answer, whatever was presented.
   [[nodiscard]] int answered(int answered) const noexcept;
@@ -56,7 +56,7 @@ class ConfusionMatrix {
 [[nodiscard]] std::optional<double> percentage(int part, int whole) noexcept;
 
 /// The share of a class's presentations that were answered right, times the share of its answers
-/// that were right. Whoever answers one class every time gets no more than the share of its
+/// that were right. Always giving the same answer scores no more than that class's share of the
 /// presentations. Source: docs/statistics.md, "Unbiased hit rate"; Wagner 1993.
 ///
 /// \return 0 if the class was never answered right; nothing if it was never presented
@@ -68,21 +68,21 @@ class ConfusionMatrix {
 [[nodiscard]] std::optional<double> unbiased_hit_rate_by_chance(const ConfusionMatrix& confusion,
                                                                 int class_index);
 
-/// The one-to-one matching of classes and answers that the most trials agree with.
+/// The one-to-one matching of classes and answers that agrees with the most trials.
 struct LabelMatching {
   Proportion accuracy;         ///< of all trials, those with the matched answer
   std::vector<int> answer_of;  ///< by presented class; keeps its own label where matchings tie
 };
 
-/// Tells whether somebody who answers wrongly distinguishes the classes nevertheless. Biased upward
-/// by the choice of the matching: with few trials the best one is above chance even for random
-/// answers. Cost: O(K^3) for K classes.
+/// The best matching. It shows whether a participant distinguishes the classes but mixes up their
+/// labels. Choosing the best matching biases the accuracy upward: with few trials it is above
+/// chance even for random answers. Cost: O(K^3) for K classes.
 [[nodiscard]] LabelMatching best_label_matching(const ConfusionMatrix& confusion);
 
-/// Tests somebody who gives classes their own labels at least as often as those of the best
-/// matching. Only answers to the moved classes count that agree with either: if neither is
-/// preferred, each of them is a fair coin. The p is the binomial tail, times the number of ways to
-/// exchange as many labels, because the matching was chosen from them.
+/// Tests the null hypothesis that a participant gives classes their own labels at least as often as
+/// those of the best matching. Only answers to the moved classes that agree with either labelling
+/// count; without a preference each is a fair coin. The p is the binomial tail times the number of
+/// ways to exchange as many labels, which corrects for choosing the best one.
 /// \param best  best_label_matching of the same counts
 /// \return in (0, 1]; 1 if no label is moved
 [[nodiscard]] double label_swap_p(const ConfusionMatrix& confusion, const LabelMatching& best);

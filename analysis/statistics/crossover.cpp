@@ -54,12 +54,12 @@ double standard_error(const OrderGroups& groups, double freedom) {
   return without_noise(0.5 * std::sqrt(squares / freedom * (1.0 / n_first + 1.0 / n_second)));
 }
 
-Interval reach_around(double estimate, double reach) {
+Interval interval_around(double estimate, double reach) {
   return {std::clamp(estimate - reach, -1.0, 1.0), std::clamp(estimate + reach, -1.0, 1.0)};
 }
 
-/// What a deal of orders may turn round, block by block: the sum of all is proportional to the
-/// groups' difference in period differences.
+/// For each block, the term whose sign changes when its orders are exchanged. The sum of the terms
+/// is proportional to the groups' difference in period differences.
 std::vector<double> exchangeable_sums(std::span<const CrossoverPerson> people, double null) {
   const auto period_difference = [null](const CrossoverPerson& one) {
     return one.first_came_first ? one.difference - null : null - one.difference;
@@ -113,8 +113,8 @@ CrossoverEstimate crossover_estimate(std::span<const CrossoverPerson> people, do
     return estimate;
   }
   const double reach = error * quantile(complement(distribution, 0.5 * (1.0 - level)));
-  estimate.interval = reach_around(*estimate.effect, reach);
-  estimate.period_interval = reach_around(*estimate.period, reach);
+  estimate.interval = interval_around(*estimate.effect, reach);
+  estimate.period_interval = interval_around(*estimate.period, reach);
   const double t = (*estimate.effect - null) / error;
   estimate.p = sides == Sides::one
                    ? cdf(complement(distribution, t))

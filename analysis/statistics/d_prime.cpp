@@ -42,7 +42,7 @@ constexpr double kReach = 12.0;
 /// From here on a normal distribution is 1 in double precision.
 constexpr double kCertain = 8.5;
 /// No proportion of counts needs a larger d'.
-constexpr double kLargest = 50.0;
+constexpr double kMaxDPrime = 50.0;
 
 void require_alternatives(int alternatives) {
   if (alternatives < 2) throw std::invalid_argument("d' needs at least two alternatives");
@@ -53,7 +53,7 @@ double d_prime_of(double share, int alternatives) {
   const auto excess = [&](double d) { return proportion_correct_of(d, alternatives) - share; };
   std::uintmax_t most_steps = 200;
   const std::pair<double, double> bracket = boost::math::tools::toms748_solve(
-      excess, -kLargest, kLargest, boost::math::tools::eps_tolerance<double>(44), most_steps);
+      excess, -kMaxDPrime, kMaxDPrime, boost::math::tools::eps_tolerance<double>(44), most_steps);
   return std::midpoint(bracket.first, bracket.second);
 }
 
@@ -78,7 +78,7 @@ DPrime d_prime(Proportion proportion, int alternatives, const Interval& limits) 
   require_alternatives(alternatives);
   require_possible(proportion);
   if (!(limits.low >= 0.0 && limits.low <= limits.high && limits.high <= 1.0)) {
-    throw std::invalid_argument("the limits of a share lie between 0 and 1");
+    throw std::invalid_argument("the limits of a share must be in [0, 1]");
   }
   DPrime result;
   if (limits.low > 0.0 && limits.low < 1.0) result.low = d_prime_of(limits.low, alternatives);

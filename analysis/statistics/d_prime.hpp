@@ -1,7 +1,7 @@
 /// \file Nominal sensitivity in an m-alternative choice: the d' with which an unbiased observer of
-/// m equally distant alternatives reaches a proportion correct; and how well people know when they
-/// are right. Sources: docs/statistics.md, "d'" and "Confidence"; Green, Swets 1966; Hacker,
-/// Ratcliff 1979; Fleming, Lau 2014.
+/// m equally distant alternatives reaches a proportion correct; and metacognitive sensitivity, by
+/// confidence ratings. Sources: docs/statistics.md, "d'" and "Confidence"; Green, Swets 1966;
+/// Hacker, Ratcliff 1979; Fleming, Lau 2014.
 #pragma once
 
 #include "analysis/statistics/proportion.hpp"
@@ -11,14 +11,14 @@
 
 namespace touchtrial::analysis {
 
-/// One answer, and how sure its participant was of it.
+/// One answer with its confidence rating.
 struct RatedAnswer {
   int rating = 0;  ///< higher: surer
   bool correct = false;
 };
 
 /// The area under one participant's type-2 ROC curve: the probability that a right answer was rated
-/// higher than a wrong one, equal ratings counting half. 0.5: ratings tell nothing.
+/// higher than a wrong one, ties counting half. At 0.5, ratings carry no information.
 /// \return nothing without a right and a wrong answer
 [[nodiscard]] std::optional<double> type_2_area(std::span<const RatedAnswer> answers);
 

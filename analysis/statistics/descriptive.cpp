@@ -48,7 +48,7 @@ MeanEstimate participant_mean(std::span<const double> values, Interval range, do
 
 std::optional<double> quantile(std::span<const double> sorted, double share) {
   if (!(share >= 0.0 && share <= 1.0)) {
-    throw std::invalid_argument("a quantile's share lies between 0 and 1");
+    throw std::invalid_argument("a quantile's share must be in [0, 1]");
   }
   if (sorted.empty()) return std::nullopt;
   const double place = share * static_cast<double>(sorted.size() - 1);

@@ -1,4 +1,4 @@
-/// \file What describes a sample: its mean with Student's t interval, its median and quartiles.
+/// \file Descriptive statistics of a sample: mean with Student's t interval, median and quartiles.
 /// Sources: docs/statistics.md, "Participants as clusters" and "Reaction times"; Hyndman, Fan 1996.
 #pragma once
 
@@ -10,20 +10,20 @@
 
 namespace touchtrial::analysis {
 
-/// The sum over the number of values; NaN without values.
+/// The arithmetic mean; NaN without values.
 [[nodiscard]] double mean_of(std::span<const double> values);
 
-/// The root of the sum of squared distances from the mean over a divisor.
-/// \param divisor  the number of values for these alone, one less for what they are a sample of
+/// The square root of the sum of squared deviations divided by `divisor`.
+/// \param divisor  n for the values themselves, n - 1 for the population they are a sample of
 [[nodiscard]] double standard_deviation(std::span<const double> values, double mean,
                                         double divisor);
 
-/// Whether two values or more do not differ, but for rounding. Student's t, and with it his
-/// interval, then does not exist: nothing is known of how people differ.
+/// Whether there are two or more values, equal except for rounding. Student's t and its interval do
+/// not exist then, because the spread between people is unknown.
 [[nodiscard]] bool all_alike(std::span<const double> values);
 
-/// A mean over participants and Student's t interval around it. Participants are the unit of which
-/// a study has a sample; pooling all trials as if they were independent makes intervals too narrow.
+/// A mean over participants and its Student's t interval. A study samples participants; pooling
+/// trials as if they were independent would make intervals too narrow.
 struct MeanEstimate {
   int participants = 0;
   std::optional<double> mean;  ///< nothing without participants
@@ -31,8 +31,8 @@ struct MeanEstimate {
       interval;  ///< the whole range with fewer than two participants; a point if all are alike
   std::optional<double> sd{};  ///< between participants, n - 1; nothing with fewer than two
 
-  /// The interval to show: `interval`, or nothing with fewer than two participants, and if all are
-  /// alike: an interval without width would look like certainty.
+  /// The interval to show: `interval`, or nothing if there are fewer than two participants or all
+  /// values are equal. An interval of zero width would look like certainty.
   [[nodiscard]] std::optional<Interval> known_interval() const noexcept {
     return participants > 1 && interval.low < interval.high ? std::optional(interval)
                                                             : std::nullopt;

@@ -15,7 +15,7 @@ namespace {
 constexpr int kMinSteps = 800;       ///< of Simpson's rule
 constexpr double kStepsOfSd = 16.0;  ///< in the standard deviation of an increment, at least
 constexpr double kMaxSteps = 100'000;
-constexpr double kFarthest = 9.0;  ///< standard deviations beyond which nothing is left
+constexpr double kMaxSds = 9.0;  ///< standard deviations beyond which nothing is left
 
 double above(double z) {
   return cdf(complement(boost::math::normal(), z));
@@ -29,14 +29,14 @@ double spent_one_sided(double alpha, AlphaSpending spending, double share) {
   return 2.0 * above(z / std::sqrt(share));
 }
 
-/// An even number of steps, for which no increment is narrower than a few of them.
-int steps_between(double low, double high, double least_sd) {
-  const double wanted = std::min(kMaxSteps, (high - low) * kStepsOfSd / least_sd);
+/// An even number of steps, small compared with the narrowest increment.
+int steps_between(double low, double high, double min_sd) {
+  const double wanted = std::min(kMaxSteps, (high - low) * kStepsOfSd / min_sd);
   const int steps = std::max(kMinSteps, static_cast<int>(wanted));
   return steps + steps % 2;
 }
 
-/// The density of the sum so far among studies that went on, on an even grid.
+/// The density of the cumulative sum among studies that continued, on an even grid.
 struct Paths {
   std::vector<double> place{0.0};
   std::vector<double> mass{1.0};  ///< density times weight of the rule
@@ -50,7 +50,7 @@ struct Paths {
 
   /// The density of the sum after another increment.
   [[nodiscard]] double density(double at, double sd) const {
-    const double reach = kFarthest * sd;
+    const double reach = kMaxSds * sd;
     auto i = static_cast<std::size_t>(std::ranges::lower_bound(place, at - reach) - place.begin());
     double sum = 0.0;
     for (; i < place.size() && place[i] <= at + reach; ++i) {
@@ -60,7 +60,7 @@ struct Paths {
     return sum / (sd * std::sqrt(2.0 * std::numbers::pi));
   }
 
-  /// Goes on with the sums between low and high.
+  /// Continues with the sums between low and high.
   /// \param next_sd  of the increment after this one
   void advance(double sd, double next_sd, double low, double high) {
     const int steps = steps_between(low, high, std::min(sd, next_sd));
@@ -76,11 +76,11 @@ struct Paths {
   }
 };
 
-/// The bound that this much of the probability crosses.
+/// The bound that is crossed with probability `wanted`.
 double bound_for(const Paths& paths, double sd, double wanted) {
   std::uintmax_t steps = 200;
   const auto [a, b] = boost::math::tools::toms748_solve(
-      [&](double bound) { return paths.crossing(bound, sd) - wanted; }, -kFarthest, 40.0,
+      [&](double bound) { return paths.crossing(bound, sd) - wanted; }, -kMaxSds, 40.0,
       boost::math::tools::eps_tolerance<double>(45), steps);
   return 0.5 * (a + b);
 }
@@ -89,7 +89,7 @@ void require_shares(std::span<const double> shares) {
   double before = 0.0;
   for (const double share : shares) {
     if (!(share > before && share <= 1.0)) {
-      throw std::invalid_argument("shares of the information ascend within (0, 1]");
+      throw std::invalid_argument("shares of the information must ascend within (0, 1]");
     }
     before = share;
   }
@@ -99,7 +99,7 @@ void require_shares(std::span<const double> shares) {
 
 std::vector<double> nominal_levels(double alpha, Sides sides, AlphaSpending spending,
                                    std::span<const double> shares) {
-  if (!(alpha > 0.0 && alpha <= 0.5)) throw std::invalid_argument("alpha lies in (0, 0.5]");
+  if (!(alpha > 0.0 && alpha <= 0.5)) throw std::invalid_argument("alpha must be in (0, 0.5]");
   require_shares(shares);
   const double of_side = sides == Sides::one ? alpha : alpha / 2.0;
   std::vector<double> levels;
@@ -114,7 +114,7 @@ std::vector<double> nominal_levels(double alpha, Sides sides, AlphaSpending spen
     spent = allowed;
     if (i + 1 == shares.size()) break;
     const double next_sd = std::sqrt(shares[i + 1] - shares[i]);
-    const double reach = kFarthest * root;
+    const double reach = kMaxSds * root;
     const double high = std::min(bound, reach);
     paths.advance(sd, next_sd, sides == Sides::one ? -reach : -high, high);
     sd = next_sd;

@@ -1,5 +1,6 @@
-/// \file How much an answer tells about what was presented, in bits. Source: docs/statistics.md,
-/// "Information transfer"; Tan, Reed, Durlach 2010, IEEE Transactions on Haptics 3(2).
+/// \file Information transfer: the mutual information between stimulus and answer, in bits. Source:
+/// docs/statistics.md, "Information transfer"; Tan, Reed, Durlach 2010, IEEE Transactions on
+/// Haptics 3(2).
 #pragma once
 
 #include "analysis/statistics/confusion.hpp"
@@ -19,7 +20,7 @@ struct InformationTransfer {
   int deals = 0;                    ///< permutations behind null_mean
 };
 
-/// The trials below which an estimate for K classes misleads: 5 K^2.
+/// The number of trials below which an estimate for K classes is unreliable: 5 K^2.
 [[nodiscard]] constexpr int trials_for_information_transfer(int classes) noexcept {
   return 5 * classes * classes;
 }

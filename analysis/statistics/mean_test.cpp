@@ -14,13 +14,13 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// The p of values that are all at the same distance from the null hypothesis.
+/// The sign-flip p of equal values.
 double p_of_equals(double distance, std::size_t n, Sides sides) {
   if (distance == 0.0 || (sides == Sides::one && distance < 0.0)) return 1.0;
   return std::ldexp(sides == Sides::one ? 1.0 : 2.0, -static_cast<int>(n));
 }
 
-/// The noncentrality at which a t below `t` has the probability `share`.
+/// The noncentrality at which P(T < t) = share.
 double noncentrality(double t, double degrees, double share) {
   const auto excess = [&](double delta) {
     return cdf(boost::math::non_central_t_distribution<>(degrees, delta), t) - share;
@@ -38,7 +38,8 @@ double noncentrality(double t, double degrees, double share) {
 
 }  // namespace
 
-std::optional<TStatistic> bare_t_statistic(std::span<const double> values, double null) {
+std::optional<TStatistic> t_statistic_without_interval(std::span<const double> values,
+                                                       double null) {
   require_finite(values, "a t statistic");
   require_finite(std::span(&null, 1), "a t statistic");
   if (values.size() < 2 || all_alike(values)) return std::nullopt;
@@ -51,7 +52,7 @@ std::optional<TStatistic> bare_t_statistic(std::span<const double> values, doubl
 
 std::optional<Interval> effect_interval(const TStatistic& statistic, double level) {
   require_level(level);
-  if (std::abs(statistic.t) > kFurthestT) return std::nullopt;
+  if (std::abs(statistic.t) > kMaxT) return std::nullopt;
   const double degrees = statistic.degrees_of_freedom;
   const double root = std::sqrt(degrees + 1.0);
   const double tail = 0.5 * (1.0 - level);
@@ -60,7 +61,7 @@ std::optional<Interval> effect_interval(const TStatistic& statistic, double leve
 }
 
 std::optional<TStatistic> t_statistic(std::span<const double> values, double null, double level) {
-  std::optional<TStatistic> statistic = bare_t_statistic(values, null);
+  std::optional<TStatistic> statistic = t_statistic_without_interval(values, null);
   if (statistic) statistic->interval = effect_interval(*statistic, level);
   return statistic;
 }
@@ -69,7 +70,7 @@ std::optional<double> t_test_p(std::span<const double> values, double null, Side
   require_finite(values, "a t test");
   require_finite(std::span(&null, 1), "a t test");
   if (values.size() < 2) return std::nullopt;
-  const std::optional<TStatistic> statistic = bare_t_statistic(values, null);
+  const std::optional<TStatistic> statistic = t_statistic_without_interval(values, null);
   if (!statistic) {
     return p_of_equals(without_noise(mean_of(values) - null), values.size(), sides);
   }

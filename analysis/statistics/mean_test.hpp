@@ -9,12 +9,12 @@
 
 namespace touchtrial::analysis {
 
-/// Which means count against the null hypothesis: larger ones alone, or those on both sides.
+/// Which means count against the null hypothesis: only larger ones, or those on both sides.
 enum class Sides { one, two };
 
-/// The one-sample t test of a mean over participants. If `all_alike`, t does not exist; p is then
-/// that of flipping the signs of their distances from `null`: 2^-n or 2 * 2^-n, or 1 if they are
-/// `null` itself or, one-sided, lie below it. Whoever shows it must not call it a t test.
+/// The one-sample t test of a mean over participants. If `all_alike`, t does not exist, and p is
+/// that of sign flips of the distances from `null`: 2^-n or 2 * 2^-n, or 1 if the values equal
+/// `null` or, one-sided, lie below it. A report must not call that p a t test.
 /// \param values  one number per participant
 /// \param null  the mean under the null hypothesis
 /// \return p in [0, 1]; nothing with fewer than two values
@@ -38,17 +38,17 @@ struct TStatistic {
 [[nodiscard]] std::optional<TStatistic> t_statistic(std::span<const double> values,
                                                     double null = 0.0,
                                                     double level = kConfidenceLevel);
-/// The same without the interval, which costs most of the time.
-[[nodiscard]] std::optional<TStatistic> bare_t_statistic(std::span<const double> values,
-                                                         double null = 0.0);
+/// The same without the interval, which is the expensive part.
+[[nodiscard]] std::optional<TStatistic> t_statistic_without_interval(std::span<const double> values,
+                                                                     double null = 0.0);
 
 /// The d whose noncentral t distributions have the observed t at either tail. Assumes normal
 /// values: it is too narrow for people whose differences scatter by very different amounts.
-/// \return nothing if t is beyond kFurthestT
+/// \return nothing if t is beyond kMaxT
 [[nodiscard]] std::optional<Interval> effect_interval(const TStatistic& statistic,
                                                       double level = kConfidenceLevel);
 
 /// Noncentral t distributions beyond this t are not computed.
-inline constexpr double kFurthestT = 1e4;
+inline constexpr double kMaxT = 1e4;
 
 }  // namespace touchtrial::analysis

@@ -11,9 +11,9 @@ namespace touchtrial::analysis {
 namespace {
 
 constexpr int kNoClass = -1;
-constexpr int kNotWrong = -2;  ///< no class, and no missing one
+constexpr int kNotWrong = -2;  ///< neither a class nor a missing answer
 
-/// What a trial carries with it to another place.
+/// The data that move with a trial to another place.
 struct Carried {
   int presented = kNoClass;
   int answered = kNoClass;
@@ -23,7 +23,7 @@ struct Carried {
 
 Carried carried(const FeltTrial& trial) {
   if (trial.presented.value_or(0) < 0 || trial.answered.value_or(0) < 0) {
-    throw std::invalid_argument("order effects need classes from 0");
+    throw std::invalid_argument("order effects need classes >= 0");
   }
   Carried carried{.presented = trial.presented.value_or(kNoClass),
                   .answered = trial.answered.value_or(kNoClass)};
@@ -43,11 +43,11 @@ struct Block {
   std::vector<std::size_t> moving;  ///< places whose trials move, ascending
   std::vector<Carried> trials;      ///< that were felt there
 
-  /// Whether no trial between two moving ones stays.
+  /// Whether the moving trials are contiguous.
   [[nodiscard]] bool is_run() const { return moving.back() - moving.front() + 1 == moving.size(); }
 };
 
-/// What is tested.
+/// The test statistics.
 struct Observed {
   double slope = 0.0;
   int class_same = 0;
@@ -79,7 +79,8 @@ class Places {
     for (std::size_t i = 0; i < to.size(); ++i) now_[to[i]] = trials[i];
   }
 
-  /// Of the trials as they are now. Without branches, because no processor foresees answers.
+  /// The statistics of the current order. Branch-free, because answers are unpredictable for the
+  /// processor.
   [[nodiscard]] Observed observed() const {
     double slope = 0.0;
     int class_same = 0;
@@ -97,7 +98,7 @@ class Places {
     return {slope, class_same, answer_same};
   }
 
-  /// Wrong answers just after a trial that has this.
+  /// Wrong answers immediately after a trial that has this.
   /// \param what  presented or answered
   [[nodiscard]] int wrong_after(int Carried::*what) const {
     int wrong = 0;
@@ -148,11 +149,11 @@ class Places {
   std::vector<Place> places_;
   std::vector<Block> blocks_;
   std::vector<Carried> now_;    ///< for each place, the trial that is there
-  std::vector<double> slopes_;  ///< of the participants who have one
+  std::vector<double> slopes_;  ///< of the participants with a defined slope
 };
 
-/// Deals the trials of each class over the places that an order gives the class. Keeps its memory
-/// from block to block.
+/// Distributes the trials of each class over the places of that class in an order. Reuses its
+/// memory from block to block.
 class DealByClass {
  public:
   /// \param trials  on return, the trial of each place

@@ -1,7 +1,7 @@
-/// \file Whether answers depend on when a presentation came, or on what came before it. The tests
-/// take the order as the one thing that was drawn: if each answer depends on its own presentation
-/// alone, it would have gone with that presentation to any other place that the design could have
-/// given it. Sources: docs/statistics.md, "Order"; Fischer, Whitney 2014; Phipson, Smyth 2010.
+/// \file Tests of whether answers depend on the time of a presentation or on the presentation
+/// before it. These are randomisation tests over the order: if each answer depends only on its own
+/// presentation, it moves with that presentation to any other place that the design allows.
+/// Sources: docs/statistics.md, "Order"; Fischer, Whitney 2014; Phipson, Smyth 2010.
 #pragma once
 
 #include "analysis/statistics/descriptive.hpp"
@@ -18,8 +18,8 @@ namespace touchtrial::analysis {
 struct FeltTrial {
   std::optional<int> presented;  ///< class; nothing: a catch trial
   std::optional<int> answered;   ///< class; nothing: no response
-  bool follows = false;          ///< the trial before it in the block was felt just before it
-  bool moves = true;   ///< it could have come elsewhere in the block; false for a lead-in, a trial
+  bool follows = false;          ///< the previous trial of the block was felt immediately before it
+  bool moves = true;   ///< it could have another place in the block; false for a lead-in, a trial
                        ///< that does not count, or one of another method
   double place = 0.0;  ///< of a trial that moves: number among the participant's trials
 };
@@ -31,10 +31,10 @@ using FeltBlock = std::vector<FeltTrial>;
 /// on the block's index, counted over all participants, and on the number of the draw, from 0.
 using RedrawnClasses = std::function<std::vector<int>(std::size_t block, int draw)>;
 
-/// The wrong answers that name what came just before.
+/// Wrong answers that repeat the previous stimulus or answer.
 struct SerialDependence {
   int wrong = 0;          ///< wrong answers just after a presentation with a class, or an answer
-  int same = 0;           ///< of these, those that name that class, or repeat that answer
+  int same = 0;           ///< of these, those that name that class or repeat that answer
   double expected = 0.0;  ///< mean of `same` over the drawn orders
   std::optional<double> p{};  ///< two-sided; nothing without a wrong answer
 };
@@ -51,10 +51,10 @@ struct OrderEffects {
 
 /// \param participants  their blocks
 /// \param redraw  empty if every order of a block's moving trials was possible. Trials of a class
-///   are dealt at random over its places; where a drawn order does not have as many places of each
-///   class, the block stays as it was, which can only raise p.
-/// \param draws  m of p = 2 (b + 1) / (m + 1) of the smaller tail, >= 1; cost: each goes once
-///   through all trials
+///   are distributed at random over the places of that class. If a drawn order has other numbers of
+///   places, the block stays as it was, which can only raise p.
+/// \param draws  m of p = 2 (b + 1) / (m + 1) of the smaller tail, >= 1; each draw visits all
+///   trials once
 /// \param index  chooses the stream of random numbers
 /// \return nothing without a moving trial
 /// \throws std::invalid_argument if draws < 1, a class is negative, or a redrawn order has another

@@ -23,7 +23,7 @@ namespace {
 /// rounding.
 constexpr double kTie = 1e-9;
 
-/// Random sign patterns where there are too many to count all.
+/// The number of random sign patterns if there are too many to count.
 constexpr std::size_t kSampledPatterns = 99'999;
 
 /// The sums of all 2^n sign patterns, ascending.
@@ -147,10 +147,10 @@ struct StrataSums {
   }
 };
 
-/// The places of p values in ascending order.
+/// The indices of p values in ascending order.
 std::vector<std::size_t> rising_order(std::span<const double> p_values) {
   for (const double p : p_values) {
-    if (!(p >= 0.0 && p <= 1.0)) throw std::invalid_argument("a p lies between 0 and 1");
+    if (!(p >= 0.0 && p <= 1.0)) throw std::invalid_argument("a p must be in [0, 1]");
   }
   std::vector<std::size_t> rising(p_values.size());
   std::iota(rising.begin(), rising.end(), std::size_t{0});
@@ -165,7 +165,8 @@ using RightByMethod = std::vector<std::int64_t>;
 void require_as_long(Occasions occasions, std::size_t methods) {
   for (const std::vector<bool>& occasion : occasions) {
     if (occasion.size() != methods) {
-      throw std::invalid_argument("Cochran's Q needs an answer of every method on every occasion");
+      throw std::invalid_argument(
+          "Cochran's Q needs an answer with every method on every occasion");
     }
   }
 }
@@ -371,7 +372,7 @@ std::vector<double> holm_adjusted(std::span<const double> p_values) {
   return adjusted;
 }
 
-std::vector<double> discovery_adjusted(std::span<const double> p_values) {
+std::vector<double> benjamini_hochberg_adjusted(std::span<const double> p_values) {
   const std::vector<std::size_t> rising = rising_order(p_values);
   const auto hypotheses = static_cast<double>(rising.size());
   std::vector<double> adjusted(p_values.size());

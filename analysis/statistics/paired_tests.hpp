@@ -49,13 +49,14 @@ struct MethodComparison {
 /// \return 10 log10(a / b); nothing unless both are > 0
 [[nodiscard]] std::optional<double> decibels(double a, double b);
 
-/// Up to this many participants sign_flip_p counts all sign patterns; beyond, 99,999 random ones.
+/// Up to this many participants, sign_flip_p counts all sign patterns; beyond that, it draws 99,999
+/// at random.
 inline constexpr int kExactSignFlips = 32;
 
-/// The exact test of paired differences: if two methods do not differ, every participant's
-/// difference could as well have the other sign. p is the share of the sign patterns whose mean is
-/// at least as far from zero as the observed one, or at least as large if one-sided; beyond
-/// kExactSignFlips it is (b + 1) / (m + 1) over m random patterns from a fixed seed (Phipson, Smyth
+/// The exact sign-flip test of paired differences: if two methods do not differ, each difference is
+/// as likely to have the opposite sign. p is the share of sign patterns whose mean is at least as
+/// far from zero as the observed one, or at least as large if one-sided. Beyond kExactSignFlips
+/// participants it is (b + 1) / (m + 1) over m random patterns from a fixed seed (Phipson, Smyth
 /// 2010).
 /// \param differences  one per participant, finite
 /// \return in (0, 1], never below 2 * 2^-n, or 2^-n if one-sided; nothing without differences
@@ -63,13 +64,13 @@ inline constexpr int kExactSignFlips = 32;
 [[nodiscard]] std::optional<double> sign_flip_p(std::span<const double> differences,
                                                 Sides sides = Sides::two);
 
-/// The least p that sign_flip_p could give for these differences, whatever their signs.
-/// \return 1 without a difference that is not 0
+/// The smallest p that sign_flip_p can return for these differences, whatever their signs.
+/// \return 1 if all differences are 0
 [[nodiscard]] double sign_flip_least(std::span<const double> differences, Sides sides = Sides::two);
 
-/// The largest p within the level that these differences could have, whatever their signs: the rate
-/// at which the test rejects if the methods do not differ. 0 if it cannot reject.
-/// Cost: about thirty times that of sign_flip_p.
+/// The largest attainable p within the level, over all signs of these differences: the test's true
+/// rejection rate if the methods do not differ. 0 if it cannot reject. Cost: about thirty times
+/// that of sign_flip_p.
 /// \throws std::invalid_argument if a difference is not finite
 [[nodiscard]] double sign_flip_attainable(std::span<const double> differences, double level);
 
@@ -89,7 +90,7 @@ struct OddsRatio {
     double level = kConfidenceLevel);
 
 /// The interval of the common odds ratio over participants drawn with replacement, by expanded
-/// percentiles: it holds for participants who differ in how much better one method is to them.
+/// percentiles. It is valid even if the methods' difference varies between participants.
 /// \param index,draws  of the bootstrap
 /// \return nothing with fewer than two participants, or if an end would be 0 or infinite
 /// \throws std::invalid_argument as mantel_haenszel does, or if draws < 1
@@ -109,17 +110,17 @@ struct OddsRatio {
 struct CochranQ {
   double q = 0.0;
   int degrees_of_freedom = 0;  ///< methods - 1
-  double p = 1.0;              ///< of q under chi-square: valid for independent occasions
+  double p = 1.0;              ///< of q under chi-square; valid only for independent occasions
 };
 
 /// Cochran's (1950) test of several methods that are right or wrong on the same occasions.
-/// \param occasions  each tells for every method whether the answer was right; all equally long
+/// \param occasions  for each, whether the answer with every method was right; all of equal length
 /// \return nothing if there are fewer than two methods, or no occasion on which methods differ
 /// \throws std::invalid_argument if lengths differ
 [[nodiscard]] std::optional<CochranQ> cochran_q(std::span<const std::vector<bool>> occasions);
 
-/// The p of the same statistic when methods are exchanged within whole participants: valid although
-/// a participant's occasions depend on each other. Monte Carlo, (b + 1) / (m + 1), fixed seed.
+/// The p of the same statistic by permuting the methods within whole participants, which is valid
+/// although a participant's occasions are dependent. Monte Carlo, (b + 1) / (m + 1), fixed seed.
 /// \param by_participant  each participant's occasions
 /// \param deals  m, >= 1
 /// \param index  chooses the stream of random numbers
@@ -129,15 +130,15 @@ struct CochranQ {
     std::span<const std::vector<std::vector<bool>>> by_participant, int deals = 9999,
     std::uint64_t index = 0);
 
-/// Holm's (1979) adjustment, which holds the error rate of a family of tests.
+/// Holm's (1979) adjustment, which controls the family-wise error rate.
 /// \param p_values  each in [0, 1]
 /// \return the adjusted p values in the order given, each in [0, 1]
 /// \throws std::invalid_argument if a p is outside [0, 1]
 [[nodiscard]] std::vector<double> holm_adjusted(std::span<const double> p_values);
 
-/// Benjamini and Hochberg's (1995) adjustment, which holds the expected share of false ones among
-/// the hypotheses that are rejected, and with that the rate of rejecting any if all are true.
-/// Arguments, result and errors are those of holm_adjusted.
-[[nodiscard]] std::vector<double> discovery_adjusted(std::span<const double> p_values);
+/// Benjamini and Hochberg's (1995) adjustment, which controls the false discovery rate, and so also
+/// the rate of any rejection if all hypotheses are true. Arguments, result and errors are those of
+/// holm_adjusted.
+[[nodiscard]] std::vector<double> benjamini_hochberg_adjusted(std::span<const double> p_values);
 
 }  // namespace touchtrial::analysis

@@ -22,9 +22,9 @@ class CutPosterior {
         beta_(passed_ + 1.0, failed_ + 1.0),
         above_(cdf(complement(beta_, level))) {}
 
-  /// The value below which a share lies.
+  /// The quantile of the cut posterior.
   [[nodiscard]] double quantile(double share) const {
-    // Counted from above, so that little is lost if most of the distribution is cut off.
+    // Computed from the upper tail, which stays accurate if most of the distribution is cut off.
     return boost::math::quantile(boost::math::complement(beta_, (1.0 - share) * above_));
   }
 
@@ -69,7 +69,7 @@ std::optional<Prevalence> prevalence_of(Proportion tests, double level, double s
   require_possible(tests);
   require_level(share);
   if (!(level >= 0.0 && level < 1.0)) {
-    throw std::invalid_argument("a test's level lies from 0 to below 1");
+    throw std::invalid_argument("a test's level must be in [0, 1)");
   }
   if (tests.n == 0) return std::nullopt;
   const auto prevalence = [level](double passing) {

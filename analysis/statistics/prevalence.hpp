@@ -8,8 +8,9 @@
 
 namespace touchtrial::analysis {
 
-/// The share of the population that passes its test for another reason than chance. It is a lower
-/// bound of the share that can do the task, because a test of few trials misses some who can.
+/// The share of the population that passes the test for reasons other than chance. It is a lower
+/// bound on the share of people who can do the task, because a test of few trials misses some of
+/// them.
 struct Prevalence {
   int participants = 0;
   int passed = 0;         ///< participants whose own p is within the level
@@ -20,7 +21,7 @@ struct Prevalence {
 
 /// The posterior of the prevalence g if a participant passes with probability a + (1 - a) g. The
 /// probability of passing is then Beta(passed + 1, failed + 1), cut to [a, 1].
-/// \param tests  passed of taken
+/// \param tests  passed, of all
 /// \param level  a: the mean probability of passing by chance, in [0, 1)
 /// \param share  of the posterior in the interval, in (0, 1)
 /// \return nothing without participants

@@ -35,7 +35,7 @@ Interval wilson_interval(Proportion proportion, double level) {
   const double scale = 1.0 + z * z / n;
   const double centre = (p + z * z / (2.0 * n)) / scale;
   const double half = z * std::sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n)) / scale;
-  // At the ends of the scale, centre and half-width are equal except for rounding.
+  // At 0 and n, centre and half-width differ only by rounding.
   return {proportion.correct == 0 ? 0.0 : centre - half,
           proportion.correct == proportion.n ? 1.0 : centre + half};
 }

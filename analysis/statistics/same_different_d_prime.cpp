@@ -27,11 +27,11 @@ double z_of(double share) {
 void require_shares(const SameDifferent& shares) {
   const auto inside = [](double share) { return share > 0.0 && share < 1.0; };
   if (!inside(shares.hits) || !inside(shares.false_alarms)) {
-    throw std::invalid_argument("shares of \"different\" lie between 0 and 1, exclusive");
+    throw std::invalid_argument("shares of \"different\" must be in (0, 1)");
   }
 }
 
-/// Where a function that rises from 0 reaches `share`.
+/// The argument at which a function that rises from 0 reaches `share`.
 template <typename Rising>
 double distance_with(const Rising& share_of, double share) {
   std::uintmax_t most_steps = 200;

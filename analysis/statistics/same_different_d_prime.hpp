@@ -6,8 +6,8 @@
 
 namespace touchtrial::analysis {
 
-/// Shares of the answer "different", each in (0, 1). Counts of none or all must be replaced, for
-/// instance by half an answer, before they come here.
+/// Shares of the answer "different", each in (0, 1). The caller must first replace shares of 0 and
+/// 1, for instance by half an answer.
 struct SameDifferent {
   double hits = 0.0;          ///< of trials with two different stimuli
   double false_alarms = 0.0;  ///< of trials with the same stimulus twice
@@ -19,16 +19,16 @@ struct SameDifferentFit {
   double criterion = 0.0;
 };
 
-/// The differencing observer says "different" if both impressions are more than the criterion
-/// apart: false alarms 2 Phi(-k / sqrt 2), hits Phi((d' - k) / sqrt 2) + Phi((-d' - k) / sqrt 2).
-/// For roved or many stimuli.
+/// The differencing observer answers "different" if the two impressions differ by more than the
+/// criterion: false alarms 2 Phi(-k / sqrt 2), hits Phi((d' - k) / sqrt 2) + Phi((-d' - k) / sqrt
+/// 2). For roved or many stimuli.
 /// \return nothing if there are fewer hits than false alarms; 0 if equal
 /// \throws std::invalid_argument if a share is not in (0, 1)
 [[nodiscard]] std::optional<SameDifferentFit> differencing_d_prime(const SameDifferent& shares);
 
-/// The observer who judges each impression by itself, as is best with two fixed stimuli: the best
-/// share correct is Phi((z(hits) - z(false alarms)) / 2), and d' = 2 z((1 + sqrt(2 share - 1)) /
-/// 2). The criterion is -(z(hits) + z(false alarms)) / 2. Result and errors as above.
+/// The independent-observation observer, optimal for two fixed stimuli: the best share correct is
+/// Phi((z(hits) - z(false alarms)) / 2), and d' = 2 z((1 + sqrt(2 share - 1)) / 2). The criterion
+/// is -(z(hits) + z(false alarms)) / 2. Result and errors as above.
 [[nodiscard]] std::optional<SameDifferentFit> independent_d_prime(const SameDifferent& shares);
 
 }  // namespace touchtrial::analysis

@@ -31,7 +31,7 @@ class Deviation {
   }
 
   [[nodiscard]] std::size_t participants() const { return shares_.size(); }
-  /// The variance of probabilities that are 0 or 1 alone.
+  /// The variance of probabilities that are only 0 or 1.
   [[nodiscard]] double largest() const { return largest_; }
 
   /// Squared distances from the weighted mean, divided by the variances; falls as `variance` grows.

@@ -1,6 +1,6 @@
-/// \file How much participants differ, without what a limited number of trials adds by chance.
-/// Sources: docs/statistics.md, "Spread between participants"; Paule, Mandel 1982; Viechtbauer
-/// 2007.
+/// \file The true spread between participants, without the binomial noise of a limited number of
+/// trials. Sources: docs/statistics.md, "Spread between participants"; Paule, Mandel 1982;
+/// Viechtbauer 2007.
 #pragma once
 
 #include "analysis/statistics/proportion.hpp"
@@ -20,7 +20,8 @@ struct Spread {
 /// m the mean over participants and s the spread. The estimate is the s at which the squared
 /// distances from the weighted mean, each divided by its variance, add up to the number of
 /// participants less one; the interval has every s at which they lie within chi-square's quantiles.
-/// \param participants  each with n >= 1; those with one trial tell nothing and are left out
+/// \param participants  each with n >= 1; those with one trial carry no information and are left
+///   out
 /// \param level  in (0, 1)
 /// \return nothing with fewer than two participants, or if all answers are right or all wrong
 /// \throws std::invalid_argument if a proportion is impossible or has n < 1, or the level is not in

@@ -13,7 +13,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// Means of strata, and how exactly each is known.
+/// Means of strata with their precision.
 class StratumMeans {
  public:
   void add(double mean, double variance) {
@@ -44,7 +44,8 @@ class StratumMeans {
 
   [[nodiscard]] double degrees() const { return static_cast<double>(means_.size()) - 1.0; }
 
-  /// Paule and Mandel's variance between strata: at which the squares are as large as expected.
+  /// Paule and Mandel's variance between strata, at which the weighted squares equal their
+  /// expectation.
   [[nodiscard]] double between() const {
     if (weighted(0.0).squares <= degrees()) return 0.0;
     double most = std::pow(std::ranges::max(means_) - std::ranges::min(means_), 2);

@@ -1,4 +1,4 @@
-/// \file A mean over participants who come in strata, such as the stations of a study. Source:
+/// \file A mean over participants in strata, such as the stations of a study. Source:
 /// docs/statistics.md, "Stations as strata"; Paule, Mandel 1982; IntHout, Ioannidis, Borm 2014.
 #pragma once
 
@@ -13,9 +13,9 @@ namespace touchtrial::analysis {
 /// With fewer, the spread between strata cannot be estimated.
 inline constexpr int kMinRandomStrata = 6;
 
-/// The strata as a sample of others.
+/// The random-effects estimate: strata as a sample from a population of strata.
 struct RandomStrata {
-  double mean = 0.0;    ///< of strata, each weighing by its variance and the spread
+  double mean = 0.0;    ///< over strata, weighted by their variances and the spread
   Interval interval;    ///< t with one degree fewer than strata
   double spread = 0.0;  ///< standard deviation of the strata's own means
 };
@@ -23,8 +23,8 @@ struct RandomStrata {
 struct StratifiedMean {
   int strata = 0;
   double mean = 0.0;  ///< of all values, so that a stratum weighs by its participants
-  /// For the strata as they are: t from the spread within them, with as many degrees as values less
-  /// strata; nothing without degrees, or if all are alike within their strata.
+  /// For these strata only (fixed effects): t from the spread within them, with n - strata degrees
+  /// of freedom. Nothing without degrees of freedom, or if values do not vary within strata.
   std::optional<Interval> interval{};
   std::optional<RandomStrata> random{};  ///< from kMinRandomStrata on
 };

@@ -34,13 +34,13 @@ void add_clock_notes(std::vector<std::string>& notes, std::span<const record::Ev
   }
 }
 
-/// Where the second head file was moved to.
+/// Adds the moves of the second head file.
 void add_moves(std::vector<std::string>& notes, std::span<const record::Event> chain,
                const std::string& name) {
   std::optional<std::string> before;
   for (const record::Event& event : chain) {
     if (event.kind != record::EventKind::heads_kept) continue;
-    const std::string also = record::body_of(event, record::heads_from_json).also;
+    const std::string also = record::body_of<record::HeadsBody>(event).also;
     if (before) {
       notes.push_back(
           one_line(fmt::format("{}, event {}: the second head file is {} from then on", name,
@@ -54,7 +54,7 @@ void add_losses(std::vector<std::string>& notes, std::span<const record::Event> 
                 const std::string& name) {
   for (const record::Event& event : chain) {
     if (event.kind != record::EventKind::loss_accepted) continue;
-    const record::LossBody loss = record::body_of(event, record::loss_from_json);
+    const record::LossBody loss = record::body_of<record::LossBody>(event);
     notes.push_back(one_line(fmt::format("{}, event {}: a loss was accepted ({}): {}", name,
                                          event.sequence, loss.reason, loss.missing)));
   }

@@ -25,23 +25,24 @@ void add(std::string& text, const std::string& more) {
 }
 
 /// The head file of one station's database.
-/// \return what the collected study lacks of it; empty: nothing
-std::string lack_of_station(const record::HeadReading& reading, const StationChains& chains) {
+/// \return what the collected study is missing from it; empty: nothing
+std::string missing_from_station(const record::HeadReading& reading, const StationChains& chains) {
   const record::HeadRecord& known = reading.record;
   const auto found = std::ranges::find_if(
       chains, [&](const auto& station) { return station.second.front().hash == known.database; });
   if (found == chains.end()) {
-    if (known.acknowledged == 0) return {};  // nobody came there yet
-    return fmt::format("the database lacks station {}, whose head file {} knows {}", known.station,
-                       reading.file.string(), counted(known.acknowledged, "acknowledged answer"));
+    if (known.acknowledged == 0) return {};  // no sessions there yet
+    return fmt::format("station {} is missing from the database; its head file {} has {}",
+                       known.station, reading.file.string(),
+                       counted(known.acknowledged, "acknowledged answer"));
   }
   const auto& [name, chain] = *found;
   const auto length = static_cast<std::size_t>(known.file.length);
   if (length == 0) return {};
   if (length <= chain.size() && chain[length - 1].hash == known.file.hash) return {};
   return fmt::format(
-      "station {}'s chain has {} here, and its head file {} knows {}: merge its database again",
-      name, counted(std::ssize(chain), "event"), reading.file.string(), length);
+      "station {}'s chain has {} here, but its head file {} has {}: merge its database again", name,
+      counted(std::ssize(chain), "event"), reading.file.string(), length);
 }
 
 }  // namespace
@@ -88,18 +89,18 @@ HeadCheck check_heads(const record::StudyStore& store, const fs::path& database,
       add(check.lacks, head.file.string() + ": " + listed(missing, "; ", &record::Loss::what));
     }
     std::erase_if(heads, [](const record::KnownHead& head) { return head.reading.has_value(); });
-    // A copy of a head file that lies elsewhere now stands in for it.
+    // A moved head file is replaced by its copy.
     if (std::ssize(heads) <= stand_ins) return check;
     check.gone = listed(heads, " and ",
                         [](const record::KnownHead& head) { return one_line(head.file.string()); });
     check.gone += heads.size() == 1 ? " is gone" : " are gone";
     check.gone +=
-        ", which the database has on record; bring back what knows its end, or give `touchtrial "
-        "verify` a copy with --head-file, or the last head with --head";
+        ", which the database has on record; restore it, or give `touchtrial verify` a copy with "
+        "--head-file or the last head with --head";
   } catch (const record::DamagedStore&) {
     throw;
   } catch (const Error& error) {
-    // A damaged chain does not tell which head files there are.
+    // A damaged chain cannot list the head files.
     add(check.lacks, error.what());
   }
   return check;
@@ -113,7 +114,7 @@ StationsCheck check_stations(const record::StudyStore& store,
   std::vector<PublicKey> trusted = {store.commitment().investigator};
   for (int station = 1; station <= store.stations(); ++station) {
     std::vector<record::Event> chain = store.station_chain(station);
-    const auto identity = record::body_of(chain.front(), record::commitment_from_json).station;
+    const auto identity = record::body_of<record::StudyCommitment>(chain.front()).station;
     chains.emplace(identity ? identity->name : std::to_string(station), std::move(chain));
   }
   for (const auto& [name, signer] : signers) trusted.push_back(signer);
@@ -123,7 +124,7 @@ StationsCheck check_stations(const record::StudyStore& store,
       const auto reading = record::HeadFile(file).reading(trusted);
       if (!reading) throw FileError("there is no " + file.string());
       vouched.insert(reading->record.station);
-      if (const std::string lack = lack_of_station(*reading, chains); !lack.empty()) {
+      if (const std::string lack = missing_from_station(*reading, chains); !lack.empty()) {
         add(check.lacks, lack);
       }
     } catch (const FileError& error) {

@@ -1,4 +1,4 @@
-/// \file Holds a database against its head files: what verify, report and status say of its end.
+/// \file Compares the end of a database's chain with its head files, for verify, report and status.
 #pragma once
 
 #include "core/public_keys.hpp"
@@ -14,35 +14,37 @@
 
 namespace touchtrial::analysis {
 
-/// What a database's head files say of it.
+/// The result of comparing a database with its head files.
 struct HeadCheck {
-  /// What the database lacks, or why it or a head file cannot be read; empty: nothing is missing.
+  /// What is missing from the database, or why it or a head file cannot be read; empty: nothing is
+  /// missing.
   std::string lacks;
-  /// Head files that the database has on record and that are gone, in words; empty: none.
+  /// Recorded head files that no longer exist, in words; empty: none.
   std::string gone;
   int compared = 0;  ///< head files
-  /// Of the head file that knows the longest chain: the database's end was vouched for up to there.
+  /// The record of the head file with the longest chain, which vouches for the database's end up to
+  /// there.
   std::optional<record::HeadRecord> vouched{};
-  std::vector<std::string> notes{};  ///< what is worth knowing and no fault
+  std::vector<std::string> notes{};  ///< remarks that are not faults
 
-  /// Both faults, one after the other; empty: there is none.
+  /// Both faults, joined; empty: there is none.
   [[nodiscard]] std::string fault() const;
   /// One line for a report: the head that was compared, or what is wrong.
   [[nodiscard]] std::string words() const;
 };
 
 /// Holds a database against the head files that lie beside it or are on record.
-/// \param given  further head files, which may stand in for those that are gone
+/// \param given  further head files, which may replace missing ones
 /// \throws DamagedStore if the database cannot be read
 [[nodiscard]] HeadCheck check_heads(const record::StudyStore& store,
                                     const std::filesystem::path& database,
                                     std::span<const std::filesystem::path> given = {});
 
-/// The stations of a collected study, held against the head files of their own databases.
+/// The result of comparing a collected study's stations with the head files of their own databases.
 struct StationsCheck {
-  std::string lacks;   ///< stations, or ends of their chains, that a head file knows; empty: none
-  std::string absent;  ///< other stations of the key that are not there; empty: none
-  std::string ends;    ///< of the chains of stations whose head file was not given; empty: none
+  std::string lacks;   ///< missing stations or chain ends that a head file has; empty: none
+  std::string absent;  ///< other stations of the key that are absent; empty: none
+  std::string ends;    ///< chain ends of stations whose head file was not given; empty: none
 };
 
 /// \param signers  public halves of all stations that the study's key lists, by name

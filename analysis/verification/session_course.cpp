@@ -53,7 +53,7 @@ void SessionCourse::follow(const record::Event& event) {
 }
 
 void SessionCourse::present(const record::Event& event) {
-  const record::TrialBody body = record::trial_from_json(event.body);
+  const auto body = record::from_json<record::PresentedBody>(event.body);
   if (!course_.has(body.trial)) fail(event, body.trial, "was presented but not scheduled");
   if (course_.is_void(body.trial)) {
     fail(event, body.trial, "was presented under its old number after its block was restarted");
@@ -69,7 +69,7 @@ void SessionCourse::present(const record::Event& event) {
     fail(event, body.trial,
          fmt::format("was presented while trial {} was under way", course_.current()->place.trial));
   }
-  if (course_.is_over()) fail(event, body.trial, "was presented after all that was due");
+  if (course_.is_over()) fail(event, body.trial, "was presented after the last trial that was due");
   const study::Place& next = course_.current()->place;
   if (next.trial != body.trial) {
     fail(event, body.trial, fmt::format("was presented where trial {} was due", next.trial));
@@ -89,16 +89,17 @@ void SessionCourse::require_under_way(const record::Event& event, int trial) con
   }
   if (event.kind == record::EventKind::interrupted) return;
   if (is_paused_) fail(event, trial, name + " while the session was paused");
-  if (is_spoilt_) fail(event, trial, name + " although the program had ended during it");
+  if (is_interrupted_) fail(event, trial, name + " although the program had ended during it");
 }
 
 void SessionCourse::follow_trial(const record::Event& event) {
-  const int trial = record::trial_from_json(event.body).trial;
+  const int trial = record::from_json<record::TrialBody>(event.body).trial;
   require_under_way(event, trial);
   const bool is_over_without_answer = event.kind == record::EventKind::timed_out &&
                                       study_.trials.on_timeout == study::OnTimeout::no_response;
   if (event.kind == record::EventKind::interrupted) {
-    if (record::trial_from_json(event.body).reason != record::kPauseReason) course_.spoil();
+    if (record::from_json<record::InterruptedBody>(event.body).reason != record::kPauseReason)
+      course_.interrupt();
   } else if (event.kind == record::EventKind::answered) {
     answer(event);
   } else if (is_over_without_answer) {
@@ -107,17 +108,17 @@ void SessionCourse::follow_trial(const record::Event& event) {
     return;
   }
   is_under_way_ = false;
-  is_spoilt_ = false;
+  is_interrupted_ = false;
 }
 
 void SessionCourse::answer(const record::Event& event) {
-  const record::AnswerBody body = record::answer_from_json(event.body);
-  // An answer that was erased says nothing; where the next trials stand does not follow from it.
+  const record::AnswerBody body = record::from_json<record::AnswerBody>(event.body);
+  // An erased answer is unknown, but the places of later trials do not depend on it.
   if (!opened_) return course_.finish(std::nullopt);
   require_chosen(event, body);
   if (body.answer) {
     const study::Ask ask = study_.task->ask(study_, course_.current()->place);
-    const std::string misfit = study::misfit_of(*body.answer, ask);
+    const std::string misfit = study::mismatch_of(*body.answer, ask);
     if (!misfit.empty()) fail(event, body.trial, misfit);
   }
   course_.finish(body.answer);
@@ -125,7 +126,7 @@ void SessionCourse::answer(const record::Event& event) {
 
 void SessionCourse::require_chosen(const record::Event& event,
                                    const record::AnswerBody& body) const {
-  if (!course_.is_adaptive()) return;  // the sealed schedule says it all
+  if (!course_.is_adaptive()) return;  // the sealed schedule has the whole order
   const study::Trial& due = *course_.current();
   const auto words = [](const auto& kind, const auto& track, const auto& level,
                         const auto& target) {
@@ -139,12 +140,11 @@ void SessionCourse::require_chosen(const record::Event& event,
                         std::optional(due.level->track), std::optional(due.level->level), due.right)
                 : "no level";
   if (shown == chosen) return;
-  fail(event, body.trial,
-       fmt::format("presented {} where the procedure chooses {}", shown, chosen));
+  fail(event, body.trial, fmt::format("presented {}, but the procedure chooses {}", shown, chosen));
 }
 
 void SessionCourse::restart_block(const record::Event& event) {
-  const record::BlockBody body = record::block_from_json(event.body);
+  const record::BlockBody body = record::from_json<record::BlockBody>(event.body);
   if (course_.block_to_restart() != body.block) {
     fail(event, fmt::format("block {} was restarted, but nothing in it was interrupted, or the "
                             "study does not restart blocks",
@@ -160,20 +160,20 @@ void SessionCourse::restart_block(const record::Event& event) {
 
 void SessionCourse::take_up(const record::Event& event) {
   constexpr double kSecondsInHour = 3600.0;
-  const record::ResumedBody body = record::resumed_from_json(event.body);
+  const record::ResumedBody body = record::from_json<record::ResumedBody>(event.body);
   if (body.after == "pause") {
     if (!is_paused_) fail(event, "the session was resumed, but not paused");
   } else if (body.away_s > study_.trials.resume_within_h * kSecondsInHour) {
     fail(event, fmt::format("the session was resumed after {:.1f} h; the study allows {} h",
                             body.away_s / kSecondsInHour, study_.trials.resume_within_h));
   } else {
-    is_spoilt_ = is_under_way_;
+    is_interrupted_ = is_under_way_;
   }
   is_paused_ = false;
 }
 
 void SessionCourse::close(const record::Event& event) const {
-  if (!record::closed_from_json(event.body).complete) return;
+  if (!record::from_json<record::ClosedBody>(event.body).complete) return;
   if (is_stopped_) fail(event, "the session is complete, but was stopped");
   if (course_.block_to_restart()) {
     fail(event, fmt::format("the session is complete, but block {} was not restarted",

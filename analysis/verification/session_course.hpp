@@ -2,7 +2,7 @@
 #pragma once
 
 #include "record/event.hpp"
-#include "record/payload.hpp"
+#include "record/session_bodies.hpp"
 #include "study/course.hpp"
 
 #include <optional>
@@ -16,8 +16,8 @@ namespace touchtrial::analysis {
 class SessionCourse {
  public:
   /// \param study  must outlive this object
-  /// \param opened  the answers are opened, and so what an adaptive order chose can be checked; of
-  ///   an erased session, only where each presentation stands
+  /// \param opened  the answers are opened, so an adaptive order's choices can be checked;
+  ///   otherwise only the place of each presentation is checked
   /// \throws StudyError if the study has no order for this enrolment number
   SessionCourse(const study::Study& study, const study::ScheduleDraw& draw, bool opened = true);
 
@@ -47,8 +47,8 @@ class SessionCourse {
   const study::Study& study_;
   bool opened_;
   study::Course course_;
-  bool is_under_way_ = false;  ///< the course's current presentation waits for its answer
-  bool is_spoilt_ = false;     ///< the program ended during the current presentation
+  bool is_under_way_ = false;    ///< the course's current presentation waits for its answer
+  bool is_interrupted_ = false;  ///< the program ended during the current presentation
   bool is_paused_ = false;
   bool is_stopped_ = false;
   int presentations_ = 0;

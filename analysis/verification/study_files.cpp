@@ -63,12 +63,12 @@ bool has_code_of(const study::StudyKey& key, const engine::Pack& pack) {
       });
 }
 
-/// Whether the pack that the key names has since been rebuilt. It may now belong to another study,
-/// or to an edited simulated study, which has the same identity because it has the same seed. Codes
-/// of other studies are random, so a pack with one of the key's codes belongs to this study,
-/// whatever identity it states.
-bool was_made_anew(const record::StudyStore& store, const study::StudyKey& key,
-                   const engine::Pack& pack) {
+/// Whether the key's pack has since been rebuilt. It may now belong to another study, or to an
+/// edited simulated study, whose identity is the same because its seed is. Stimulus codes are
+/// random, so a pack with one of the key's codes belongs to this study, whatever identity it
+/// states.
+bool was_rebuilt(const record::StudyStore& store, const study::StudyKey& key,
+                 const engine::Pack& pack) {
   const record::StudyCommitment& commitment = store.commitment();
   const bool is_of_other = pack.manifest().study_id != commitment.study_id;
   if (!key.simulated) return is_of_other && !has_code_of(key, pack);
@@ -77,7 +77,7 @@ bool was_made_anew(const record::StudyStore& store, const study::StudyKey& key,
 
 Opened<engine::Pack> find_pack(const record::StudyStore& store, const study::StudyKey& key,
                                const fs::path& database) {
-  const fs::path place = study::pack_in_reach(key, database);
+  const fs::path place = study::find_pack(key, database);
   const std::string folder = one_line(place.string());
   const auto leave = [](const std::string& why) {
     return Opened<engine::Pack>{std::nullopt, CheckState::not_checked,
@@ -89,8 +89,8 @@ Opened<engine::Pack> find_pack(const record::StudyStore& store, const study::Stu
   }
   Opened<engine::Pack> pack = opened<engine::Pack>([&] { return engine::Pack(place); });
   try {
-    if (pack.file && was_made_anew(store, key, *pack.file)) {
-      return leave(folder + " was made anew for another study, or for this one after a change");
+    if (pack.file && was_rebuilt(store, key, *pack.file)) {
+      return leave(folder + " was rebuilt for another study, or for this one after a change");
     }
   } catch (const StoreError&) {
     // The check of the chain reports a first event that cannot be read.
@@ -113,9 +113,10 @@ void put(Verification& verification, const char* name, const Opened<File>& opene
   if (check != verification.checks.end()) *check = {name, opened.state, opened.why};
 }
 
-/// What the database lacks and its head files know, and head files that are gone. Made only where
-/// there are or were head files.
-/// \param head  that was written down; if it is the end of the chain, no head file is missed
+/// Adds the check of the head files: missing ends and missing files. Only for databases that have
+/// or had head files.
+/// \param head  the hash that the user wrote down; if it is the chain's end, missing head files are
+///   not reported
 void add_heads(const record::StudyStore& store, const StudyFiles& files, const std::string& head,
                Verification& verification) {
   HeadCheck heads = check_heads(store, files.database, files.heads);
@@ -131,8 +132,8 @@ void add_heads(const record::StudyStore& store, const StudyFiles& files, const s
   }
 }
 
-/// What a collected study lacks of its stations. Only their head files can tell whether somebody
-/// came to a station that is not there, or after the events that are.
+/// Adds the check of a collected study's stations. Only their head files show whether a missing
+/// station has sessions, or a station has later ones.
 void add_stations(const record::StudyStore& store, const StudyFiles& files,
                   const std::optional<study::StudyKey>& key, Verification& verification) {
   if (!key && files.heads.empty()) {
@@ -145,16 +146,16 @@ void add_stations(const record::StudyStore& store, const StudyFiles& files,
     signers[station.name] = study::station_key(*key, station.name).signer().public_half();
   }
   const StationsCheck stations = check_stations(store, signers, files.heads);
-  Check check{"stations", CheckState::passed, "all that their head files know"};
+  Check check{"stations", CheckState::passed, "complete according to their head files"};
   if (!stations.ends.empty()) {
     check.detail =
-        "all are there; to be compared with their day sheets or by --head-file: " + stations.ends;
+        "none is missing; compare with their day sheets or by --head-file: " + stations.ends;
   }
   if (!stations.absent.empty()) {
     check = {"stations", CheckState::not_checked,
              stations.absent +
-                 " is not there, and is missing unless nobody came to it; give its "
-                 "head file with --head-file"};
+                 " is absent, which is a loss unless it had no sessions; give its head file with "
+                 "--head-file"};
   }
   if (!stations.lacks.empty()) check = {"stations", CheckState::failed, stations.lacks};
   verification.checks.push_back(std::move(check));
@@ -166,8 +167,7 @@ Verification of_damaged(const record::DamagedStore& error) {
   Verification verification;
   verification.checks.push_back({"chain", CheckState::failed, one_line(error.what())});
   for (const char* name : kOthers) {
-    verification.checks.push_back(
-        {name, CheckState::not_checked, "needs a database that can be read"});
+    verification.checks.push_back({name, CheckState::not_checked, "needs a readable database"});
   }
   return verification;
 }

@@ -13,13 +13,13 @@ namespace touchtrial::analysis {
 struct StudyFiles {
   std::filesystem::path database;
   std::filesystem::path key;
-  /// Whether the user named the key, which must then exist. Otherwise `key` is the path beside the
-  /// database, where the key may be missing.
+  /// Whether the user named the key, which must then exist. Otherwise `key` is the default path
+  /// beside the database, where it may be missing.
   bool key_named = false;
-  /// Further head files than those that lie beside the database or are on record; of a collected
-  /// study, those of the stations' databases.
+  /// Head files in addition to those beside the database or on record; of a collected study, those
+  /// of the stations' databases.
   std::vector<std::filesystem::path> heads{};
-  /// Empty: the one of study::pack_in_reach, if it exists and belongs to this study.
+  /// Empty: study::find_pack, if it exists and belongs to this study.
   std::filesystem::path pack;
 };
 

@@ -36,7 +36,7 @@ std::string check_chain(const record::StudyStore& store) {
 std::string check_key(const record::StudyStore& store, const study::StudyKey& key) {
   const std::string& study_id = store.commitment().study_id;
   if (key.study_id != study_id) {
-    throw VerificationError(fmt::format("is the key of study {}, the database is of study {}",
+    throw VerificationError(fmt::format("is the key of study {}, but the database is of study {}",
                                         key.study_id, one_line(study_id)));
   }
   return "the key of study " + study_id;
@@ -46,7 +46,7 @@ std::string check_seal(const record::StudyStore& store, const study::StudyKey& k
   require_key_of(store, key);
   const record::StudyCommitment& commitment = store.commitment();
   store.for_each(record::EventKind::opened, [&](const record::Event& event) {
-    const record::SessionOpening opening = record::opening_from_json(event.body);
+    const record::SessionOpening opening = record::from_json<record::SessionOpening>(event.body);
     if (opening.study_id == commitment.study_id && opening.seal == commitment.seal) return;
     throw VerificationError(
         fmt::format("session {}: was opened under another study's seal; it does not belong here",
@@ -72,7 +72,7 @@ std::string check_configuration(const record::StudyStore& store, const study::St
   // A prepared study may be rehearsed with simulated participants in a separate database. A
   // simulated study must not be run with people.
   require(!key.simulated || commitment.simulated, "whether the study is simulated");
-  return "what the database holds in clear is the key's study";
+  return "the database's unencrypted configuration is the key's study";
 }
 
 /// Checks a session's events against the course that follows from the key and the session's
@@ -85,7 +85,7 @@ SessionCourse course_of(const record::StudyStore& store, const study::StudyKey& 
                          key.draw_of(session.enrolment, draws_of(session), session.visit),
                          own.has_value());
     for (const record::Event& event : store.events(session.session)) {
-      // How long a session was away is sealed, and what answers decide; what else matters is not.
+      // Only resumptions, whose duration is sealed, and answers to an adaptive order need opening.
       const bool has_more =
           own && (event.kind == record::EventKind::resumed ||
                   (course.is_adaptive() && event.kind == record::EventKind::answered));
@@ -102,32 +102,32 @@ SessionCourse course_of(const record::StudyStore& store, const study::StudyKey& 
 bool has_wrong_clock(const record::StudyStore& store, int session) {
   return std::ranges::any_of(store.events(session), [](const record::Event& event) {
     return event.kind == record::EventKind::deviated &&
-           record::deviation_from_json(event.body).code == "wrong-clock";
+           record::from_json<record::DeviationBody>(event.body).code == "wrong-clock";
   });
 }
 
-/// The days between a participant's visits on the file's chain. In virtual time they mean nothing.
+/// Checks the days between a participant's visits on the file's chain, except in virtual time.
 void require_days_between(const record::StudyStore& store, const study::StudyKey& key) {
   if (key.study.visits.count < 2 || store.commitment().simulated) return;
   std::map<std::pair<int, int>, std::chrono::nanoseconds> opened;  // by enrolment and visit
   for (const record::Event& event : store.events(0)) {
     if (event.kind != record::EventKind::session_opened) continue;
-    const auto body = record::body_of(event, record::session_opened_from_json);
+    const auto body = record::body_of<record::SessionOpenedBody>(event);
     opened[{body.enrolment, body.visit}] = event.at;
     const auto before = opened.find({body.enrolment, body.visit - 1});
     if (before == opened.end()) continue;
     const double days = study::days_between(before->second, event.at);
-    if (days >= key.study.visits.least_days) continue;
+    if (days >= key.study.visits.min_days) continue;
     if (days < 0.0 && has_wrong_clock(store, body.session)) continue;
     throw VerificationError(
-        fmt::format("session {}: was opened {:.2f} days after the visit before, and the study has "
-                    "at least {} between visits",
-                    body.session, days, key.study.visits.least_days));
+        fmt::format("session {}: was opened {:.2f} days after the previous visit, but the study "
+                    "requires at least {} between visits",
+                    body.session, days, key.study.visits.min_days));
   }
 }
 
-/// A group that is told is the one that was dealt, and groups that are not open are not told.
-void require_dealt_groups(const record::StudyStore& store, const study::StudyKey& key) {
+/// Checks that a recorded group is the assigned one, and that blinded groups are not recorded.
+void require_assigned_groups(const record::StudyStore& store, const study::StudyKey& key) {
   const study::GroupPlan& groups = key.study.groups;
   std::map<int, record::SessionRow> rows;
   for (const record::SessionRow& row : store.sessions()) rows[row.session] = row;
@@ -137,32 +137,33 @@ void require_dealt_groups(const record::StudyStore& store, const study::StudyKey
     const auto group = key.group_of(row->second.enrolment, draws_of(row->second));
     const std::string dealt =
         group && groups.open ? groups.labels[static_cast<std::size_t>(*group)] : "";
-    if (record::body_of(event, record::opening_from_json).group == dealt) return;
+    if (record::body_of<record::SessionOpening>(event).group == dealt) return;
     throw VerificationError(
-        fmt::format("session {}: its group is not the one that enrolment {} was dealt",
-                    event.session, row->second.enrolment));
+        fmt::format("session {}: its group is not the one assigned to enrolment {}", event.session,
+                    row->second.enrolment));
   });
 }
 
 /// The station that recorded a session; empty if its file names none.
-std::string station_behind(const record::StudyStore& store, const record::SessionRow& session) {
+std::string recording_station(const record::StudyStore& store, const record::SessionRow& session) {
   std::optional<record::StationIdentity> station = store.commitment().station;
   if (session.station > 0) {
     const std::vector<record::Event> chain = store.station_chain(session.station);
-    if (chain.empty()) throw VerificationError("a session names a station that is not here");
-    station = record::commitment_from_json(chain.front().body).station;
+    if (chain.empty()) throw VerificationError("a session names a station that is missing here");
+    station = record::from_json<record::StudyCommitment>(chain.front().body).station;
   }
   return station ? station->name : std::string();
 }
 
-/// A station records its own numbers alone: it cannot pass another's sessions off as its own.
+/// Checks that a station recorded only its own enrolment numbers, so that it cannot pass off
+/// another station's sessions as its own.
 void require_own_number(const record::StudyStore& store, const study::StudyKey& key,
                         const record::SessionRow& session) {
-  const std::string here = station_behind(store, session);
+  const std::string here = recording_station(store, session);
   const study::Station* const owner = study::station_of(key.stations, session.enrolment);
   if (here.empty() || owner == nullptr || owner->name == here) return;
   throw VerificationError(
-      fmt::format("session {}: enrolment {} is station {}'s, and the file is station {}'s",
+      fmt::format("session {}: enrolment {} belongs to station {}, but the file is station {}'s",
                   session.session, session.enrolment, owner->name, here));
 }
 
@@ -170,7 +171,7 @@ std::string check_schedule(const record::StudyStore& store, const study::StudyKe
   const std::map<int, study::Schedule> schedules =
       open_schedules(store, key, person_keys(store, key));
   require_days_between(store, key);
-  require_dealt_groups(store, key);
+  require_assigned_groups(store, key);
   int presentations = 0;
   for (const record::SessionRow& session : store.sessions()) {
     require_own_number(store, key, session);
@@ -179,11 +180,10 @@ std::string check_schedule(const record::StudyStore& store, const study::StudyKe
     const auto schedule = schedules.find(session.session);
     if (schedule == schedules.end()) continue;  // withdrawn
     if (schedule->second == course.scheduled()) continue;
-    throw VerificationError(
-        fmt::format("session {}: the schedule is not the one that enrolment {} gets",
-                    session.session, session.enrolment));
+    throw VerificationError(fmt::format("session {}: the schedule is not that of enrolment {}",
+                                        session.session, session.enrolment));
   }
-  return fmt::format("{} sessions' schedules made anew, {} presentations where they were due",
+  return fmt::format("{} sessions' schedules recomputed, {} presentations in their places",
                      schedules.size(), presentations);
 }
 
@@ -192,7 +192,7 @@ std::string check_responses(const record::StudyStore& store, const study::StudyK
   int responses = 0;
   for (const record::TrialRow& row : open_trials(store, person_keys(store, key))) {
     if (!row.answer) continue;
-    const std::string misfit = study::misfit_of(*row.answer, ask);
+    const std::string misfit = study::mismatch_of(*row.answer, ask);
     if (!misfit.empty()) {
       throw VerificationError(
           fmt::format("session {}, trial {}: {}", row.session, row.trial, misfit));
@@ -203,8 +203,9 @@ std::string check_responses(const record::StudyStore& store, const study::StudyK
   return fmt::format("{} answers within the {} choices", responses, ask.choices().size());
 }
 
-/// Opens what is left of erased sessions, and the texts about people on the file's chain.
-/// \return how many
+/// Opens the remaining sealed parts of erased sessions, and the texts about people on the file's
+/// chain.
+/// \return their number
 int check_safety_record(const record::StudyStore& store, const study::StudyKey& key) {
   const std::map<int, record::PersonKeys> keys = person_keys(store, key);
   int parts = 0;
@@ -237,7 +238,7 @@ std::string check_payloads(const record::StudyStore& store, const study::StudyKe
       const record::Event event = whole_event(stored, *own.participant).event;
       if (event.at < last) {
         throw VerificationError(
-            fmt::format("session {}, event {}: its time is before that of the event before",
+            fmt::format("session {}, event {}: its time is earlier than the previous event's",
                         session, event.sequence));
       }
       last = event.at;
@@ -246,12 +247,13 @@ std::string check_payloads(const record::StudyStore& store, const study::StudyKe
   }
   require_sealed_ends(store, keys);
   parts += check_safety_record(store, key);
-  return fmt::format("{} sealed parts of events, the ends of chains among them", parts);
+  return fmt::format("{} sealed parts of events, including the ends of chains", parts);
 }
 
 void check_trace(const record::StudyStore& store, const record::Event& event,
                  const SecretKey& own) {
-  const record::TraceBody body = record::trace_body_from_json(whole_event(event, own).event.body);
+  const record::TraceBody body =
+      record::from_json<record::TraceBody>(whole_event(event, own).event.body);
   const auto box = store.sealed_trace(event.session, body.trial);
   const auto fail = [&](const std::string& what) {
     throw VerificationError(
@@ -261,7 +263,7 @@ void check_trace(const record::StudyStore& store, const record::Event& event,
   const auto trace = record::unsealed_trace(*box, own);
   if (!trace) return fail("does not open");
   if (trace->samples.size() != static_cast<std::size_t>(body.samples))
-    fail("has another number of samples than its event says");
+    fail("has a different number of samples than its event");
 }
 
 std::string check_traces(const record::StudyStore& store, const study::StudyKey& key) {
@@ -281,7 +283,7 @@ std::string check_pack(const record::StudyStore& store, const study::StudyKey* k
   const record::StudyCommitment& commitment = store.commitment();
   study::require_signed(pack, commitment.study_id, commitment.seal, commitment.investigator);
   if (pack.digest() != commitment.pack) {
-    throw VerificationError("the pack is not the one that the database was begun with");
+    throw VerificationError("the pack is not the one that the database was created with");
   }
   const std::string intact =
       fmt::format("signed, {} fields intact", pack.manifest().entries.size());
@@ -290,9 +292,8 @@ std::string check_pack(const record::StudyStore& store, const study::StudyKey* k
   const std::array folders = {key->study.folder, pack.folder().parent_path()};
   const std::size_t shown = study::shown_pictures(key->study).size();
   const std::size_t absent = study::require_pictures(pack, key->study, folders).size();
-  return intact +
-         fmt::format(", every code of the key among them; {} of {} shown pictures compared",
-                     shown - absent, shown);
+  return intact + fmt::format(", including every code of the key; {} of {} shown pictures compared",
+                              shown - absent, shown);
 }
 
 /// The place of a hash on a chain, in words; empty if the chain does not contain it.
@@ -315,8 +316,8 @@ std::string check_head(const record::StudyStore& store, const std::string& head)
   }
   if (!place.empty()) return place;
   throw VerificationError(
-      std::string("no event of the file's chain has the hash that was given: its end was cut off, "
-                  "or it was made anew") +
+      std::string("no event of the file's chain has the given hash: its end was cut off, or it was "
+                  "rewritten") +
       (store.stations() > 0 ? ", as collecting does when sessions are added; give a station's head"
                             : ""));
 }
@@ -371,7 +372,8 @@ Verification verify_study(const record::StudyStore& store, const study::StudyKey
   };
   verification.checks.push_back(done("chain", [&] { return check_chain(store); }));
   with_key("key", check_key);
-  if (verification.checks.back().state == CheckState::failed) key = nullptr;  // it opens nothing
+  if (verification.checks.back().state == CheckState::failed)
+    key = nullptr;  // a wrong key opens nothing
   with_key("seal", check_seal);
   with_key("configuration", check_configuration);
   with_key("schedule", check_schedule);

@@ -27,8 +27,8 @@ struct Verification {
   std::vector<Check> checks;
   /// The end of the file's chain. A copy kept elsewhere can show that nothing was cut off.
   std::optional<record::ChainHead> head;
-  PublicKey investigator{};  ///< that the first event names; whose signatures count
-  /// What is worth knowing and no fault: chain_notes.
+  PublicKey investigator{};  ///< the investigator of the first event, whose signatures are checked
+  /// Remarks that are not faults: chain_notes.
   std::vector<std::string> notes{};
 
   /// Whether no check failed. A check that was not made does not count as failed.
@@ -42,7 +42,7 @@ struct Verification {
 /// the key); responses; payloads and traces (these need the key); pack (more thorough with the
 /// key); head, if one is given. The result reveals nothing about outcomes, so a running study may
 /// be verified.
-/// \param key,pack  null: the checks that need it are not made
+/// \param key,pack  null: checks that need it are skipped
 /// \param head  a hash, or its first digits, that was once the end of the file's chain and must
 ///   still be on the chain; empty: none
 [[nodiscard]] Verification verify_study(const record::StudyStore& store, const study::StudyKey* key,

@@ -12,8 +12,8 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// Lists the checks that were not made, so that their absence is not taken for success.
-std::string unmade_line(const Verification& verification) {
+/// Lists the skipped checks, so that they are not mistaken for passed ones.
+std::string skipped_line(const Verification& verification) {
   std::vector<std::string> names;
   for (const Check& check : verification.checks) {
     if (check.state == CheckState::not_checked) names.push_back(check.name);
@@ -56,7 +56,7 @@ std::string verification_text(const Verification& verification) {
   }
   text += fmt::format("{:<13}  {}\n", "investigator", to_hex(verification.investigator));
   for (const std::string& note : verification.notes) text += fmt::format("note: {}\n", note);
-  return text + unmade_line(verification);
+  return text + skipped_line(verification);
 }
 
 }  // namespace touchtrial::analysis

@@ -148,8 +148,8 @@ void add_consent_command(CLI::App& program, Action& action) {
   add_yes_flag(command, arguments.yes);
   command
       .add_option("--details", arguments.details,
-                  "-: ask for age, gender and contact, or read them from standard input in lines "
-                  "\"age: 34\"")
+                  "With -, ask for age, gender and contact, or read them from standard input as "
+                  "lines such as \"age: 34\"")
       ->check(CLI::IsMember({"-"}));
 }
 

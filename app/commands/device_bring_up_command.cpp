@@ -132,8 +132,8 @@ void add_device_bring_up_command(CLI::App& device, Action& action) {
   }
   CLI::App* command =
       device.add_subcommand("bring-up",
-                            "Half an hour with a device that the project lacks: small forces, "
-                            "questions, and one file without names to send in");
+                            "Try a device that is new to the project: half an hour of small forces "
+                            "and questions, and one anonymous file to send in");
   add_driver_argument(*command, "NAME", arguments->driver);
   add_settings_option(*command, arguments->settings);
   command->add_option("--out", arguments->out, "File to write (default: NAME-bring-up.json)");

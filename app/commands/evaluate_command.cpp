@@ -58,7 +58,8 @@ int evaluate(const EvaluateArguments& arguments) {
 void add_evaluate_command(CLI::App& program, Action& action) {
   const auto [command, arguments] = add_command(
       program, action, "evaluate",
-      "Co-occurrence statistics of images and their textures; the order sweep", evaluate);
+      "Print co-occurrence statistics of images and their textures; optionally sweep the order",
+      evaluate);
   command.add_option("IMAGE", arguments.images, "PNG, JPEG, TIFF, BMP, GIF or PGM")->required();
   add_sample_options(command, arguments.scale);
   command.add_flag("--sweep", arguments.sweep,

@@ -28,11 +28,12 @@ std::pair<double, double> range_in(const std::string& text) {
 
 void add_sample_options(CLI::App& command, engine::SampleScale& scale) {
   command
-      .add_option("--bits", scale.bits, "Bits that the camera or scanner of 16-bit pictures has")
+      .add_option("--bits", scale.bits, "Bit depth of the camera or scanner, for 16-bit pictures")
       ->check(CLI::Range(9, 16));
   command.add_option_function<std::string>(
       "--heights", [&scale](const std::string& text) { scale.heights = range_in(text); },
-      "LOWEST,HIGHEST of floating-point pictures, which become black and white (default: each "
+      "LOWEST,HIGHEST: values of floating-point pictures that map to black and white (default: "
+      "each "
       "picture's own)");
 }
 

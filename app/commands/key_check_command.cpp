@@ -82,7 +82,7 @@ CheckedStudy checked_study(const KeyCheckArguments& arguments) {
   }
   study::StudyKey key = study::load_study_key(key_path);
   if (!study::are_same(key.study, study)) {
-    throw VerificationError(study::misfit_of(study, key, key_path, "--key"));
+    throw VerificationError(study::mismatch_of(study, key, key_path, "--key"));
   }
   return {place, key_path, std::move(key), study.folder};
 }
@@ -202,7 +202,7 @@ int check_key(const KeyCheckArguments& arguments) {
 void add_key_check_command(CLI::App& keys, Action& action) {
   const auto [command, arguments] = add_command(
       keys, action, "check",
-      "Check that the key opens what stations seal, before the first participant", check_key);
+      "Check, before the first participant, that the key opens data sealed by stations", check_key);
   command.add_option("STUDY", arguments.subject, "Study file, or its key")->required();
   auto* station = command.add_option("--station", arguments.station,
                                      "One station (default: all whose files are here)");

@@ -75,11 +75,9 @@ CLI::Option* add_new_passphrase_option(CLI::App& command, KeyArguments& argument
 }
 
 void add_copy(CLI::App& keys, Action& action) {
-  const auto [command, arguments] =
-      add_command(keys, action, "copy",
-                  "Copy a key, for a colleague or another medium, under a "
-                  "passphrase of its own",
-                  copy_key);
+  const auto [command, arguments] = add_command(
+      keys, action, "copy",
+      "Copy a key, for a colleague or another medium, with its own passphrase", copy_key);
   command.add_option("KEY", arguments.file, "The investigator's key")->required();
   command.add_option("-o,--out", arguments.output, "Key to write")->required();
   command.add_flag("--passphrase", arguments.passphrase, "Protect the copy by a new passphrase");
@@ -90,7 +88,7 @@ void add_copy(CLI::App& keys, Action& action) {
 void add_protect(CLI::App& keys, Action& action) {
   const auto [command, arguments] =
       add_command(keys, action, "protect",
-                  "Give a key or a station's file a passphrase, another one, or none", protect_key);
+                  "Set, change or remove the passphrase of a key or a station's file", protect_key);
   command.add_option("FILE", arguments.file, "Key or station's file")->required();
   CLI::Option* given = add_new_passphrase_option(command, arguments);
   command.add_flag("--remove", arguments.remove, "Remove the passphrase")->excludes(given);

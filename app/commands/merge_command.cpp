@@ -101,7 +101,8 @@ std::optional<study::StudyKey> key_to_write(const MergeArguments& arguments,
   if (stations.empty()) return std::nullopt;
   const std::vector<record::Event> chain = stations.front()->file_chain();
   if (chain.empty()) return std::nullopt;
-  const record::StudyCommitment commitment = record::commitment_from_json(chain.front().body);
+  const record::StudyCommitment commitment =
+      record::from_json<record::StudyCommitment>(chain.front().body);
   if (!commitment.simulated) return std::nullopt;
   std::optional<study::StudyKey> key = simulated_key_beside(arguments.databases, commitment.seal);
   const fs::path path = key_path_for(arguments.target, {});
@@ -172,7 +173,7 @@ void add_merge_command(CLI::App& program, Action& action) {
       ->required();
   command
       .add_option("-o,--out", arguments.target,
-                  "Database to make; the order of the stations does not matter")
+                  "Database to create; the order of the stations does not matter")
       ->check(place_validator())
       ->required();
   add_json_flag(command, arguments.json);

@@ -159,7 +159,7 @@ std::vector<NewQuestion> new_questions() {
            "must be one of " + listed(devices, " or ") + "; a model's file is named in the study",
            "NAME"),
        always("")},
-      {"--pictures", "Folder of your photographs; empty: five textures of the program's own",
+      {"--pictures", "Folder of your photographs; empty: five of the program's textures",
        allowed_if(is_folder, "is not a folder; check the path", "FOLDER"), always("")},
       {"--people", "Number of participants", number_within(2, 100'000), always("20")},
       {"--worth",
@@ -462,7 +462,7 @@ void add_new_command(CLI::App& program, Action& action) {
       add_command(program, action, "new",
                   "Ask a few questions, and write a runnable study with pictures and comments",
                   write_new_study);
-  command.add_option("FOLDER", arguments.folder, "Folder to make (default: the study's name)");
+  command.add_option("FOLDER", arguments.folder, "Folder to create (default: the study's name)");
   for (const NewQuestion& question : new_questions()) {
     command
         .add_option_function<std::string>(

@@ -138,7 +138,7 @@ int make_paper(const PaperArguments& arguments) {
 void add_paper_command(CLI::App& program, Action& action) {
   const auto [command, arguments] =
       add_command(program, action, "paper",
-                  "The source paper's figures and tables beside those of pictures", make_paper);
+                  "Compare pictures with the source paper's figures and tables", make_paper);
   command.add_option(
       "IMAGE", arguments.images,
       "PNG, JPEG, TIFF, BMP, GIF or PGM (default: the program's own textures, and its "

@@ -303,8 +303,9 @@ void add_people_commands(CLI::App& program, Action& action) {
   const PeopleCommand excluded = people_command(program, action, "exclude",
                                                 "Exclude a participant from the outcomes", exclude);
   add_reason(excluded.command, excluded.arguments.reason);
-  excluded.command.add_flag("--after-outcomes", excluded.arguments.after_outcomes,
-                            "Although this participant's outcomes have been seen; recorded");
+  excluded.command.add_flag(
+      "--after-outcomes", excluded.arguments.after_outcomes,
+      "Exclude although this participant's outcomes have been seen; recorded");
   const PeopleCommand replaced =
       people_command(program, action, "replace", "Replace a participant by a new one", replace);
   replaced.command.add_option("--with", replaced.arguments.with, "Id of the new participant")
@@ -320,12 +321,12 @@ void add_people_commands(CLI::App& program, Action& action) {
       ->needs(reason);
   withdrawn.command
       .add_flag("--erase", withdrawn.arguments.erase,
-                "Make the sealed data unreadable for ever, and remove the personal data; the "
+                "Make the sealed data permanently unreadable, and remove the personal data; the "
                 "safety record stays")
       ->needs(reason);
   withdrawn.command.add_flag("--erase-safety", withdrawn.arguments.erase_safety,
-                             "Make the safety record of an erased person unreadable too, when the "
-                             "study's years have passed");
+                             "Make the safety record of an erased participant unreadable too, "
+                             "after the study's retention period");
   add_yes_flag(withdrawn.command, withdrawn.arguments.yes);
   const PeopleCommand noted = people_command(
       program, action, "note", "Record a remark or a deviation from the protocol", note);
@@ -333,7 +334,7 @@ void add_people_commands(CLI::App& program, Action& action) {
       "--deviation", noted.arguments.deviation,
       "Code of the deviation: " + listed(study::kDeviationCodes) + ", no-day-sheet-NUMBER");
   noted.command.add_flag("--own-code", noted.arguments.own_code,
-                         "The deviation's code is the study's own");
+                         "Accept a code that is not in the list");
   noted.command.add_option("TEXT", noted.arguments.text, "What happened")->required();
 }
 

@@ -63,8 +63,8 @@ int power(const PowerArguments& arguments) {
   refuse_empty_values(*arguments.command);
   planning::PowerOptions options = arguments.options;
   options.plan.participants =
-      planning::numbers_named(arguments.sizes, "--participants", "a number of participants");
-  planning::settle(options.plan);
+      planning::parse_numbers(arguments.sizes, "--participants", "a number of participants");
+  planning::validate_plan(options.plan);
   const study::Study study = study::load_study(arguments.study);
   const planning::Planner& planner = planning::planner_of(study, "`power`");
   refuse_options_of_others(study, arguments);
@@ -73,12 +73,11 @@ int power(const PowerArguments& arguments) {
 }
 
 void add_stated_options(CLI::App& command, planning::PowerOptions& options) {
-  CLI::Option* mean =
-      command
-          .add_option("--mean", options.mean,
-                      "In place of a simulated hand: people's mean accuracy, or of two methods "
-                      "their mean difference of accuracies")
-          ->type_name("SHARE");
+  CLI::Option* mean = command
+                          .add_option("--mean", options.mean,
+                                      "Instead of simulated hands: people's mean accuracy, or for "
+                                      "two methods the mean difference of their accuracies")
+                          ->type_name("SHARE");
   CLI::Option* spread = command
                             .add_option("--sd-between", options.sd_between,
                                         "With --mean: the standard deviation between people")
@@ -87,7 +86,7 @@ void add_stated_options(CLI::App& command, planning::PowerOptions& options) {
   mean->needs(spread);
   command
       .add_option("--accuracy", options.accuracy,
-                  "With --mean of two methods: everybody's accuracy, the mean of both")
+                  "With --mean and two methods: everybody's accuracy, averaged over both")
       ->type_name("SHARE")
       ->needs(mean);
 }
@@ -98,9 +97,9 @@ void add_threshold_options(CLI::App& command, planning::PowerOptions& options) {
                   "Thresholds: numbers of trials of a track to try (default: the study's)")
       ->type_name("N,N..");
   command
-      .add_option("--width", options.width_db,
-                  "Thresholds: how often the half-width of a mean's 95 % interval is at most so "
-                  "much")
+      .add_option(
+          "--width", options.width_db,
+          "Thresholds: print how often the half-width of a mean's 95 % interval is at most this")
       ->check(finite_range(0.001, 100.0))
       ->type_name("DB");
   command
@@ -126,7 +125,7 @@ void add_plan_options(CLI::App& command, PowerArguments& arguments) {
       .add_option("--runs", plan.runs,
                   "Simulated studies of each size, and the same number under the null hypothesis")
       ->capture_default_str();
-  add_seed_option(command, plan.seed, "Seed of everything random");
+  add_seed_option(command, plan.seed, "Seed of all random numbers");
   add_subject_option(command, arguments.subject);
   add_on_option(command, arguments.on);
   add_stated_options(command, options);
@@ -137,8 +136,8 @@ void add_plan_options(CLI::App& command, PowerArguments& arguments) {
       ->delimiter(',');
   command
       .add_option("--margin", options.margin,
-                  "Test whether the first method is as good: worse by less than this difference of "
-                  "accuracies (0.07: 7 points), in place of the registered question")
+                  "Test non-inferiority instead of the registered question: the first method's "
+                  "accuracy is worse by less than this (0.07: 7 points)")
       ->type_name("SHARE");
   command
       .add_option("--explorations", plan.explorations,

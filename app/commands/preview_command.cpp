@@ -202,9 +202,10 @@ void add_preview_command(CLI::App& program, Action& action) {
                       "Write the screen to this PNG file, or without --screen every screen to this "
                       "folder");
   add_force_flag(*command);
-  command->add_flag("--mouse", arguments->mouse, "Screens as with the device mouse");
-  command->add_flag("--console", arguments->console,
-                    "The experimenter's window too; with --png as console.png beside the others");
+  command->add_flag("--mouse", arguments->mouse, "Show the screens for the mouse as the device");
+  command->add_flag(
+      "--console", arguments->console,
+      "Also show the experimenter's window; with --png, write it as console.png beside the others");
   arguments->window.window_px = {1280, 720};
   add_window_options(*command, arguments->window.monitor, arguments->window.window_px,
                      "Size WIDTHxHEIGHT of the window and of the pictures, pixels (default: "

@@ -59,7 +59,7 @@ void add_procedure_command(CLI::App& program, Action& action) {
       ->type_name("1,0,1..")
       ->required();
   command.add_option("--track", arguments.track, "Number of the track")->capture_default_str();
-  command.add_flag("--json", arguments.json, "Implied");
+  command.add_flag("--json", arguments.json, "The output is always JSON");
 }
 
 }  // namespace touchtrial::app

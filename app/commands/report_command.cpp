@@ -196,7 +196,7 @@ int report(const ReportArguments& given) {
 void add_report_command(CLI::App& program, Action& action) {
   const auto [command, arguments] =
       add_command(program, action, "report",
-                  "Accuracy tables; before unblinding, only the quality of the data", report);
+                  "Print the results; before unblinding, only the quality of the data", report);
   add_database_argument(command, arguments.database);
   add_key_option(command, arguments.key);
   CLI::Option* json = add_json_flag(command, arguments.json);

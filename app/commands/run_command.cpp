@@ -38,7 +38,7 @@ void add_session_options(CLI::App& command, RunOptions& options) {
   command.add_option("--participant", options.participant,
                      "Id, for instance P07; not a name (default: asked for in a window, with the "
                      "consent)");
-  command.add_option("--db", options.database, "Database; made if it does not exist")
+  command.add_option("--db", options.database, "Database; created if it does not exist")
       ->check(place_validator())
       ->required();
   add_pack_option(command, options.pack);

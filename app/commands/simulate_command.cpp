@@ -53,7 +53,7 @@ void add_simulate_command(CLI::App& program, Action& action) {
   add_count_option(command, "--first-participant", options.first_participant,
                    "Number of the first participant, for a station whose database will be merged",
                    1, 1'000'000);
-  add_seed_option(command, options.seed, "Seed of all randomness of participants");
+  add_seed_option(command, options.seed, "Seed of the participants' random numbers");
   add_subject_option(command, arguments.study.subject);
   add_on_option(command, arguments.study.on);
   add_jobs_option(command, options.jobs);

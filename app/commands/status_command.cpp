@@ -207,8 +207,8 @@ bool all_planned_present(const analysis::StudyStatus& status) {
 std::optional<NextSession> next_session(const analysis::StudyStatus& status) {
   std::vector<std::string> known;
   for (const analysis::PersonStatus& one : status.people) {
-    if (one.may_go_on || one.state == "to come") {
-      return NextSession{one.participant, one.visit, one.may_go_on};
+    if (one.can_resume || one.state == "to come") {
+      return NextSession{one.participant, one.visit, one.can_resume};
     }
     if (!one.participant.empty()) known.push_back(one.participant);
   }

@@ -36,7 +36,7 @@ study::StudyKey key_of(const study::Study& study, const fs::path& path) {
   // USB stick.
   study::StudyKey key = study::rekeyed(stored, study);
   if (key.seal != stored.seal) {
-    throw VerificationError(study::misfit_of(study, stored, path, "--key"));
+    throw VerificationError(study::mismatch_of(study, stored, path, "--key"));
   }
   return key;
 }

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 std::string left_open(const record::StudyStore& store) {
   std::string participants;
   for (const record::SessionRow& row : store.sessions()) {
-    if (!row.may_go_on()) continue;
+    if (!row.can_resume()) continue;
     participants += (participants.empty() ? "" : ", ") + row.participant;
   }
   return participants;

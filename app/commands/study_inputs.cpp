@@ -120,7 +120,7 @@ study::StudyKey key_of_database(const record::StudyStore& store,
                             one_line(database.filename().string()) + ": " + wrong.what());
   }
   if (!is_beside) keep_place_of_key(database, path);
-  key.pack_folder = study::pack_in_reach(key, database);
+  key.pack_folder = study::find_pack(key, database);
   return key;
 }
 

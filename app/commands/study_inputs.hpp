@@ -34,7 +34,7 @@ namespace touchtrial::app {
                                                const std::filesystem::path& given);
 
 /// Loads the key at key_in_use, checks that it belongs to the database, and remembers its path. Its
-/// pack_folder is that of study::pack_in_reach.
+/// pack_folder is that of study::find_pack.
 /// \param database  a file, or the address of a study, which has no key beside it
 /// \throws FileError if the key is missing or damaged
 /// \throws VerificationError, naming both files, if the key is not the database's

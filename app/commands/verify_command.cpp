@@ -58,9 +58,10 @@ int verify(const VerifyArguments& arguments) {
 }  // namespace
 
 void add_verify_command(CLI::App& program, Action& action) {
-  const auto [command, arguments] =
-      add_command(program, action, "verify",
-                  "Check chain, seal, schedule, payloads and pack against each other", verify);
+  const auto [command, arguments] = add_command(
+      program, action, "verify",
+      "Check that a study's files are consistent: chain, seal, schedule, payloads and pack",
+      verify);
   add_database_argument(command, arguments.database);
   add_key_option(command, arguments.key, "Key of the study (default: DB.key, if it exists)");
   command.add_option("--pack", arguments.pack,

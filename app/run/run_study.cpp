@@ -49,7 +49,7 @@ RunStudy checked_study(study::StationKey&& key, const fs::path& pack_folder,
                        study::PackLock::Wait wait) {
   const study::PackLock lock(pack_folder, study::PackLock::Use::read, wait);
   engine::Pack pack(pack_folder);
-  study::require_whole(pack, key);
+  study::require_complete_pack(pack, key);
   session::StimulusSource source(pack, key);
   return {std::move(key), std::move(pack), std::move(source)};
 }
@@ -151,7 +151,7 @@ RunStudy run_study_for(const RunOptions& options) {
   }
   study::StationKey key = station_key_at(options, file);
   if (!study::are_same(key.study, study)) {
-    throw StudyError(study::misfit_of(study, key, file, "--station-file"));
+    throw StudyError(study::mismatch_of(study, key, file, "--station-file"));
   }
   key.study.folder = study.folder;
   if (key.simulated && !options.is_simulated()) {

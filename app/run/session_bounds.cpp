@@ -126,7 +126,7 @@ EnteredSession new_session(const RunOptions& options, const RunStudy& study, Run
 nanoseconds opened_at(const record::StudyStore& store, int session) {
   nanoseconds at{};
   store.for_each(record::EventKind::session_opened, [&](const record::Event& event) {
-    if (record::session_opened_from_json(event.body).session == session) at = event.at;
+    if (record::from_json<record::SessionOpenedBody>(event.body).session == session) at = event.at;
   });
   return at;
 }
@@ -167,12 +167,12 @@ EnteredSession next_visit(const RunOptions& options, const RunStudy& study, RunD
                     "--accept-clock REASON, which is recorded",
                     last.visit, utc_words(before), utc_words(utc_now())));
   }
-  if (in_days && !is_clock_wrong && days < plan.least_days) {
-    const auto least = std::chrono::duration<double, std::ratio<86'400>>(plan.least_days);
+  if (in_days && !is_clock_wrong && days < plan.min_days) {
+    const auto least = std::chrono::duration<double, std::ratio<86'400>>(plan.min_days);
     refuse(
         fmt::format("comes {:.1f} days after visit {} by this machine's clock, and the study has "
                     "at least {} days between visits: come back after {}",
-                    days, last.visit, plan.least_days,
+                    days, last.visit, plan.min_days,
                     utc_words(before + std::chrono::ceil<nanoseconds>(least))));
   }
   EnteredSession entered = new_session(options, study, database, last.enrolment, describe);
@@ -181,9 +181,9 @@ EnteredSession next_visit(const RunOptions& options, const RunStudy& study, RunD
         {}, {"wrong-clock", fmt::format("visit {} was opened at {}: {}", last.visit,
                                         utc_words(before), options.accept_clock)});
   }
-  if (in_days && plan.most_days && days > *plan.most_days) {
+  if (in_days && plan.max_days && days > *plan.max_days) {
     const std::string late = fmt::format("{:.1f} days after visit {}, at most {} in the study",
-                                         days, last.visit, *plan.most_days);
+                                         days, last.visit, *plan.max_days);
     spdlog::warn("{}: comes {}; recorded as the deviation visit-late", visit_words(options, study),
                  late);
     entered.session->deviate({}, {"visit-late", late});
@@ -391,7 +391,8 @@ EnteredSession existing_session(const RunOptions& options, const RunStudy& study
   require_recent(options, study, stands, kept.away);
   record::SessionOpening now;
   describe(now);
-  const record::SessionOpening then = record::opening_from_json(kept.events.front().body);
+  const record::SessionOpening then =
+      record::from_json<record::SessionOpening>(kept.events.front().body);
   require_same_kind(options, row, then, now);
   EnteredSession entered = resumed_session(options, study, store, kept, row);
   record_other_station(entered, then, now);

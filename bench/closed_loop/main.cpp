@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kUsualMmPerS = 100.0;
 
-/// A heading of Markdown with its rule.
+/// A Markdown table head with its rule.
 void print_heading(const std::string& names) {
   std::string rule = "|";
   for (const char c : names.substr(1)) {
@@ -40,8 +40,8 @@ const char* name_of(engine::ModelKind model) {
   return model == engine::ModelKind::paper ? "`paper`" : "`surface`";
 }
 
-/// Prints the lateral steps of landings on all textures together, as strong as a study of them has
-/// them.
+/// Prints the lateral steps of landings on all textures, with the gains of a study with these
+/// textures.
 void print_touchdowns(const Textures& textures, const engine::RenderingOptions& options) {
   constexpr int kLandings = 40;
   std::vector<engine::TextureField> fields;

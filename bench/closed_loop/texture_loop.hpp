@@ -1,6 +1,5 @@
-/// \file How much a simulated hand chatters while it strokes a texture through the servo, and what it
-/// feels when it comes down.
-/// Source: docs/benchmarks/README.md.
+/// \file Chatter of a simulated hand that strokes a texture through the servo, and forces at
+/// touchdown. Source: docs/benchmarks/README.md.
 #pragma once
 
 #include "core/plane.hpp"
@@ -13,16 +12,16 @@ namespace touchtrial::bench {
 /// How a hand strokes.
 struct TextureStroke {
   double push_n = 0.7;
-  double speed_mm_s = 2.0;  ///< no detail of a texture passes 30 times per second
+  double speed_mm_s = 2.0;  ///< slow enough that no texture detail passes 30 times per second
   double time_s = 6.0;      ///< the first second, in which the hand lands, is not analysed
   std::uint64_t seed = 1;
 };
 
-/// Motion and force of the hand that its stroke does not explain.
+/// Motion and force of the hand that are not due to the stroke.
 struct Chatter {
   double vibration_mm_s = 0.0;  ///< rms velocity above 30 Hz, in all three directions
   double lost_contacts_per_s = 0.0;
-  double normal_deviation_n = 0.0;  ///< greatest difference between normal force and push
+  double normal_deviation_n = 0.0;  ///< largest difference between normal force and push
 };
 
 /// Runs the servo at 1 kHz in virtual time with the safety chain's defaults.
@@ -34,9 +33,9 @@ struct Chatter {
                                      const engine::RenderingOptions& options,
                                      const TextureStroke& stroke = {});
 
-/// The lateral force of a hand that comes down on a texture while it strokes, as sent to it.
+/// The lateral force at touchdown of a moving hand, as sent to the device.
 struct Touchdown {
-  double step_n = 0.0;          ///< from none, in the first tick of contact
+  double step_n = 0.0;          ///< from 0, in the first tick of contact
   double largest_step_n = 0.0;  ///< from one tick to the next, within 20 ms of the first contact
   double rms_n = 0.0;           ///< from the second second on
 };

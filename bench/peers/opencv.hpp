@@ -1,5 +1,5 @@
-/// \file The extraction, MS-SSIM and co-occurrence statistics by OpenCV, as an experienced user would
-/// write them. Every matrix is kept from image to image.
+/// \file The extraction, MS-SSIM and co-occurrence statistics with OpenCV, as an experienced user
+/// would write them. All matrices are reused between images.
 #pragma once
 
 #include "core/plane.hpp"
@@ -34,8 +34,8 @@ namespace touchtrial::bench {
 
 /// How the separable filters are combined.
 enum class Daub4Way {
-  full_size,  ///< one sepFilter2D for each band, of which a quarter of the samples is kept
-  by_rows     ///< along y first, then along x on the rows that are kept: half the work
+  full_size,  ///< one sepFilter2D for each band, keeping a quarter of the samples
+  by_rows     ///< along y first, then along x on the kept rows only: half the work
 };
 
 /// DAUB4 sub-bands in single precision: separable filters at full size, then every other sample.
@@ -58,7 +58,7 @@ class OpenCvDaub4 {
   std::array<cv::Mat, 4> bands_;
 };
 
-/// How far the extraction is optimised.
+/// The optimisation of the extraction.
 enum class RingSums {
   plain,  ///< single precision throughout, Daub4Way::full_size
   tuned   ///< rings in 16 bits, where they are exact; Daub4Way::by_rows

@@ -134,8 +134,11 @@ struct ReadCertificate {
   Digest hash{};
 };
 
-/// \throws FileError if it cannot be read, StudyError with the JSON pointer if it is not a
-///   certificate, or its claims contradict its measurements
+/// \param source  the file's name, for messages
+/// \throws StudyError with the JSON pointer if it is not a certificate, or its claims contradict its
+///   measurements
+[[nodiscard]] Certificate parse_certificate(const std::string& text, const std::string& source);
+/// \throws FileError if it cannot be read; otherwise as parse_certificate
 [[nodiscard]] ReadCertificate read_certificate(const std::filesystem::path& path);
 
 /// Compares a certificate with the device of a session.

@@ -7,7 +7,7 @@
 namespace touchtrial::procedures {
 namespace {
 
-/// A list that is made before the first trial, and does not depend on answers.
+/// Presents a fixed list of levels, regardless of answers.
 class ConstantStimuli final : public Procedure {
  public:
   explicit ConstantStimuli(std::vector<std::size_t> order) : order_(std::move(order)) {}
@@ -26,7 +26,8 @@ std::unique_ptr<Procedure> make_constant_stimuli(const TrackSettings& settings,
   const std::size_t levels = settings.levels.size();
   const auto trials = static_cast<std::size_t>(settings.trials);
   if (trials % levels != 0) {
-    throw std::invalid_argument("constant stimuli need each level equally often");
+    throw std::invalid_argument(
+        "constant stimuli: trials must be a multiple of the number of levels");
   }
   std::vector<std::size_t> round(levels);
   std::iota(round.begin(), round.end(), std::size_t{0});
@@ -35,7 +36,7 @@ std::unique_ptr<Procedure> make_constant_stimuli(const TrackSettings& settings,
     shuffle(std::span(round), stream);
     for (const std::size_t level : round) order.insert(order.end(), trials / levels, level);
   } else {
-    // Every level once before any comes again: the order is balanced over the track.
+    // Every level comes once before any repeats, so that the order is balanced over the track.
     while (order.size() < trials) {
       shuffle(std::span(round), stream);
       order.insert(order.end(), round.begin(), round.end());

@@ -30,7 +30,7 @@ std::vector<std::size_t> reversals_of(std::span<const TrackTrial> trials) {
 Threshold reversal_threshold(std::span<const double> levels, std::span<const TrackTrial> trials,
                              std::size_t skipped) {
   if (trials.empty() || levels.empty()) {
-    throw std::invalid_argument("a staircase's threshold needs trials and levels");
+    throw std::invalid_argument("reversal_threshold: needs trials and levels");
   }
   std::vector<std::size_t> reversals = reversals_of(trials);
   Threshold found;

@@ -1,6 +1,6 @@
-/// \file Thresholds of finished tracks, with intervals, and how well a function fits. A threshold that
-/// answers do not place inside the levels is censored: it has a side or bounds, and no number.
-/// Formulas and sources: docs/thresholds.md, "Estimates".
+/// \file Thresholds of finished tracks, with intervals, and goodness of fit. A threshold is censored
+/// if the answers do not show that it lies within the levels: it then has a side or bounds instead
+/// of a number. Formulas and sources: docs/thresholds.md, "Estimates".
 #pragma once
 
 #include "core/random.hpp"
@@ -13,30 +13,30 @@
 
 namespace touchtrial::procedures {
 
-/// What is known of a threshold that has no number.
+/// What is known about a threshold without a number.
 enum class Censored {
-  no,            ///< it has one
+  no,            ///< it has a number
   below,         ///< it lies below the levels
   above,         ///< it lies above the levels
-  undetermined,  ///< the answers tell neither a number nor a side
+  undetermined,  ///< the answers determine neither a number nor a side
 };
 
 /// A threshold and its interval, in units of the level.
 struct Threshold {
   std::optional<double> level;  ///< only if `censored` is no
-  std::optional<double> low;    ///< nothing: the interval is open on this side, or there is none
+  std::optional<double> low;    ///< empty: the interval is open on this side, or there is none
   std::optional<double> high;
   Censored censored = Censored::no;
 };
 
-/// Levels of a staircase's turns, in order: a level that is higher, or lower, than the levels
+/// The levels of a staircase's reversals, in order. A reversal is higher, or lower, than the levels
 /// before and after it.
 [[nodiscard]] std::vector<std::size_t> reversals_of(std::span<const TrackTrial> trials);
 
-/// The mean level of the last reversals, an even number of them, for the point convergence_of().
-/// Biased: by the size of the last steps, and in short tracks towards the first level
-/// (docs/procedures-recovery.md has the bias found). No interval.
-/// \param skipped  reversals at the start that do not count, >= 0
+/// Estimates the level of the proportion convergence_of() as the mean of the last reversals, an
+/// even number of them. The estimate has no interval. It is biased by the size of the last steps
+/// and, in short tracks, towards the first level (docs/procedures-recovery.md).
+/// \param skipped  reversals at the start that are ignored, >= 0
 /// \return no level with fewer than two reversals; censored if a counted reversal, or without
 ///   reversals the last trial, is at a bound
 /// \throws std::invalid_argument if there are no trials or levels
@@ -44,27 +44,31 @@ struct Threshold {
                                            std::span<const TrackTrial> trials,
                                            std::size_t skipped = 2);
 
-/// What a track's answers tell of its threshold, and the observer who fits them.
+/// The threshold of a track, and the observer who fits its answers.
 struct ThresholdEstimate {
   Threshold threshold;
-  /// Over the interval, also if it is open: the likeliest threshold of usual observers, and the
-  /// means of their lapse rates and of the logarithm of their slopes.
+  /// The most likely threshold of typical observers within the interval (also if it is open), and
+  /// the means of their lapse rates and of the logarithm of their slopes.
   Observer observer;
-  /// The ends if the lapse rate is a usual one, Beta(1, 10); of a threshold without a number.
+  /// For a threshold without a number: its bounds if the lapse rate is typical, Beta(1, 10).
   Threshold attentive{};
 };
 
-/// The threshold of answers at any levels, chosen by any procedure, with nothing assumed of the
-/// observer but the shape. The interval holds the thresholds whose likelihood, averaged over widths
-/// and lapse rates, is not rejected by its ratio to the largest (chi-square, one degree). The
-/// threshold has a number if that of usual observers lies inside the levels, and if they reject
-/// in the same way that nothing is felt at any level, and that everything is; an end farther from
-/// the levels than their range is then open. If not, an end outside the levels is open; and it is
-/// below the levels if the whole interval is, and above them if the whole interval with usual lapse
-/// rates is: somebody who always guesses might as well lapse in half of the trials. The lowest
-/// (highest) level is then its one end.
+/// Estimates the threshold from answers at any levels, chosen by any procedure. It assumes nothing
+/// about the observer except the shape of the function.
+///
+/// The interval contains the thresholds that a likelihood-ratio test does not reject (chi-square,
+/// one degree of freedom), with likelihoods averaged over widths and lapse rates. The threshold has
+/// a number if two conditions hold: that of typical observers lies within the levels, and the same
+/// test rejects both that nothing is felt at any level and that everything is. An end farther from
+/// the levels than their range is then open.
+///
+/// Otherwise an end outside the levels is open. The threshold is below the levels if the whole
+/// interval is. It is above them if the whole interval for typical lapse rates is, because an
+/// observer who always guesses might also lapse in half of the trials. The lowest (highest) level
+/// is then its only end.
 /// \param counts    ascending; may be empty
-/// \param levels    those of the track in dB, ascending, at least one
+/// \param levels    of the track in dB, ascending, at least one
 /// \param guess     in (0, 1)
 /// \param interval  the interval's probability, in (0, 1)
 /// \throws std::invalid_argument if an argument is outside its range
@@ -72,13 +76,13 @@ struct ThresholdEstimate {
                                                    std::span<const double> levels, Shape shape,
                                                    double guess, double interval = 0.95);
 
-/// What a fit by maximum likelihood may change.
+/// The parameters of a fit by maximum likelihood.
 struct FitOptions {
   Shape shape = Shape::weibull;
   double guess = 0.5;             ///< set by the task
   std::optional<double> slope{};  ///< nothing: fitted
   std::optional<double> lapse{};  ///< nothing: fitted
-  double most_lapse = 0.1;        ///< a fitted lapse lies in [0, most_lapse]
+  double max_lapse = 0.1;         ///< a fitted lapse lies in [0, max_lapse]
 };
 
 struct Fit {
@@ -87,20 +91,23 @@ struct Fit {
   double deviance = 0.0;
 };
 
-/// The most likely observer. The threshold is searched up to the range of levels beyond their ends,
-/// the width of the function between a quarter of the least distance of levels and five ranges.
-/// \throws std::invalid_argument with fewer than two levels, impossible counts or options
+/// Finds the most likely observer. The threshold is searched up to one range of the levels beyond
+/// their ends, and the width of the function between a quarter of the minimum distance of levels
+/// and five times their range.
+/// \throws std::invalid_argument if there are fewer than two levels, or if counts or options are
+///   impossible
 [[nodiscard]] Fit fit_observer(std::span<const LevelCounts> counts, const FitOptions& options);
 
-/// Goodness of fit against data of the fitted observer itself, each fitted again.
+/// Goodness of fit by parametric bootstrap: data simulated from the fitted observer are fitted,
+/// too.
 struct GoodnessOfFit {
   double deviance = 0.0;
-  double p = 1.0;                    ///< of a deviance at least as large; never 0
-  std::vector<double> thresholds{};  ///< of the simulated data, ascending: a parametric bootstrap
+  double p = 1.0;                    ///< share of simulated deviances at least as large; never 0
+  std::vector<double> thresholds{};  ///< of the simulated data, ascending
 };
 
-/// \param draws  >= 1
-/// \throws std::invalid_argument as fit_observer does, or if draws < 1
+/// \param draws  simulated data sets, >= 1
+/// \throws std::invalid_argument as fit_observer, or if draws < 1
 [[nodiscard]] GoodnessOfFit goodness_of_fit(std::span<const LevelCounts> counts,
                                             const FitOptions& options, int draws,
                                             RandomStream& random);

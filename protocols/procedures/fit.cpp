@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kNumbers = 3;  ///< threshold, logarithm of the width, lapse
 using Numbers = std::array<double, kNumbers>;
 
-constexpr double kImpossible = -1e300;  ///< NLopt takes no infinity
+constexpr double kImpossible = -1e300;  ///< NLopt does not accept an infinite value
 
 struct SearchState {
   std::function<double(const double*)> value;
@@ -28,8 +28,8 @@ double value_of_state(unsigned /*count*/, const double* at, double* /*slopes*/, 
   return static_cast<SearchState*>(state)->value(at);
 }
 
-/// NLopt's Subplex (Rowan 1990), which needs no derivatives. The state keeps the best point seen,
-/// so it does not matter why the search ends.
+/// Searches with NLopt's Subplex (Rowan 1990), which needs no derivatives. The state keeps the best
+/// point, so the reason for the search's end does not matter.
 void search_subplex(SearchState& state, std::vector<double> from, const std::vector<double>& low,
                     const std::vector<double>& high, const std::vector<double>& step) {
   const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> solver(
@@ -46,19 +46,19 @@ void search_subplex(SearchState& state, std::vector<double> from, const std::vec
   nlopt_optimize(solver.get(), from.data(), &last);
 }
 
-/// The likelihood of counts as a function of what may change, within its bounds.
+/// Searches the maximum of the likelihood of counts over the free parameters, within their bounds.
 class FitSearch {
  public:
   FitSearch(std::span<const LevelCounts> counts, const FitOptions& options);
 
-  /// \param start  nothing: the best of a coarse grid
+  /// \param start  empty: the search starts from a coarse grid
   [[nodiscard]] Fit best(std::optional<Observer> start) const;
 
  private:
   [[nodiscard]] Observer observer_of(const Numbers& at) const;
   [[nodiscard]] Numbers numbers_of(const Observer& observer) const;
-  /// Of a coarse grid of thresholds and widths, the best threshold of each width that is better
-  /// than its neighbours, and that of half the range, which the grid's steps may hide.
+  /// Starting points from a coarse grid of thresholds and widths: the best threshold of each width
+  /// that is better than its neighbours, and of half the range, which the grid's steps may hide.
   [[nodiscard]] std::vector<Numbers> coarse_starts(const Numbers& lower, const Numbers& upper,
                                                    double lapse) const;
   /// The likelihood of few answers has several maxima, often a steep one with lapses and a flat one
@@ -84,20 +84,20 @@ void require_fit(std::span<const LevelCounts> counts, const FitOptions& options)
     before = at.level;
   }
   if (counts.size() < 2) throw std::invalid_argument("a fit needs answers at two levels or more");
-  const double most_lapse = options.lapse.value_or(options.most_lapse);
-  require_possible({options.shape, 0.0, options.slope.value_or(1.0), options.guess, most_lapse});
+  const double max_lapse = options.lapse.value_or(options.max_lapse);
+  require_possible({options.shape, 0.0, options.slope.value_or(1.0), options.guess, max_lapse});
 }
 
 FitSearch::FitSearch(std::span<const LevelCounts> counts, const FitOptions& options)
     : counts_(counts), options_(options), width_at_one_(width_at_slope_one(options.shape)) {
   require_fit(counts, options);
   range_ = counts.back().level - counts.front().level;
-  double least = range_;
+  double min_distance = range_;
   for (std::size_t i = 1; i < counts.size(); ++i) {
-    least = std::min(least, counts[i].level - counts[i - 1].level);
+    min_distance = std::min(min_distance, counts[i].level - counts[i - 1].level);
   }
-  lower_ = {counts.front().level - range_, std::log(least / 4.0), 0.0};
-  upper_ = {counts.back().level + range_, std::log(range_ * 5.0), options.most_lapse};
+  lower_ = {counts.front().level - range_, std::log(min_distance / 4.0), 0.0};
+  upper_ = {counts.back().level + range_, std::log(range_ * 5.0), options.max_lapse};
   if (options.slope) lower_[1] = upper_[1] = std::log(width_at_one_ / *options.slope);
   if (options.lapse) lower_[2] = upper_[2] = *options.lapse;
 }
@@ -115,7 +115,7 @@ std::vector<Numbers> FitSearch::coarse_starts(const Numbers& lower, const Number
   constexpr std::size_t kWidths = 7;
   const int thresholds = lower[0] < upper[0] ? 17 : 1;
   std::array<Numbers, kWidths> best{};
-  std::array<double, kWidths> most{};
+  std::array<double, kWidths> max{};
   for (std::size_t w = 0; w < kWidths; ++w) {
     const double width = range_ * std::pow(0.5, static_cast<double>(w));
     for (int t = 0; t < thresholds; ++t) {
@@ -125,22 +125,22 @@ std::vector<Numbers> FitSearch::coarse_starts(const Numbers& lower, const Number
         numbers[i] = std::clamp(numbers[i], lower[i], upper[i]);
       }
       const double found = log_likelihood(observer_of(numbers), counts_);
-      if (t > 0 && !(found > most[w])) continue;
-      most[w] = found;
+      if (t > 0 && !(found > max[w])) continue;
+      max[w] = found;
       best[w] = numbers;
     }
   }
   std::vector<Numbers> starts;
   for (std::size_t w = 0; w < kWidths; ++w) {
-    const bool above_wider = w == 0 || most[w] > most[w - 1];
-    const bool above_narrower = w + 1 == kWidths || most[w] >= most[w + 1];
+    const bool above_wider = w == 0 || max[w] > max[w - 1];
+    const bool above_narrower = w + 1 == kWidths || max[w] >= max[w + 1];
     if (above_wider && above_narrower) starts.push_back(best[w]);
   }
   starts.push_back(best[1]);
   return starts;
 }
 
-/// Over the numbers whose bounds differ.
+/// Searches over the numbers whose bounds differ.
 Fit FitSearch::search(Numbers start, Numbers lower, Numbers upper) const {
   std::vector<std::size_t> free;
   for (std::size_t i = 0; i < kNumbers; ++i) {
@@ -148,13 +148,13 @@ Fit FitSearch::search(Numbers start, Numbers lower, Numbers upper) const {
     if (lower[i] < upper[i]) free.push_back(i);
   }
   Numbers best = start;
-  double most = log_likelihood(observer_of(best), counts_);
+  double max = log_likelihood(observer_of(best), counts_);
   SearchState state{[&](const double* at) {
     Numbers numbers = start;
     for (std::size_t i = 0; i < free.size(); ++i) numbers[free[i]] = at[i];
     const double found = log_likelihood(observer_of(numbers), counts_);
-    if (found > most) {
-      most = found;
+    if (found > max) {
+      max = found;
       best = numbers;
     }
     return std::max(found, kImpossible);
@@ -173,14 +173,14 @@ Fit FitSearch::search(Numbers start, Numbers lower, Numbers upper) const {
     search_subplex(state, std::move(from), low, high, step);
   }
   const Observer observer = observer_of(best);
-  return {observer, most, procedures::deviance(observer, counts_)};
+  return {observer, max, procedures::deviance(observer, counts_)};
 }
 
 Fit FitSearch::search_all(const Numbers& lower, const Numbers& upper) const {
   std::optional<Fit> best;
   std::optional<double> before;
   for (const double share : {0.0, 0.2, 1.0}) {
-    const double lapse = std::clamp(share * options_.most_lapse, lower[2], upper[2]);
+    const double lapse = std::clamp(share * options_.max_lapse, lower[2], upper[2]);
     if (before == lapse) continue;
     before = lapse;
     for (const Numbers& start : coarse_starts(lower, upper, lapse)) {
@@ -193,7 +193,7 @@ Fit FitSearch::search_all(const Numbers& lower, const Numbers& upper) const {
 
 Fit FitSearch::best(std::optional<Observer> start) const {
   Fit fit = start ? search(numbers_of(*start), lower_, upper_) : search_all(lower_, upper_);
-  // Subplex may stop on a ridge, and then goes on from there.
+  // Subplex may stop on a ridge, so the search is restarted from there.
   constexpr int kMaxRepeats = 4;
   constexpr double kGain = 1e-9;
   for (int again = 0; again < kMaxRepeats; ++again) {

@@ -3,9 +3,9 @@
 namespace touchtrial::procedures {
 namespace {
 
-class LeastEntropy final : public Procedure {
+class MinEntropy final : public Procedure {
  public:
-  LeastEntropy(const TrackSettings& settings, Nuisance nuisance)
+  MinEntropy(const TrackSettings& settings, Nuisance nuisance)
       : posterior_(settings.levels, settings.grid),
         nuisance_(nuisance),
         next_(posterior_.best_level(nuisance)) {}
@@ -26,16 +26,16 @@ class LeastEntropy final : public Procedure {
 }  // namespace
 
 template <Nuisance nuisance>
-std::unique_ptr<Procedure> make_least_entropy(const TrackSettings& settings,
-                                              RandomStream& /*stream*/) {
-  return std::make_unique<LeastEntropy>(settings, nuisance);
+std::unique_ptr<Procedure> make_min_entropy(const TrackSettings& settings,
+                                            RandomStream& /*stream*/) {
+  return std::make_unique<MinEntropy>(settings, nuisance);
 }
 
-template std::unique_ptr<Procedure> make_least_entropy<Nuisance::none>(const TrackSettings&,
-                                                                       RandomStream&);
-template std::unique_ptr<Procedure> make_least_entropy<Nuisance::lapse>(const TrackSettings&,
-                                                                        RandomStream&);
-template std::unique_ptr<Procedure> make_least_entropy<Nuisance::slope_and_lapse>(
+template std::unique_ptr<Procedure> make_min_entropy<Nuisance::none>(const TrackSettings&,
+                                                                     RandomStream&);
+template std::unique_ptr<Procedure> make_min_entropy<Nuisance::lapse>(const TrackSettings&,
+                                                                      RandomStream&);
+template std::unique_ptr<Procedure> make_min_entropy<Nuisance::slope_and_lapse>(
     const TrackSettings&, RandomStream&);
 
 }  // namespace touchtrial::procedures

@@ -13,12 +13,12 @@ namespace {
 constexpr std::size_t kMaxNumbers = 20'000'000;
 constexpr double kTie = 1e-9;
 
-/// p log p, 0 at 0.
+/// p log p, with the limit 0 at 0.
 double p_log_p(double p) noexcept {
   return p > 0.0 ? p * std::log(p) : 0.0;
 }
 
-/// Eight partial sums, so that the compiler can use vector registers without changing the order.
+/// Uses eight partial sums, so that the compiler can vectorise without changing the order.
 double dot(std::span<const double> a, std::span<const double> b) noexcept {
   constexpr std::size_t kLanes = 8;
   std::array<double, kLanes> sums{};
@@ -99,10 +99,10 @@ double sd_of(const Marginal& marginal) noexcept {
   return std::sqrt(sum);
 }
 
-std::size_t first_least(std::span<const double> entropies) noexcept {
-  const double least = *std::min_element(entropies.begin(), entropies.end());
+std::size_t first_min(std::span<const double> entropies) noexcept {
+  const double min = *std::min_element(entropies.begin(), entropies.end());
   const auto found = std::find_if(entropies.begin(), entropies.end(),
-                                  [&](double entropy) { return entropy <= least + kTie; });
+                                  [&](double entropy) { return entropy <= min + kTie; });
   return static_cast<std::size_t>(found - entropies.begin());
 }
 
@@ -121,19 +121,19 @@ Posterior::Posterior(std::span<const double> levels, ParameterGrid grid)
   const std::vector<Observer> observers = observers_of(grid_);
   weights_ = prior_weights(grid_);
   correct_.reserve(level_count_ * observers.size());
-  doubt_.reserve(level_count_ * observers.size());
+  answer_entropy_.reserve(level_count_ * observers.size());
   for (const double level : levels) {
     AnswerShares felt;
     for (std::size_t i = 0; i < observers.size(); ++i) {
       const Observer& observer = observers[i];
-      // Neighbours differ in the lapse rate alone.
+      // Neighbouring observers differ only in the lapse rate.
       if (i % grid_.lapses.size() == 0) {
         felt = shares_at({observer.shape, observer.threshold, observer.slope, 0.0, 0.0}, level);
       }
       const double scale = 1.0 - observer.guess - observer.lapse;
       const double correct = observer.guess + scale * felt.correct;
       correct_.push_back(correct);
-      doubt_.push_back(-p_log_p(correct) - p_log_p(observer.lapse + scale * felt.wrong));
+      answer_entropy_.push_back(-p_log_p(correct) - p_log_p(observer.lapse + scale * felt.wrong));
     }
   }
 }
@@ -152,12 +152,12 @@ void Posterior::observe(std::size_t level, bool correct) noexcept {
   for (std::size_t i = 0; i < weights_.size(); ++i) weights_[i] *= likelihood(i) / sum;
 }
 
-// The expected entropy of all parameters is their entropy now, less what the answer tells of them:
-// the answer's own entropy less its expected entropy if the parameters were known.
+// The expected entropy of all parameters is their present entropy minus their mutual information
+// with the answer: the answer's entropy minus its expected entropy given the parameters.
 double Posterior::joint_entropy_at(std::size_t level, double entropy_now) const noexcept {
   const double correct = dot(weights_, row(correct_, level));
   const double answer = -p_log_p(correct) - p_log_p(1.0 - correct);
-  return entropy_now - (answer - dot(weights_, row(doubt_, level)));
+  return entropy_now - (answer - dot(weights_, row(answer_entropy_, level)));
 }
 
 // With q_i the probability of "value i and this answer" and P their sum, the answer's part of the
@@ -169,10 +169,10 @@ double Posterior::marginal_entropy_at(std::size_t level, std::size_t summed) con
   double sum = 0.0;
   for (std::size_t at = 0; at < weights_.size(); at += summed) {
     const std::span<const double> weights = std::span(weights_).subspan(at, summed);
-    double believed = 0.0;
-    for (const double weight : weights) believed += weight;
+    double total = 0.0;
+    for (const double weight : weights) total += weight;
     const double correct = dot(weights, right.subspan(at, summed));
-    const double wrong = std::max(0.0, believed - correct);
+    const double wrong = std::max(0.0, total - correct);
     all_correct += correct;
     all_wrong += wrong;
     sum += p_log_p(correct) + p_log_p(wrong);
@@ -195,7 +195,7 @@ std::vector<double> Posterior::expected_entropies(Nuisance nuisance) const {
 }
 
 std::size_t Posterior::best_level(Nuisance nuisance) const {
-  return first_least(expected_entropies(nuisance));
+  return first_min(expected_entropies(nuisance));
 }
 
 Marginal Posterior::threshold() const {

@@ -10,15 +10,15 @@
 namespace touchtrial::procedures {
 namespace {
 
-// QUEST+ with all parameters of interest is Kontsevich and Tyler's psi.
+// QUEST+ without nuisance parameters equals the psi method of Kontsevich and Tyler.
 constexpr std::array kKinds{
     ProcedureKind{"constant-stimuli", make_constant_stimuli},
     ProcedureKind{"up-down", make_up_down},
     ProcedureKind{"weighted-up-down", make_weighted_up_down},
-    ProcedureKind{"quest-plus", make_least_entropy<Nuisance::none>},
-    ProcedureKind{"psi", make_least_entropy<Nuisance::none>},
-    ProcedureKind{"psi-marginal", make_least_entropy<Nuisance::lapse>},
-    ProcedureKind{"psi-marginal-threshold", make_least_entropy<Nuisance::slope_and_lapse>},
+    ProcedureKind{"quest-plus", make_min_entropy<Nuisance::none>},
+    ProcedureKind{"psi", make_min_entropy<Nuisance::none>},
+    ProcedureKind{"psi-marginal", make_min_entropy<Nuisance::lapse>},
+    ProcedureKind{"psi-marginal-threshold", make_min_entropy<Nuisance::slope_and_lapse>},
 };
 
 }  // namespace
@@ -41,7 +41,7 @@ std::unique_ptr<Procedure> make_procedure(const TrackSettings& settings, RandomS
     return one.name == settings.procedure;
   });
   if (kind == kKinds.end()) {
-    throw std::invalid_argument("there is no procedure \"" + settings.procedure + "\"");
+    throw std::invalid_argument("the procedure \"" + settings.procedure + "\" does not exist");
   }
   return kind->make(settings, stream);
 }

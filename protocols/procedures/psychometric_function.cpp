@@ -18,7 +18,7 @@ double normal_share(double z) noexcept {
   return 0.5 * std::erfc(-z / std::numbers::sqrt2);
 }
 
-/// log Phi(z). Far below 0, where Phi underflows, by its asymptotic series (Abramowitz, Stegun
+/// log Phi(z). Far below 0, where Phi underflows, it uses the asymptotic series (Abramowitz, Stegun
 /// 1964, 26.2.12), whose error is below 1e-9 there.
 double log_normal_share(double z) noexcept {
   constexpr double kSeriesBelow = -30.0;
@@ -134,7 +134,7 @@ double share_at_threshold(Shape shape) noexcept {
 double level_at(const Observer& observer, double proportion) {
   require_possible(observer);
   if (!(proportion > observer.guess && proportion < 1.0 - observer.lapse)) {
-    throw std::invalid_argument("a criterion lies between guess and 1 - lapse");
+    throw std::invalid_argument("level_at: the proportion must be between guess and 1 - lapse");
   }
   const double share = (proportion - observer.guess) / (1.0 - observer.guess - observer.lapse);
   return observer.threshold + inverse_of(observer.shape, share) / observer.slope;

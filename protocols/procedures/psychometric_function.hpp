@@ -1,5 +1,5 @@
-/// \file How often an observer is right at a level: psychometric functions. Formulas and sources:
-/// docs/thresholds.md, "Psychometric functions". Pure functions, safe in any thread.
+/// \file Psychometric functions: the probability that an observer is right at a level. Formulas and
+/// sources: docs/thresholds.md, "Psychometric functions". Pure functions, thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -19,15 +19,15 @@ struct Observer {
   Shape shape = Shape::weibull;
   double threshold = 0.0;  ///< in units of the level; finite
   double slope = 1.0;      ///< > 0; weibull: beta of 20 dB, otherwise per unit of the level
-  double guess = 0.5;      ///< in [0, 1): right without feeling anything
-  double lapse = 0.0;      ///< in [0, 1 - guess): wrong at any level
+  double guess = 0.5;      ///< in [0, 1): probability of a right answer when nothing is felt
+  double lapse = 0.0;      ///< in [0, 1 - guess): probability of a wrong answer at any level
 };
 
 /// \throws std::invalid_argument if a parameter is outside its range
 void require_possible(const Observer& observer);
 
-/// Two numbers of an answer at one level. Both are computed without subtracting from 1, so neither
-/// loses digits where it is small.
+/// A pair of values for right and wrong answers at one level. Both are computed without subtracting
+/// from 1, so neither loses precision when it is small.
 struct AnswerShares {
   double correct = 0.0;
   double wrong = 0.0;
@@ -43,14 +43,14 @@ struct AnswerShares {
 /// F at the threshold: 1/2, or 1 - 1/e for weibull.
 [[nodiscard]] double share_at_threshold(Shape shape) noexcept;
 
-/// The level at which the observer is right with this probability: how a threshold is stated at any
+/// The level at which the observer is right with this probability, which is the threshold at this
 /// criterion.
 /// \param proportion  between guess and 1 - lapse, exclusive
-/// \throws std::invalid_argument if it is not, or the observer is impossible
+/// \throws std::invalid_argument if `proportion` is out of range or the observer is impossible
 [[nodiscard]] double level_at(const Observer& observer, double proportion);
 
-/// The distance of the levels with F = .05 and F = .95, for slope 1. The width of an observer's
-/// function is this over its slope.
+/// The distance between the levels with F = 0.05 and F = 0.95 for slope 1. The width of an
+/// observer's function is this distance divided by the slope.
 [[nodiscard]] double width_at_slope_one(Shape shape);
 
 /// The answers of all trials at one level.

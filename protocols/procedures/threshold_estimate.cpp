@@ -20,24 +20,24 @@ constexpr std::size_t kLapses = 15;
 constexpr std::size_t kBlocks = 120;  ///< of the threshold's cells
 constexpr std::size_t kCells = 5;     ///< of a block
 
-constexpr double kNarrowest_db = 2.0;
-constexpr double kWidest_db = 60.0;
+constexpr double kMinWidth_db = 2.0;
+constexpr double kMaxWidth_db = 60.0;
 constexpr double kMaxLapse = 0.5;
 constexpr double kWideShare = 1.5;  ///< widths of all observers have the density width^(this - 1)
 constexpr double kAnyLapse = 3.0;   ///< their lapse rate is Beta(1, this) up to kMaxLapse
-constexpr double kUsualWidth_db = 10.0;  ///< median of usual observers
+constexpr double kUsualWidth_db = 10.0;  ///< median of typical observers
 constexpr double kUsualSpread = 0.8;     ///< SD of the logarithm of their width
 constexpr double kUsualLapse = 10.0;     ///< their lapse rate is Beta(1, this), up to kMaxLapse
-constexpr double kShortestRange_db = 20.0;
+constexpr double kMinRange_db = 20.0;
 
-/// Where an integral is evaluated, and what each value counts.
+/// Nodes and weights of a quadrature.
 template <std::size_t count>
 struct Nodes {
   std::array<double, count> values{};
   std::array<double, count> weights{};
 };
 
-/// Gauss and Legendre's.
+/// Gauss-Legendre quadrature.
 template <std::size_t count>
 Nodes<count> nodes_between(double low, double high) {
   using Rule = boost::math::quadrature::gauss<double, static_cast<unsigned>(count)>;
@@ -58,11 +58,11 @@ Nodes<count> nodes_between(double low, double high) {
 }
 
 /// Lapse rates from 0 to kMaxLapse, dense near 0.
-Nodes<kLapses> lapse_nodes(double most) {
+Nodes<kLapses> lapse_nodes(double max) {
   Nodes<kLapses> nodes = nodes_between<kLapses>(0.0, 1.0);
   for (std::size_t i = 0; i < kLapses; ++i) {
     const double root = nodes.values[i];
-    nodes.values[i] = most * root * root;
+    nodes.values[i] = max * root * root;
     nodes.weights[i] *= 2.0 * root;
   }
   return nodes;
@@ -82,7 +82,7 @@ void multiply_power(std::array<double, kLapses>& product, std::array<double, kLa
 constexpr std::int64_t kMaxPower =
     256;  ///< higher powers of shares may leave the range of a double
 
-/// The same for right and wrong answers together, slower and for any number of them.
+/// Multiplies by the powers for right and wrong answers together. Slower, but for any exponents.
 void multiply_by_logarithms(std::array<double, kLapses>& product,
                             const std::array<double, kLapses>& right, std::int64_t correct,
                             const std::array<double, kLapses>& wrong, std::int64_t errors) {
@@ -94,13 +94,13 @@ void multiply_by_logarithms(std::array<double, kLapses>& product,
   }
 }
 
-/// What is known at one threshold, without common factors.
+/// Averages of the likelihood at one threshold, without common factors.
 struct AtThreshold {
-  double likelihood = 0.0;  ///< averaged over observers of all kinds
-  double attentive = 0.0;   ///< averaged over all widths and usual lapse rates
-  double weight = 0.0;      ///< averaged over usual observers
-  double log_width = 0.0;   ///< mean of usual observers, times weight
-  double lapse = 0.0;       ///< the same
+  double likelihood = 0.0;  ///< over all observers
+  double attentive = 0.0;   ///< over all widths and typical lapse rates
+  double weight = 0.0;      ///< over typical observers
+  double log_width = 0.0;   ///< mean of typical observers, times weight
+  double lapse = 0.0;       ///< mean of typical observers, times weight
 };
 
 class AveragedLikelihood {
@@ -109,9 +109,10 @@ class AveragedLikelihood {
       : counts_(counts.begin(), counts.end()),
         shape_(shape),
         guess_(guess),
-        log_widths_(nodes_between<kWidths>(std::log(kNarrowest_db), std::log(kWidest_db))),
+        log_widths_(nodes_between<kWidths>(std::log(kMinWidth_db), std::log(kMaxWidth_db))),
         lapses_(lapse_nodes(std::min(kMaxLapse, 1.0 - guess))) {
-    // Levels with many answers first: they tell earliest that an observer is negligible.
+    // Levels with many answers come first, because they soonest show that an observer is
+    // negligible.
     std::stable_sort(counts_.begin(), counts_.end(),
                      [](const LevelCounts& a, const LevelCounts& b) { return a.n > b.n; });
     for (std::size_t i = 0; i < kWidths; ++i) {
@@ -126,12 +127,12 @@ class AveragedLikelihood {
     }
   }
 
-  /// \param least  likelihoods below it may count as 0
-  [[nodiscard]] AtThreshold at(double threshold, double least) const {
+  /// \param min_likelihood  likelihoods below it may count as 0
+  [[nodiscard]] AtThreshold at(double threshold, double min_likelihood) const {
     AtThreshold sums;
     for (std::size_t w = 0; w < kWidths; ++w) {
       const std::array<double, kLapses> likelihoods =
-          likelihoods_of(threshold, std::exp(log_widths_.values[w]), least);
+          likelihoods_of(threshold, std::exp(log_widths_.values[w]), min_likelihood);
       double any = 0.0;
       double usual = 0.0;
       double lapse = 0.0;
@@ -150,9 +151,9 @@ class AveragedLikelihood {
   }
 
  private:
-  /// At every lapse rate, over the likelihood of each level's own proportion: at most 1.
+  /// Likelihoods at every lapse rate, divided by that of each level's own proportion; at most 1.
   [[nodiscard]] std::array<double, kLapses> likelihoods_of(double threshold, double width,
-                                                           double least) const {
+                                                           double min_likelihood) const {
     const double slope = width_at_slope_one(shape_) / width;
     std::array<double, kLapses> product;
     product.fill(1.0);
@@ -175,7 +176,7 @@ class AveragedLikelihood {
       } else {
         multiply_by_logarithms(product, right_share, at.correct, wrong_share, wrong);
       }
-      if (*std::max_element(product.begin(), product.end()) < least) return {};
+      if (*std::max_element(product.begin(), product.end()) < min_likelihood) return {};
     }
     return product;
   }
@@ -196,32 +197,32 @@ struct Cell {
   AtThreshold found;
 };
 
-/// The likelihood in equal cells of the threshold. Blocks of them where it is negligible have one
+/// The likelihood in equal cells of the threshold. Blocks of cells where it is negligible have one
 /// value.
 struct Profile {
   std::vector<Cell> cells;
-  double width = 0.0;  ///< of a cell
-  double most = 0.0;   ///< of the likelihood
+  double width = 0.0;           ///< of a cell
+  double max_likelihood = 0.0;  ///< over the cells
 };
 
 Profile profile_of(const AveragedLikelihood& likelihood, std::span<const double> levels,
                    double negligible) {
-  const double range = std::max(levels.back() - levels.front(), kShortestRange_db);
+  const double range = std::max(levels.back() - levels.front(), kMinRange_db);
   const double lowest = levels.front() - range;
   Profile profile;
   profile.width = (levels.back() + range - lowest) / (kBlocks * kCells);
   constexpr double kCountsAsNone = 1e-8;
   const auto cell_at = [&](std::size_t i) {
     const double middle = lowest + (static_cast<double>(i) + 0.5) * profile.width;
-    return Cell{middle, likelihood.at(middle, kCountsAsNone * negligible * profile.most)};
+    return Cell{middle, likelihood.at(middle, kCountsAsNone * negligible * profile.max_likelihood)};
   };
   std::vector<Cell> coarse;
   for (std::size_t block = 0; block < kBlocks; ++block) {
     coarse.push_back(cell_at(block * kCells + kCells / 2));
-    profile.most = std::max(profile.most, coarse.back().found.likelihood);
+    profile.max_likelihood = std::max(profile.max_likelihood, coarse.back().found.likelihood);
   }
-  const double least = negligible * profile.most;
-  const auto matters = [&](std::size_t block) { return coarse[block].found.likelihood > least; };
+  const double limit = negligible * profile.max_likelihood;
+  const auto matters = [&](std::size_t block) { return coarse[block].found.likelihood > limit; };
   for (std::size_t block = 0; block < kBlocks; ++block) {
     const bool fine = matters(block) || (block > 0 && matters(block - 1)) ||
                       (block + 1 < kBlocks && matters(block + 1));
@@ -229,7 +230,8 @@ Profile profile_of(const AveragedLikelihood& likelihood, std::span<const double>
       const bool known = i == kCells / 2;
       if (!fine && !known) continue;
       profile.cells.push_back(known ? coarse[block] : cell_at(block * kCells + i));
-      profile.most = std::max(profile.most, profile.cells.back().found.likelihood);
+      profile.max_likelihood =
+          std::max(profile.max_likelihood, profile.cells.back().found.likelihood);
     }
   }
   return profile;
@@ -237,17 +239,17 @@ Profile profile_of(const AveragedLikelihood& likelihood, std::span<const double>
 
 using Likelihood = double AtThreshold::*;
 
-/// Where a likelihood first reaches `least`, from the first cell on; infinite if at once.
+/// The threshold at which a likelihood first reaches `min`; `at_once` if the first cell does.
 template <typename Iterator>
-double first_above(Iterator first, Iterator last, Likelihood of, double least, double at_once) {
+double first_above(Iterator first, Iterator last, Likelihood of, double min, double at_once) {
   const auto above =
-      std::find_if(first, last, [&](const Cell& cell) { return cell.found.*of >= least; });
+      std::find_if(first, last, [&](const Cell& cell) { return cell.found.*of >= min; });
   if (above == first) return at_once;
   const auto below = std::prev(above);
-  // Smaller numbers than these are no neighbours of `least`.
+  // Avoids the logarithm of 0; a smaller number cannot be adjacent to `min`.
   const double floor = std::numeric_limits<double>::min();
   const double before = std::log(std::max(below->found.*of, floor));
-  const double share = (std::log(least) - before) / (std::log(above->found.*of) - before);
+  const double share = (std::log(min) - before) / (std::log(above->found.*of) - before);
   return std::lerp(below->middle, above->middle, share);
 }
 
@@ -256,7 +258,7 @@ struct Ends {
   double high = 0.0;
 };
 
-/// Where a likelihood has lost `loss` of its logarithm, from its largest value.
+/// The thresholds at which the logarithm of a likelihood is `loss` below its maximum.
 Ends ends_of(const Profile& profile, Likelihood of, double loss) {
   constexpr double kOpen = std::numeric_limits<double>::infinity();
   const std::vector<Cell>& cells = profile.cells;
@@ -265,7 +267,7 @@ Ends ends_of(const Profile& profile, Likelihood of, double loss) {
   });
   double log_largest = std::log((*top).found.*of);
   if (top != cells.begin() && std::next(top) != cells.end()) {
-    // A parabola through three cells: a little of a flat top moves an end far.
+    // A parabola through three cells, because a small error in a flat maximum moves an end far.
     const double before = log_largest - std::log((*std::prev(top)).found.*of);
     const double after = log_largest - std::log((*std::next(top)).found.*of);
     const double bend = before + after;
@@ -273,12 +275,12 @@ Ends ends_of(const Profile& profile, Likelihood of, double loss) {
       log_largest += (before - after) * (before - after) / (8.0 * bend);
     }
   }
-  const double least = std::exp(log_largest - loss);
-  return {first_above(cells.begin(), cells.end(), of, least, -kOpen),
-          first_above(cells.rbegin(), cells.rend(), of, least, kOpen)};
+  const double min = std::exp(log_largest - loss);
+  return {first_above(cells.begin(), cells.end(), of, min, -kOpen),
+          first_above(cells.rbegin(), cells.rend(), of, min, kOpen)};
 }
 
-/// The likeliest threshold of usual observers between two ends, by a parabola through the
+/// The most likely threshold of typical observers between two ends, by a parabola through the
 /// logarithms of three cells, and their mean width and lapse rate.
 Observer usual_observer(const Profile& profile, const Ends& ends, Shape shape, double guess) {
   double weight = 0.0;
@@ -311,12 +313,12 @@ Observer usual_observer(const Profile& profile, const Ends& ends, Shape shape, d
           width_at_slope_one(shape) / std::exp(log_width / weight), guess, lapse / weight};
 }
 
-/// Whether usual observers who feel every level, or none, are rejected.
+/// Whether typical observers who feel every level, and those who feel none, are rejected.
 bool is_rise(const Profile& profile, double loss) {
-  double largest = 0.0;
-  for (const Cell& cell : profile.cells) largest = std::max(largest, cell.found.weight);
-  const double least = std::exp(-loss) * largest;
-  return profile.cells.front().found.weight < least && profile.cells.back().found.weight < least;
+  double max = 0.0;
+  for (const Cell& cell : profile.cells) max = std::max(max, cell.found.weight);
+  const double min = std::exp(-loss) * max;
+  return profile.cells.front().found.weight < min && profile.cells.back().found.weight < min;
 }
 
 Threshold numbered(double level, const Ends& ends) {

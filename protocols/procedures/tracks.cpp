@@ -7,7 +7,8 @@
 namespace touchtrial::procedures {
 namespace {
 
-/// Tracks in rounds, of which each has every track with turns left once, in random order.
+/// An order of tracks in rounds. Each round has every track with remaining turns once, in random
+/// order.
 /// \param turns  of each track
 std::vector<std::size_t> in_rounds(std::span<const int> turns, RandomStream& random) {
   std::vector<std::size_t> order;
@@ -29,12 +30,12 @@ std::vector<std::size_t> order_of_tracks(const std::vector<TrackSettings>& track
   return in_rounds(turns, random);
 }
 
-/// Puts each catch trial before a trial.
+/// Inserts catch trials before trials of tracks.
 std::vector<Presentation> with_catch_trials(const std::vector<std::size_t>& order, int catch_trials,
                                             std::size_t tracks, RandomStream& random) {
   const auto wanted = static_cast<std::size_t>(catch_trials);
   if (catch_trials < 0 || 2 * wanted > order.size()) {
-    throw std::invalid_argument("catch trials are at most one for two trials of tracks");
+    throw std::invalid_argument("catch_trials must be from 0 to half of the tracks' trials");
   }
   std::vector<bool> before(order.size(), false);
   for (std::size_t i = 0; i < wanted; ++i) {
@@ -42,7 +43,7 @@ std::vector<Presentation> with_catch_trials(const std::vector<std::size_t>& orde
     const std::size_t end = (i + 1) * order.size() / wanted;
     before[begin + static_cast<std::size_t>(random.below(end - begin))] = true;
   }
-  // Whole rounds, of which the last ones are left over.
+  // More rounds than needed; the last ones are not used.
   const std::vector<std::size_t> whose = in_rounds(std::vector<int>(tracks, catch_trials), random);
   std::vector<Presentation> all;
   std::size_t caught = 0;
@@ -57,7 +58,7 @@ std::vector<Presentation> with_catch_trials(const std::vector<std::size_t>& orde
 
 Block::Block(BlockSettings settings, const Digest& secret) : settings_(std::move(settings)) {
   if (settings_.tracks.empty() || settings_.tracks.size() > kMaxTracks) {
-    throw std::invalid_argument("a block has 1 to 8 tracks");
+    throw std::invalid_argument("a block must have 1 to 8 tracks");
   }
   for (const TrackSettings& track : settings_.tracks) {
     RandomStream own(secret, "procedures/track", tracks_.size());

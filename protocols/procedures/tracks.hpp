@@ -1,6 +1,6 @@
-/// \file Interleaved tracks with catch trials: what comes next in one block of trials, as a function
-/// of settings, a secret and the answers. Catch trials are at the highest level of a track, near
-/// its asymptote, where only lapses make answers wrong. Source: docs/thresholds.md, "Tracks".
+/// \file Interleaved tracks with catch trials: the presentations of one block, as a function of
+/// settings, a secret and the answers. Catch trials have the highest level of a track, near its
+/// asymptote, where only lapses cause wrong answers. Source: docs/thresholds.md, "Tracks".
 #pragma once
 
 #include "core/hash.hpp"
@@ -21,13 +21,14 @@ struct BlockSettings {
   int catch_trials = 0;               ///< of all tracks, >= 0, at most one for each two trials
 };
 
-/// One trial of a track: its level and what was answered.
+/// One trial of a track: its level, and whether the answer was right.
 struct TrackTrial {
   std::size_t level = 0;  ///< index
   bool correct = false;
 };
 
-/// A trial of a track. The procedure does not hear of a catch trial; the track's estimate does.
+/// A trial of a track. Catch trials are not passed to the procedure, but enter the track's
+/// estimate.
 struct Presentation {
   std::size_t track = 0;  ///< index
   std::size_t level = 0;  ///< index into the track's levels
@@ -36,24 +37,25 @@ struct Presentation {
   friend bool operator==(const Presentation&, const Presentation&) = default;
 };
 
-/// The order of tracks is dealt before the first trial, so it tells nothing of answers: in each
-/// round every track that still has trials comes once, in random order. The trials are cut into as
-/// many equal stretches as there are catch trials; each has one at a random place, never the first
-/// of all. Catch trials are dealt to tracks in rounds too, so that tracks differ by one at most.
+/// A block of interleaved tracks. The order of tracks is drawn before the first trial, so that it
+/// reveals nothing about answers: in each round every track with remaining trials comes once, in
+/// random order. The trials are divided into as many equal stretches as there are catch trials.
+/// Each stretch has one catch trial at a random place, but never as the first trial of the block.
+/// Catch trials are assigned to tracks in rounds, too, so that their numbers differ by at most one.
 /// Not thread-safe.
 class Block {
  public:
-  /// \param secret  decides orders; each track has a stream of its own
-  /// \throws std::invalid_argument if a setting is outside its range
+  /// \param secret  determines the orders; each track has its own random stream
+  /// \throws std::invalid_argument if a setting is out of range
   Block(BlockSettings settings, const Digest& secret);
 
   /// \return nothing when all trials are answered
   [[nodiscard]] std::optional<Presentation> next() const;
 
-  /// The answer to the trial at next(); without effect when there is none.
+  /// Records the answer to the trial at next(); has no effect if there is none.
   void answer(bool correct);
 
-  /// The trials of a track so far that its procedure chose.
+  /// The trials of a track so far, without catch trials.
   /// \param track  index
   /// \throws std::out_of_range if there is no such track
   [[nodiscard]] std::span<const TrackTrial> trials(std::size_t track) const;
@@ -71,26 +73,26 @@ class Block {
   std::size_t done_ = 0;
 };
 
-/// The block after these answers: how a session is resumed, and how its record is verified.
-/// \throws what Block throws; std::invalid_argument if there are more answers than trials
+/// Recreates the state of a block after these answers, to resume a session or verify its record.
+/// \throws std::invalid_argument as Block, or if there are more answers than trials
 [[nodiscard]] Block replay(const BlockSettings& settings, const Digest& secret,
                            const std::vector<bool>& answers);
 
-/// A presentation of a record, and what was answered.
+/// A recorded presentation, and whether its answer was right.
 struct RecordedTrial {
   Presentation presentation;
   bool correct = false;
 };
 
-/// The check of a record.
-/// \return index of the first trial whose presentation the block would not have chosen after the
-///   answers before it, or that comes after its end; nothing if there is none
-/// \throws what Block throws
+/// Verifies a record.
+/// \return index of the first trial that the block would not have presented after the previous
+///   answers, or that comes after the block's end; empty if there is none
+/// \throws std::invalid_argument as Block
 [[nodiscard]] std::optional<std::size_t> first_not_chosen(const BlockSettings& settings,
                                                           const Digest& secret,
                                                           std::span<const RecordedTrial> record);
 
-/// Answers at each level of a track, ascending; levels without trials are left out.
+/// Counts of answers at each level of a track, ascending; levels without trials are omitted.
 /// \pre the trials are of this track
 [[nodiscard]] std::vector<LevelCounts> counts_of(std::span<const double> levels,
                                                  std::span<const TrackTrial> trials);

@@ -22,7 +22,8 @@ class Staircase final : public Procedure {
   Staircase(UpDown rule, std::size_t levels)
       : rule_(std::move(rule)), top_(levels - 1), at_(rule_.first_level) {
     require_rule(rule_);
-    if (at_ > top_) throw std::invalid_argument("a staircase must begin at one of its levels");
+    if (at_ > top_)
+      throw std::invalid_argument("a staircase's first level must be one of the track's levels");
   }
 
   [[nodiscard]] std::size_t next() const override { return at_; }
@@ -66,7 +67,7 @@ double convergence_of(const UpDown& rule) {
   const double up = rule.up_for_one_down;
   if (rule.wrong_for_up == 1) return std::pow(up / (1.0 + up), 1.0 / rule.correct_for_down);
   if (rule.correct_for_down == 1) return 1.0 - std::pow(1.0 / (1.0 + up), 1.0 / rule.wrong_for_up);
-  throw std::invalid_argument("a staircase with both counts above 1 has no stated convergence");
+  throw std::invalid_argument("convergence_of: one of the two counts must be 1");
 }
 
 std::unique_ptr<Procedure> make_up_down(const TrackSettings& settings, RandomStream& /*stream*/) {
@@ -76,7 +77,8 @@ std::unique_ptr<Procedure> make_up_down(const TrackSettings& settings, RandomStr
 std::unique_ptr<Procedure> make_weighted_up_down(const TrackSettings& settings,
                                                  RandomStream& stream) {
   if (settings.up_down.correct_for_down != 1 || settings.up_down.wrong_for_up != 1) {
-    throw std::invalid_argument("each answer moves a weighted staircase: both counts must be 1");
+    throw std::invalid_argument(
+        "a weighted staircase moves after each answer: both counts must be 1");
   }
   return make_up_down(settings, stream);
 }

@@ -21,7 +21,7 @@ std::string line(const std::string& what, const std::string& value) {
   return "- " + what + ": " + value + "\n";
 }
 
-/// In alphabetical order, so that their order in the study is not revealed.
+/// Labels in alphabetical order, so that their order in the study is not revealed.
 std::string labels_of(const study::Study& study) {
   std::vector<std::string> labels;
   for (const study::StudyClass& shown : study.classes) labels.push_back(shown.label);
@@ -40,22 +40,22 @@ std::string lines_of(const study::SettingFields& fields) {
   return lines;
 }
 
-/// What a trial with clocked planes requires; the rule of orders states the numbers of trials.
-std::string clocked(const study::Study& study, const study::Ask& ask,
-                    const study::InContact& exploring) {
-  return line("planes a trial", std::to_string(ask.planes)) +
+/// Describes trials with clocked planes; the rule of orders states the numbers of trials.
+std::string clocked_lines(const study::Study& study, const study::Ask& ask,
+                          const study::InContact& exploring) {
+  return line("planes per trial", std::to_string(ask.planes)) +
          line("exploration of each", number_text(exploring.seconds) + " s in contact, at " +
                                          study::range_words(exploring.range) + ", within " +
                                          number_text(study.trials.explore_limit_s) +
-                                         " s; else the trial is repeated") +
+                                         " s; otherwise the trial is repeated") +
          line("practice", study::practice_words(study)) +
          line("feedback in trials", ask.feedback ? "yes" : "no");
 }
 
-std::string exploring_of(const study::Study& study) {
+std::string exploration_lines(const study::Study& study) {
   const study::Ask ask = study::ask_of(study);
   if (const auto* const exploring = std::get_if<study::InContact>(&ask.exploring)) {
-    return clocked(study, ask, *exploring);
+    return clocked_lines(study, ask, *exploring);
   }
   const study::TrialOptions& trials = study.trials;
   return line("time to explore", number_text(trials.explore_limit_s) + " s") +
@@ -64,25 +64,25 @@ std::string exploring_of(const study::Study& study) {
          line("catch trials (not scored)", std::to_string(trials.catch_trials));
 }
 
-std::string design_of(const study::Study& study) {
+std::string design_lines(const study::Study& study) {
   const std::string visits = study::visits_words(study.visits);
   return line("protocol", study.protocol_name()) +
          line("classes", std::to_string(study.classes.size()) + " (" + labels_of(study) + ")") +
          line("methods presented", study.presented_labels()) +
-         line("scored trials a participant", std::to_string(study.scored_trials())) +
+         line("scored trials per participant", std::to_string(study.scored_trials())) +
          (visits.empty() ? "" : line("visits", visits)) +
          (study.groups.labels.empty()
               ? ""
               : line("groups", listed(study.groups.labels) +
                                    (study.groups.open ? ", open to the experimenter" : ""))) +
-         exploring_of(study) + line("language", study::language_words(study.session)) +
+         exploration_lines(study) + line("language", study::language_words(study.session)) +
          line("what participants see", study::sight_words(study)) +
          line("masking noise", study::masking_words(study.session.masking)) +
          line("orders", study.task->rule(study));
 }
 
 std::string validity_of(const study::ValidityRule& rule) {
-  return "A trial is valid if all of this holds:\n\n" + lines_of(study::fields_of(rule));
+  return "A trial is valid if all of these conditions hold:\n\n" + lines_of(study::fields_of(rule));
 }
 
 std::string hashes_of(const study::StudyCodes& key, const engine::Pack& pack) {
@@ -92,9 +92,9 @@ std::string hashes_of(const study::StudyCodes& key, const engine::Pack& pack) {
          line("investigator", "`" + to_hex(key.investigator_signature) + "`") +
          line("program", "Touchtrial " + std::string(program_version())) +
          "\nThe seal is SHA-256 over key, schedule rule, seed and configuration; "
-         "every database of the study begins with it. With the key, `touchtrial verify` tells "
-         "whether a database is of the study that is registered here; without it, whether all "
-         "of it was signed by this investigator and the stations that the investigator named.\n";
+         "every database of the study begins with it. With the key, `touchtrial verify` checks "
+         "that a database belongs to the study registered here; without it, that all of it was "
+         "signed by this investigator and the stations that the investigator named.\n";
 }
 
 }  // namespace
@@ -130,15 +130,15 @@ void require_prepared(const study::Study& study, const study::StudyCodes& key,
   const auto refuse = [&study](const std::string& what) {
     throw UsageError(one_line(study.source + ": " + what));
   };
-  if (key.simulated) refuse("its key belongs to a simulated study; run `touchtrial prepare`");
+  if (key.simulated) refuse("its key is for simulations only; run `touchtrial prepare`");
   if (!study::are_same(study, key.study)) {
-    throw UsageError(study::misfit_of(study, key, key_file, "--key"));
+    throw UsageError(study::mismatch_of(study, key, key_file, "--key"));
   }
   const engine::PackManifest& manifest = pack.manifest();
   if (manifest.study_id != key.study_id) {
-    refuse("the key " + key_file.string() + " is of study " + key.study_id + " and the pack " +
-           pack.folder().string() + " of study " + manifest.study_id +
-           "; name the pack's own key with --key, or the key's own pack with --pack");
+    refuse("the key " + key_file.string() + " belongs to study " + key.study_id +
+           ", but the pack " + pack.folder().string() + " to study " + manifest.study_id +
+           "; give the pack's key with --key, or the key's pack with --pack");
   }
   study::require_signed(pack, key.study_id, key.seal, key.investigator_signature);
 }
@@ -154,7 +154,7 @@ std::string registration_page(const study::StudyCodes& key, const engine::Pack& 
          section("Validity of trials", validity_of(study.trials.validity)) +
          section("Primary test", registration.primary_test) +
          section("Analysis, as the program checks it", lines_of(study::fields_of(registration))) +
-         section("Design", design_of(study)) +
+         section("Design", design_lines(study)) +
          section("Extraction methods", lines_of(study::fields_of_methods(study))) +
          section("Rendering", lines_of(study::fields_of_rendering(study))) +
          section("Commitment", hashes_of(key, pack));

@@ -1,9 +1,9 @@
 /// \file What is fixed before the first participant: the commitment at the start of a database, and
-///   the preregistration page with the same hashes.
+/// the preregistration page with the same hashes.
 #pragma once
 
 #include "engine/pack/pack.hpp"
-#include "record/payload.hpp"
+#include "record/file_bodies.hpp"
 #include "study/study_key.hpp"
 
 #include <string>
@@ -20,18 +20,18 @@ namespace touchtrial::session {
                                                     const engine::Pack& pack, bool simulated,
                                                     bool pilot);
 
-/// Checks that key and pack belong to the study as it is now.
-/// \param study  newly read from its file
-/// \param key_file  that of `key`
+/// Checks that key and pack belong to the study in its present form.
+/// \param study  as read from its file
+/// \param key_file  the file of `key`
 /// \throws UsageError with the difference and the remedy
 /// \throws FileError as study::require_signed
 void require_prepared(const study::Study& study, const study::StudyCodes& key,
                       const std::filesystem::path& key_file, const engine::Pack& pack);
 
-/// The preregistration page, Markdown: the statements of the study's registration, the design, the
-/// validity rule, and the hashes that bind study, key and pack. Reveals the classes' labels
-/// (sorted), methods, rendering and trials; no image name, code, seed, secret or schedule. The same
-/// input gives the same text.
+/// The preregistration page as Markdown: the statements of the study's registration, the design,
+/// the validity rule, and the hashes that bind study, key and pack. The page reveals the classes'
+/// labels (sorted), methods, rendering and trials, but no image name, code, seed, secret or
+/// schedule. The same input gives the same text.
 /// \pre require_prepared
 [[nodiscard]] std::string registration_page(const study::StudyCodes& key, const engine::Pack& pack);
 

@@ -15,12 +15,12 @@ namespace {
 std::string need_of(device::DeviceReadiness readiness) {
   using enum device::DeviceReadiness;
   static constexpr auto kNames = std::to_array<Named<device::DeviceReadiness>>(
-      {{"the device is not homed; move its handle through the whole range", needs_homing},
+      {{"the device is not homed; move its handle through its whole range", needs_homing},
        {"the device is not calibrated; put the stylus into its inkwell", needs_inkwell},
-       {"the device is not calibrated; put its arm at the reset position, with all links at "
-        "right angles, hold it still, and press h for here",
+       {"the device is not calibrated; hold its arm still at the reset position, with all links at "
+        "right angles, and press h",
         needs_reset},
-       {"the device is not calibrated; put it at its rest position, or run its vendor's "
+       {"the device is not calibrated; put it at its rest position, or run the vendor's "
         "calibration",
         needs_calibration},
        {"force is switched off at the device; press its force button", needs_force_on},
@@ -52,10 +52,10 @@ SupplyState DeviceStation::make_ready() {
   if (device::StopOnSignals::asked()) return SupplyState::stopped;
   const std::string need = missing();
   if (need.empty() && armed_) return SupplyState::ready;
-  const Attendant::Reply says = attendant_.attend(need);
-  if (says == Attendant::Reply::stop) return SupplyState::stopped;
-  if (says == Attendant::Reply::at_reset && device_) device_->calibrate();
-  if (says != Attendant::Reply::arm || !need.empty()) return SupplyState::not_yet;
+  const Attendant::Reply reply = attendant_.attend(need);
+  if (reply == Attendant::Reply::stop) return SupplyState::stopped;
+  if (reply == Attendant::Reply::at_reset && device_) device_->calibrate();
+  if (reply != Attendant::Reply::arm || !need.empty()) return SupplyState::not_yet;
   device_->rearm();
   armed_ = true;
   return SupplyState::ready;
@@ -64,27 +64,27 @@ SupplyState DeviceStation::make_ready() {
 std::string DeviceStation::missing() {
   if (device_ && device_->fault() != device::DeviceFault::none) close();
   if (!device_) {
-    std::string why = open_again();
+    std::string why = open();
     if (!why.empty()) return why;
   }
   return need_of(device_->readiness());
 }
 
-std::string DeviceStation::open_again() try {
+std::string DeviceStation::open() try {
   device_ = open_();
-  // No force before somebody consents.
+  // No force is allowed before a person consents.
   device_->halt();
   const device::DeviceInfo info = device_->info();
   if (!first_) first_ = info;
   if (identity_of(info) != identity_of(*first_)) {
     close();
-    return identity_of(info) + " is not the device that the session began with; connect " +
+    return identity_of(info) + " is not the device with which the session began; connect " +
            identity_of(*first_);
   }
   if (placement_) placed_.emplace(*device_, *placement_);
   return "";
 } catch (const Error& error) {
-  // A device that lost power may also need its firmware file; a person can fix both.
+  // After a loss of power, the firmware file may be missing, too; a person can fix both.
   close();
   return error.what();
 }

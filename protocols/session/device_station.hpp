@@ -1,11 +1,11 @@
-/// \file Supplies a session with its device, and recovers it after a fault: a real device is
-///   opened, placed, armed by consent, and reopened.
+/// \file Supplies a session with its device, and recovers it after a fault. A real device is opened,
+/// placed, armed with a person's consent, and reopened.
 #pragma once
 
 #include "device/haptic_device.hpp"
 #include "device/platform/realtime.hpp"
 #include "device/servo/placed_device.hpp"
-#include "record/payload.hpp"
+#include "record/session_bodies.hpp"
 
 #include <functional>
 #include <memory>
@@ -16,8 +16,8 @@ namespace touchtrial::session {
 
 enum class SupplyState {
   ready,    ///< open, homed and armed: forces may be sent
-  not_yet,  ///< something is missing; ask again
-  stopped,  ///< a person stopped waiting: the session has to end
+  not_yet,  ///< something is missing; call again
+  stopped,  ///< a person gave up waiting; the session must end
 };
 
 /// Provides the device. Used only between explorations, on the session's thread.
@@ -25,10 +25,10 @@ class DeviceSupply {
  public:
   virtual ~DeviceSupply() = default;
 
-  /// Takes one step towards a device that is ready: opens it if it was lost, waits for its homing,
-  /// or asks for consent to arm it. May block for a moment.
+  /// Performs one step towards a ready device: opens it if it was lost, waits for its homing, or
+  /// asks for consent to arm it. May block briefly.
   [[nodiscard]] virtual SupplyState make_ready() = 0;
-  /// Called after an interrupted exploration: no force before somebody consents.
+  /// Called after an interrupted exploration. No force may be sent before a person consents.
   virtual void interrupted() {}
 };
 
@@ -48,19 +48,19 @@ class Attendant {
     stop,
     at_reset,  ///< the arm is at its reset position: HapticDevice::calibrate
   };
-  /// Called repeatedly. May block for a moment, for instance to draw a screen.
-  /// \param need  one line on what is missing and its remedy; empty: nothing is missing, and force
-  ///   may be switched on if the hand is ready for it
-  /// \return `arm` counts only if nothing is missing
+  /// Called repeatedly. May block briefly, for instance to draw a screen.
+  /// \param need  one line on what is missing, with its remedy; empty if nothing is missing, so that
+  ///   force may be switched on when the hand is ready
+  /// \return the reply; `arm` has no effect while something is missing
   [[nodiscard]] virtual Reply attend(const std::string& need) = 0;
 };
 
 /// Opens the session's device, and reopens it after it was lost. Force is never switched on
-/// automatically: at the start and after every interruption the attendant has to consent.
+/// automatically: the attendant must consent at the start and after every interruption.
 class DeviceStation final : public DeviceSupply {
  public:
   /// Opens the device.
-  /// \throws DeviceError, or FileError for its firmware, with the remedy if it cannot
+  /// \throws DeviceError, or FileError for its firmware, with the remedy
   using Open = std::function<std::unique_ptr<device::HapticDevice>()>;
 
   /// \param placement  empty for a device that uses the plane frame
@@ -83,7 +83,8 @@ class DeviceStation final : public DeviceSupply {
  private:
   /// \return what is missing; empty if nothing is
   [[nodiscard]] std::string missing();
-  [[nodiscard]] std::string open_again();
+  /// \return why the device cannot be opened; empty if it is open
+  [[nodiscard]] std::string open();
   void close() noexcept;
 
   Open open_;

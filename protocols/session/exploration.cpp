@@ -37,7 +37,7 @@ device::ServoOptions trial_servo_options(const study::Study& study, double rate_
   return options;
 }
 
-std::size_t most_samples(const device::ServoOptions& options) noexcept {
+std::size_t max_samples(const device::ServoOptions& options) noexcept {
   return static_cast<std::size_t>(options.limit_ticks + options.fade_ticks);
 }
 
@@ -47,14 +47,14 @@ std::chrono::nanoseconds time_of_tick(std::int64_t tick, double rate_hz) noexcep
       std::llround(static_cast<double>(tick) * kNanosecondsPerS / rate_hz));
 }
 
-TraceBuilder::TraceBuilder(record::Trace& trace, double rate_hz, std::size_t most_samples)
-    : trace_(trace), room_(most_samples) {
+TraceBuilder::TraceBuilder(record::Trace& trace, double rate_hz, std::size_t max_samples)
+    : trace_(trace), room_(max_samples) {
   trace.rate_hz = rate_hz;
   trace.samples.clear();
-  trace.samples.reserve(most_samples);
+  trace.samples.reserve(max_samples);
 }
 
-/// Before the first sample there is none to hold, so the first one fills the gap.
+/// Before the first sample there is nothing to hold, so the first sample itself fills the gap.
 void TraceBuilder::hold_until(std::size_t tick, const record::TraceSample& first) noexcept {
   const record::TraceSample last = trace_.samples.empty() ? first : trace_.samples.back();
   while (trace_.samples.size() < tick) {
@@ -83,7 +83,7 @@ std::string public_reason(const device::ServoReport& report) {
 Exploration VirtualExplorer::explore(device::ForceSource& force, const PlaneGeometry& plane,
                                      Participant& participant, const device::ServoOptions& options,
                                      record::Trace& trace) {
-  TraceBuilder builder(trace, options.rate_hz, most_samples(options));
+  TraceBuilder builder(trace, options.rate_hz, max_samples(options));
   device::HapticDevice& device = participant.begin_exploring(plane);
   TrialSink sink(participant, builder);
   Exploration done;

@@ -6,7 +6,7 @@
 #include "device/servo/servo.hpp"
 #include "engine/rendering/rendering_model.hpp"
 #include "protocols/session/participant.hpp"
-#include "record/payload.hpp"
+#include "record/session_bodies.hpp"
 #include "record/trace.hpp"
 #include "study/study.hpp"
 
@@ -40,27 +40,27 @@ class ModelForce final : public device::ForceSource {
 [[nodiscard]] device::ServoOptions trial_servo_options(const study::Study& study, double rate_hz,
                                                        const device::LabLimits& lab);
 
-/// The most samples that an exploration can have.
-[[nodiscard]] std::size_t most_samples(const device::ServoOptions& options) noexcept;
+/// The maximum number of samples of an exploration.
+[[nodiscard]] std::size_t max_samples(const device::ServoOptions& options) noexcept;
 
-/// When a tick is due, from the first tick on.
+/// Time of a tick after the first one.
 [[nodiscard]] std::chrono::nanoseconds time_of_tick(std::int64_t tick, double rate_hz) noexcept;
 
-/// Height above the plane, mm, at which the stylus counts as landed. Landing is defined by height
-/// because the onset of force depends on the texture, and the first contact is stored in clear.
+/// Height above the plane, mm, at which the stylus counts as landed. Landing is defined by height,
+/// because the first contact is stored unencrypted and the onset of force depends on the texture.
 inline constexpr double kLandingHeightMm = 3.0;
 
 /// Turns the servo's samples into an evenly sampled trace. Where ticks are missing, because the
-/// servo overran or a sample was lost on its way, it repeats (holds) the sample before them, so
-/// that a sample's index gives its time; it counts the held samples. `add` allocates no memory. Not
+/// servo overran or a sample was lost in transit, it repeats (holds) the previous sample, so that a
+/// sample's index gives its time. It counts the held samples. `add` allocates no memory. Not
 /// thread-safe.
 class TraceBuilder {
  public:
-  /// \param trace  cleared, and given room for `most_samples`; must outlive this
-  TraceBuilder(record::Trace& trace, double rate_hz, std::size_t most_samples);
+  /// \param trace  is cleared, and gets capacity for `max_samples`; must outlive this
+  TraceBuilder(record::Trace& trace, double rate_hz, std::size_t max_samples);
 
-  /// Adds a sample whose tick is larger than those before; ignores others, and those beyond the
-  /// room.
+  /// Adds a sample. Ignores samples that are not later than the previous one, or beyond the
+  /// capacity.
   void add(const device::ServoSample& sample) noexcept {
     const auto tick = static_cast<std::size_t>(std::max<std::int64_t>(sample.tick, 0));
     if (tick >= room_ || tick < next_) return;
@@ -81,18 +81,18 @@ class TraceBuilder {
 
   record::Trace& trace_;
   std::size_t room_;
-  std::size_t next_ = 0;  ///< the tick of the next sample: how many there are
+  std::size_t next_ = 0;  ///< tick of the next sample; equals the number of samples
   std::int64_t held_ = 0;
   std::int64_t held_in_contact_ = 0;
   std::optional<std::int64_t> landing_tick_;
 };
 
-/// The result of an exploration, beside its trace.
+/// The result of an exploration, apart from its trace.
 struct Exploration {
   device::ServoReport servo;
   std::optional<std::chrono::nanoseconds> landed_at;  ///< since plane-on
   std::chrono::nanoseconds lasted{};                  ///< on the servo's clock
-  /// When the servo started, in real time: its ticks count from here.
+  /// In real time, when the servo started; ticks count from here.
   std::optional<std::chrono::steady_clock::time_point> began;
   std::int64_t held_in_contact = 0;                  ///< held samples of the trace with contact
   std::optional<record::ServoHealth> health;         ///< in real time
@@ -102,20 +102,20 @@ struct Exploration {
 /// Whether a fault or a comfort stop ended the exploration.
 [[nodiscard]] bool is_interrupted(const device::ServoReport& report) noexcept;
 
-/// The reason of an interruption, in clear: "comfort stop", "emergency stop" or "device lost" for a
-/// person's action, else "device fault". Faults that follow from forces or motion depend on the
-/// texture.
+/// The reason of an interruption that may be stored unencrypted: "comfort stop", "emergency stop"
+/// or "device lost" for a person's action, else "device fault". It does not distinguish faults
+/// caused by forces or motion, because these depend on the texture.
 [[nodiscard]] std::string public_reason(const device::ServoReport& report);
 
-/// Runs explorations. Participants get the plane's extent and the samples, and nothing else.
+/// Runs explorations. Participants get only the plane's extent and the samples.
 class Explorer {
  public:
   virtual ~Explorer() = default;
 
-  /// Whether explorations run in real time. A wait for the disk could then be felt, so all fields
-  /// have to be in memory before.
+  /// Whether explorations run in real time. All fields must then be in memory beforehand, because a
+  /// wait for the disk could be felt.
   [[nodiscard]] virtual bool in_real_time() const noexcept { return false; }
-  /// Puts a plane before a participant until the hand stops, time is up, or something fails. The
+  /// Presents a plane to a participant until the hand stops, time is up, or a fault occurs. The
   /// last force written is zero.
   /// \param trace  gets every sample; its memory is reused
   [[nodiscard]] virtual Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
@@ -124,7 +124,8 @@ class Explorer {
                                             record::Trace& trace) = 0;
 };
 
-/// Runs as fast as the processor allows, on the calling thread: for hands in virtual time.
+/// Runs explorations of simulated hands in virtual time, as fast as possible, on the calling
+/// thread.
 class VirtualExplorer final : public Explorer {
  public:
   [[nodiscard]] Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,

@@ -9,25 +9,26 @@ namespace touchtrial::session {
 namespace {
 
 constexpr double kStepS = 0.05;
-/// Steps of the mean, 0.5 s: a plain mean at first, then exponential with this time constant.
+/// Steps of the mean, 0.5 s in all: first an arithmetic mean, then exponential with this time
+/// constant.
 constexpr int kWholeSteps = 10;
 
-HandLevel level_of(double value, double least, double largest) noexcept {
-  if (value < least) return HandLevel::low;
-  return value > largest ? HandLevel::high : HandLevel::right;
+HandLevel level_of(double value, double min, double max) noexcept {
+  if (value < min) return HandLevel::low;
+  return value > max ? HandLevel::high : HandLevel::right;
 }
 
 }  // namespace
 
 HandMeter::HandMeter(const study::ValidityRule& rule, double rate_hz) noexcept
-    : least_n_(std::max(study::kLightestN, rule.least_median_n)),
-      largest_n_(std::min(study::kStrongestN, rule.largest_median_n)),
+    : min_n_(std::max(study::kMinPressureN, rule.min_median_n)),
+      max_n_(std::min(study::kMaxPressureN, rule.max_median_n)),
       rate_hz_(rate_hz),
       step_ticks_(std::max<std::int64_t>(1, std::llround(kStepS * rate_hz))) {
-  // The instructions and the study's rule may exclude each other; the rule then applies.
-  if (least_n_ < largest_n_) return;
-  least_n_ = rule.least_median_n;
-  largest_n_ = rule.largest_median_n;
+  // If the instructions and the study's rule contradict each other, the rule applies.
+  if (min_n_ < max_n_) return;
+  min_n_ = rule.min_median_n;
+  max_n_ = rule.max_median_n;
 }
 
 void HandMeter::begin() noexcept {
@@ -37,7 +38,7 @@ void HandMeter::begin() noexcept {
 }
 
 void HandMeter::feel(const device::ServoSample& sample) noexcept {
-  // Negated so that NaN counts as away.
+  // Negated, so that NaN counts as away from the plane.
   if (!(sample.position_mm.z <= kLandingHeightMm)) return begin();
   if (samples_ == 0) {
     first_ = sample;
@@ -61,8 +62,9 @@ void HandMeter::end_step(const device::ServoSample& last) noexcept {
 }
 
 void HandMeter::publish_levels() noexcept {
-  const auto force = static_cast<int>(level_of(mean_n_, least_n_, largest_n_));
-  const auto speed = static_cast<int>(level_of(mean_mm_s_, study::kSlowestMmS, study::kFastestMmS));
+  const auto force = static_cast<int>(level_of(mean_n_, min_n_, max_n_));
+  const auto speed =
+      static_cast<int>(level_of(mean_mm_s_, study::kMinStrokeMmS, study::kMaxStrokeMmS));
   levels_.store(static_cast<std::uint8_t>(1 + 3 * force + speed), std::memory_order_relaxed);
 }
 

@@ -1,5 +1,4 @@
-/// \file How hard the hand presses and how fast it strokes while a plane is on, for the
-///   experimenter.
+/// \file Measures for the experimenter how hard the hand presses and how fast it strokes.
 #pragma once
 
 #include "device/servo/servo.hpp"
@@ -12,23 +11,23 @@
 
 namespace touchtrial::session {
 
-/// Means over about half a second of the hand's force across the plane and its speed along the
-/// plane. Over that time the force is the hand's push whatever the relief; speeds are taken over
-/// steps of 50 ms, in which a texture moves the hand little. Both are compared with the
-/// instructions. Only the levels leave this object, so that they reveal no more than a look at the
-/// hand, and nothing about the texture. Source: docs/decisions/0054-what-a-trial-shows.md.
+/// Averages the hand's force normal to the plane and its speed along the plane over about half a
+/// second, and compares both with the instructions. Over that time the mean force equals the hand's
+/// push, whatever the relief; speeds are measured over steps of 50 ms, in which a texture hardly
+/// moves the hand. Only the levels are public, so that they reveal no more than a look at the hand.
+/// Source: docs/decisions/0054-what-a-trial-shows.md.
 class HandMeter {
  public:
-  /// \param rule  its windows of force hold too, where they are narrower than the instructions
+  /// \param rule  its force limits apply where they are narrower than the instructions
   /// \param rate_hz  of the servo, > 0
   HandMeter(const study::ValidityRule& rule, double rate_hz) noexcept;
 
-  /// Resets the means. Not while another thread calls `feel`.
+  /// Resets the means. Must not run concurrently with `feel`.
   void begin() noexcept;
   /// Adds a sample in the plane frame. Call on the thread that receives the servo's samples.
   void feel(const device::ServoSample& sample) noexcept;
-  /// Any thread.
-  /// \return nothing before the hand has been at the plane (at most kLandingHeightMm above it) for
+  /// The current levels. Thread-safe.
+  /// \return nothing until the hand has been at the plane (at most kLandingHeightMm above it) for
   ///   half a second
   [[nodiscard]] std::optional<HandLevels> levels() const noexcept;
 
@@ -36,15 +35,15 @@ class HandMeter {
   void end_step(const device::ServoSample& last) noexcept;
   void publish_levels() noexcept;
 
-  double least_n_;
-  double largest_n_;
+  double min_n_;
+  double max_n_;
   double rate_hz_;
   std::int64_t step_ticks_;
 
   std::int64_t samples_ = 0;   ///< of this step
   double force_n_ = 0.0;       ///< their sum
   device::ServoSample first_;  ///< of this step
-  int steps_ = 0;              ///< so far, counted up to kWholeSteps
+  int steps_ = 0;              ///< completed, counted up to kWholeSteps
   double mean_n_ = 0.0;
   double mean_mm_s_ = 0.0;
   /// 0: no levels; else 1 + 3 * force + speed.

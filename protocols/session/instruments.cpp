@@ -12,8 +12,8 @@ namespace {
 using record::Mark;
 using Clock = std::chrono::steady_clock;
 
-/// The mark of an input that is sent at once. The marks of plane-on and contact are sent from the
-/// servo's samples.
+/// The mark that is sent immediately for an input. Those of plane-on and contact are derived from
+/// the servo's samples.
 std::optional<Mark> mark_of(SessionInput input) {
   switch (input) {
     case SessionInput::end_exploring:
@@ -93,7 +93,7 @@ std::optional<record::MarksBody> SessionMarks::take(SessionClock& clock) {
     const Notice& one = notices_[i];
     body.codes.push_back(static_cast<int>(one.mark));
     body.trials.push_back(one.trial);
-    // The events of a resumed session begin before the instruments know its clock.
+    // A resumed session may have events from before the instruments' clock was read.
     body.at_ns.push_back(std::max<std::int64_t>(0, (one.at - zero).count()));
     body.latency_ns.push_back(std::max<std::int64_t>(
         0, report.latencies[i].value_or(std::chrono::nanoseconds(0)).count()));

@@ -1,5 +1,5 @@
 /// \file Instruments that record during a session (EEG, video, physiology): the marks sent to them,
-///   and the record of these marks.
+/// and the record of these marks.
 #pragma once
 
 #include "device/servo/servo.hpp"
@@ -22,12 +22,12 @@ class Instruments {
 
   /// \param trial  0 outside trials
   virtual void mark(Mark mark, int trial, TimePoint at) noexcept = 0;
-  /// One tick of the servo, plane frame, in the order of time.
+  /// Receives one sample of the servo in the plane frame, in chronological order.
   virtual void feel(const device::ServoSample& sample, TimePoint at) noexcept = 0;
 
   struct Report {
-    /// One entry for each mark since the last call, in order: the time from the event to the end of
-    /// its write; empty: there is no line, or the write failed.
+    /// For each mark since the last call, in order, the time from the event to the end of its
+    /// write; empty if there is no line or the write failed.
     std::vector<std::optional<std::chrono::nanoseconds>> latencies;
     /// Time of another clock at the zero of the monotonic clock, s, and its uncertainty.
     std::optional<double> clock_zero_s;
@@ -44,8 +44,8 @@ class SessionMarks {
   using Mark = record::Mark;
   using TimePoint = Instruments::TimePoint;
 
-  /// \param instruments  null: none, and no mark is sent; else must outlive this
-  /// \param session  reports its inputs to this object from now on; must outlive it
+  /// \param instruments  null: no mark is sent; otherwise must outlive this
+  /// \param session  notifies this object of its inputs from now on; must outlive it
   /// \param rate_hz  of the servo
   SessionMarks(Instruments* instruments, Session& session, double rate_hz);
   ~SessionMarks() { session_.set_observer({}); }
@@ -79,7 +79,7 @@ class SessionMarks {
   int trial_ = 0;  ///< set between explorations
   TimePoint began_;
   bool has_landed_ = false;
-  std::vector<Notice> notices_;  ///< used by one thread after the other, never at once
+  std::vector<Notice> notices_;  ///< used by several threads, but never concurrently
 };
 
 }  // namespace touchtrial::session

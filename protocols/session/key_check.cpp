@@ -17,63 +17,64 @@ namespace {
 
 constexpr int kTestSession = 1;
 
-void require_holds(bool holds, const char* what) {
-  if (!holds) throw VerificationError(what);
+void check(bool condition, const char* fault) {
+  if (!condition) throw VerificationError(fault);
 }
 
-/// The key signed for this station since it was written.
+/// Reports that the key is older than the station file.
 [[noreturn]] void refuse_older_key(const std::string& what) {
-  throw VerificationError(what +
-                          ": the key is from before the last `touchtrial plan`; take a newer "
-                          "copy, or run the same `plan` again with this key");
+  throw VerificationError(
+      what +
+      ": the key is older than the last `touchtrial plan`; use a newer copy, or "
+      "run the same `plan` again with this key");
 }
 
 void require_same_study(const study::StudyKey& key, const study::StationKey& station) {
-  require_holds(station.study_id == key.study_id,
-                "is another study's; give the station the file that was made with this key");
-  require_holds(
+  check(station.study_id == key.study_id,
+        "belongs to another study; give the station the file that was made with this key");
+  check(
       station.seal == key.seal && station.configuration == key.configuration,
-      "was made before or after a change of the study; run `touchtrial prepare`, and give "
-      "the station its new file");
+      "was made from another version of the study; run `touchtrial prepare`, and give the station "
+      "its new file");
   const auto code = [](const study::KeyedStimulus& keyed) { return keyed.code; };
-  require_holds(std::ranges::equal(station.fields(), key.fields(), {}, code, code) &&
-                    station.catch_code == key.catch_code,
-                "has other codes than the key; give the station the file that was made with it");
+  check(std::ranges::equal(station.fields(), key.fields(), {}, code, code) &&
+            station.catch_code == key.catch_code,
+        "has different codes than the key; give the station the file that was made with the "
+        "key");
 }
 
 void require_same_secrets(const study::StudyKey& key, const study::StationKey& station) {
-  require_holds(
-      station.investigator_box == key.box().public_half &&
-          station.investigator_signature == key.signer().public_half(),
-      "seals for another investigator; give the station the file that was made with this key");
+  check(station.investigator_box == key.box().public_half &&
+            station.investigator_signature == key.signer().public_half(),
+        "encrypts for another investigator; give the station the file that was made with this key");
   const auto own = std::ranges::find(key.stations, station.station.name, &study::Station::name);
   if (own == key.stations.end() && key.stations.front().name == study::kOnlyStation) {
-    refuse_older_key("is of a station that the key does not know");
+    refuse_older_key("belongs to a station that the key does not have");
   }
-  require_holds(own != key.stations.end(),
-                "is of a station that the key does not know; give the station the file that "
-                "`touchtrial plan` wrote");
-  require_holds(
-      station.station.secret == own->secret,
-      "has another secret than the key gives this station; give the station the file that "
-      "was made with this key");
+  check(own != key.stations.end(),
+        "belongs to a station that the key does not have; give the station the file that "
+        "`touchtrial plan` wrote");
+  check(station.station.secret == own->secret,
+        "has a different secret than the key has for this station; give the station the file that "
+        "was "
+        "made with this key");
   if (own->size() < station.station.size()) {
-    refuse_older_key("has enrolment numbers that the key does not know");
+    refuse_older_key("has enrolment numbers that the key does not have");
   }
-  require_holds(station.station.ranges == own->ranges,
-                "has other enrolment numbers than the key gives this station; give the station its "
-                "new file");
+  check(station.station.ranges == own->ranges,
+        "has different enrolment numbers than the key has for this station; give the station "
+        "its new file");
   const Bytes statement =
       station_statement(station.study_id, station.station.name, station.signer().public_half());
-  require_holds(is_signed_by(key.signer().public_half(), statement, station.certificate),
-                "was not signed with this key; give the station the file that was made with it");
+  check(is_signed_by(key.signer().public_half(), statement, station.certificate),
+        "was not signed with this key; give the station the file that was made with the key");
 }
 
 /// The record that a station stores when it opens a session.
 struct TestRecord {
   int enrolment = 0;
-  Bytes wrapped;  ///< the participant's key, for the investigator
-  Bytes kept;     ///< the same, for the station
+  Bytes wrapped;       ///< the participant's key, encrypted for the investigator
+  Bytes station_copy;  ///< the same key, encrypted for the station
   record::BufferedEvents events;
 };
 
@@ -84,7 +85,7 @@ TestRecord test_record(const study::StationKey& station) {
   const SecretKey key = entropy.secret("participant key");
   record.wrapped =
       record::wrap_participant_key(station.investigator_box, kTestSession, key).participant;
-  record.kept = record::keep_participant_key(station.station.secret, kTestSession, key);
+  record.station_copy = record::keep_participant_key(station.station.secret, kTestSession, key);
   auto order =
       study::make_order(station.study, station.draw_of(record.enrolment, study::Draws::people));
   const std::string schedule = study::schedule_to_json(order->schedule(), station);
@@ -99,7 +100,7 @@ TestRecord test_record(const study::StationKey& station) {
   return record;
 }
 
-/// The schedule that the key opens in a record.
+/// The schedule in a record, decrypted with the key; nothing if it cannot be decrypted.
 std::optional<study::Schedule> opened_schedule(const study::StudyKey& key,
                                                const TestRecord& record) {
   const auto own = record::unwrap_participant_key(key.box(), kTestSession, record.wrapped);
@@ -115,18 +116,19 @@ void require_opens(const study::StudyKey& key, const study::StationKey& station,
                    const engine::Pack& pack) {
   require_same_study(key, station);
   require_same_secrets(key, station);
-  study::require_whole(pack, station);
-  require_holds(!station.station.ranges.empty(),
-                "has no enrolment numbers; hand some out with `touchtrial plan --extend`");
+  study::require_complete_pack(pack, station);
+  check(!station.station.ranges.empty(),
+        "has no enrolment numbers; hand some out with `touchtrial plan --extend`");
   const TestRecord record = test_record(station);
-  require_holds(record::kept_participant_key(station.station.secret, kTestSession, record.kept) ==
-                    record::unwrap_participant_key(key.box(), kTestSession, record.wrapped),
-                "sealed a test record whose key the station cannot recover");
+  check(record::kept_participant_key(station.station.secret, kTestSession, record.station_copy) ==
+            record::unwrap_participant_key(key.box(), kTestSession, record.wrapped),
+        "wrote a test record that the station cannot decrypt; run `touchtrial prepare`");
   const auto schedule = opened_schedule(key, record);
-  require_holds(schedule.has_value(), "sealed a test record that the key does not open");
-  require_holds(*schedule == study::make_schedule(
-                                 key.study, key.draw_of(record.enrolment, study::Draws::people)),
-                "draws another schedule than the key");
+  check(schedule.has_value(),
+        "wrote a test record that the key cannot decrypt; run `touchtrial prepare`");
+  check(*schedule ==
+            study::make_schedule(key.study, key.draw_of(record.enrolment, study::Draws::people)),
+        "draws a different schedule than the key; run `touchtrial prepare`");
 }
 
 }  // namespace touchtrial::session

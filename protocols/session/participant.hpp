@@ -1,5 +1,5 @@
-/// \file The participant, who feels planes and answers: the steps that a session shows them,
-/// and their replies.
+/// \file The participant, who feels planes and answers: the steps that a session shows, and the
+/// replies.
 #pragma once
 
 #include "core/plane_geometry.hpp"
@@ -25,7 +25,8 @@ struct InstructionStep {
 
 struct QuestionStep {
   const study::Questionnaire* questionnaire = nullptr;  ///< outlives the step
-  std::string_view typed{};  ///< what the first question's field holds at first; ASCII, likewise
+  std::string_view
+      typed{};  ///< initial text of the first question's field; ASCII; outlives the step
 };
 
 /// Announces a practice round.
@@ -33,18 +34,18 @@ struct PracticeStep {
   int round = 1;
 };
 
-/// Between trials: the plane comes on once the participant is ready.
+/// Shown between trials. The plane is presented when the participant is ready.
 struct ReadyStep {
   int trial = 0;  ///< from 1 to `of`
   int of = 0;
   bool practice = false;
-  bool hand_off = false;  ///< the device is only heard
+  bool hand_off = false;  ///< the participant only hears the device
 };
 
-/// Shown before each plane of a trial with several planes, while the hand lifts off. Ends by itself
-/// once there was time to read it.
+/// Shown before each plane of a trial with several planes, while the hand lifts off. It ends by
+/// itself after the time needed to read it.
 struct IntervalStep {
-  int trial = 0;  ///< its number in the schedule; in practice, in the round
+  int trial = 0;  ///< number in the schedule; in practice, in the round
   bool practice = false;
   int interval = 1;  ///< from 1 to `of`
   int of = 2;
@@ -59,12 +60,12 @@ struct AnswerStep {
   bool time_is_up = false;
   bool may_explore_again = false;  ///< the reply may be `explore_again`
   int confidence_levels = 0;       ///< 0: not asked
-  study::Asked question{};
-  std::string picture{};  ///< label of the picture that is shown with it; empty: none
+  study::QuestionForm question{};
+  std::string picture{};  ///< label of the picture shown with the question; empty: none
   study::Sight sight = study::Sight::curtain;  ///< blindfold: the answer is spoken
 };
 
-/// After a practice answer.
+/// Shown after an answer in practice, or in trials with feedback.
 struct FeedbackStep {
   int answered = 0;  ///< position
   int correct = 0;   ///< position
@@ -79,16 +80,16 @@ struct BreakStep {
 struct NoticeStep {
   enum class What {
     practice_over,  ///< the trials begin
-    time_is_up,     ///< a presentation has ended without an answer
-    stopped,        ///< a comfort stop: the force is off
-    not_explored,   ///< an interval was not explored as asked for; its trial is repeated
-    hand_off,       ///< from here on the device can only be heard
+    time_is_up,     ///< a presentation ended without an answer
+    stopped,        ///< after a comfort stop; the force is off
+    not_explored,   ///< an interval was not explored as instructed; its trial is repeated
+    hand_off,       ///< the hand is off the device from now on, which can only be heard
   };
   What what{};
   int presentations = 0;  ///< begun so far
-  /// false: the session continues once the experimenter allows force again, and a reply has no
-  /// effect
-  bool may_go_on = true;
+  /// Whether a reply continues the session. If not, it continues once the experimenter consents to
+  /// force.
+  bool can_resume = true;
 };
 
 /// The session is paused until the experimenter resumes it; a reply has no effect.
@@ -96,8 +97,8 @@ struct PauseStep {};
 
 struct EndStep {};
 
-/// Pure data: a window draws it, a simulated participant answers it, and tests script it. Nothing
-/// in a step depends on what is presented.
+/// What a participant is shown, as plain data: a window draws it, a simulated participant answers
+/// it, and tests script it. Nothing in a step depends on what is presented.
 using Step = std::variant<InstructionStep, QuestionStep, PracticeStep, ReadyStep, IntervalStep,
                           AnswerStep, FeedbackStep, BreakStep, NoticeStep, PauseStep, EndStep>;
 
@@ -106,7 +107,7 @@ struct StepReply {
   std::optional<std::chrono::steady_clock::time_point> at;
   /// Duration of the reply in virtual time; ignored in real time.
   std::chrono::nanoseconds took{};
-  bool explore_again = false;     ///< AnswerStep: back to the plane; ignore the members below
+  bool explore_again = false;     ///< AnswerStep: back to the plane; the members below are ignored
   Answer answer{};                ///< AnswerStep
   std::optional<int> confidence;  ///< AnswerStep, if asked for: from 1
   /// QuestionStep, in the order of questions: for a choice the option's index from 0; empty if the
@@ -114,10 +115,10 @@ struct StepReply {
   std::vector<std::string> answers;
 };
 
-/// These calls are a participant's only source of information: the pictures to choose from, the
+/// A participant. These calls are its only source of information: the pictures to choose from, the
 /// extent of the blank plane (the same in every trial), and the device's forces. They never contain
-/// a code, label or file name of what is presented. The session's thread makes all calls except
-/// `feel`.
+/// a code, label or file name of what is presented. All functions except `feel` and `plane_is_on`
+/// are called on the session's thread.
 class Participant {
  public:
   virtual ~Participant() = default;
@@ -127,11 +128,11 @@ class Participant {
   virtual void see_pictures(const std::vector<std::string>& labels) = 0;
 
   /// Shows a step and polls for a reply. Called repeatedly with the same step until there is one.
-  /// May block for a moment, for instance to draw a screen.
-  /// \return empty as long as there is no reply
+  /// May block briefly, for instance to draw a screen.
+  /// \return empty while there is no reply
   [[nodiscard]] virtual std::optional<StepReply> attend(const Step& step) = 0;
 
-  /// Called just before a plane comes on.
+  /// Called just before a plane is presented.
   /// \return the device with the participant's hand on it, in the plane frame; valid until the next
   ///   call. Its `read` may return `stopped` when the participant is done exploring.
   [[nodiscard]] virtual device::HapticDevice& begin_exploring(const PlaneGeometry& plane) = 0;
@@ -140,12 +141,12 @@ class Participant {
   /// `began`.
   virtual void plane_is_on(std::chrono::steady_clock::time_point /*began*/) noexcept {}
 
-  /// Polled in real time while the plane is on: `finish` when the participant is done,
-  /// `comfort_stop` when they want no force.
+  /// Called repeatedly in real time while the plane is on. The participant calls `finish` when
+  /// done, and `comfort_stop` to switch the force off.
   virtual void exploring(device::ServoControl& /*servo*/) {}
 
-  /// One sample of the servo. In virtual time called on the servo's thread; in real time on another
-  /// thread, with a delay, but before the next step.
+  /// Receives one sample of the servo. In virtual time called on the servo's thread; in real time
+  /// on another thread, with a delay, but before the next step.
   virtual void feel(const device::ServoSample& sample) noexcept = 0;
 };
 

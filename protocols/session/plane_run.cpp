@@ -10,12 +10,13 @@
 namespace touchtrial::session {
 namespace {
 
-// The simulated stroke has the speed of the instructions.
+// The simulated stroke has the speed that the instructions ask for.
 constexpr double kPlayedMmS = 100.0;
 constexpr double kPlayedLoadN = 0.7;
 constexpr double kShareOfPlane = 0.35;  ///< radius re the shorter side
 
-/// One of several planes that are explored freely. It is rendered once the hand has been above it.
+/// The force of one of several freely explored planes. It starts once the hand has been above the
+/// plane.
 class LiftedForce final : public device::ForceSource {
  public:
   explicit LiftedForce(const engine::RenderingModel& model) noexcept : force_(model) {}
@@ -30,9 +31,9 @@ class LiftedForce final : public device::ForceSource {
   bool has_lifted_ = false;
 };
 
-/// The force of a freely explored plane.
-/// \param planes  of the trial
-/// \param model  must outlive it
+/// The force of one plane of a trial.
+/// \param planes  number of planes of the trial
+/// \param model  must outlive the force
 std::unique_ptr<device::ForceSource> force_of(const study::Exploring& exploring, int planes,
                                               const engine::RenderingModel& model,
                                               const SessionDesk& desk,
@@ -89,7 +90,7 @@ PlanesEnd run_planes(SessionDesk& desk, const study::Trial& trial,
   for (int i = 0; i < of; ++i) {
     if (of > 1 && !desk.attend(IntervalStep{trial.place.trial, trial.role == study::Role::practice,
                                             i + 1, of, trial.place.hand_off})) {
-      return PlanesEnd::broken_off;
+      return PlanesEnd::aborted;
     }
     if (i == 0) pauses = desk.pauses();
     if (desk.pauses() != pauses) return PlanesEnd::paused;

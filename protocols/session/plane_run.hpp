@@ -11,9 +11,9 @@
 
 namespace touchtrial::session {
 
-/// One plane until its clock has run out; the clock runs while the hand explores as instructed
-/// (study::InContact). It is rendered once the hand has been above it, so that no plane begins
-/// inside the wall.
+/// The force of one plane until its clock has run out. The clock runs while the hand explores as
+/// instructed (study::InContact). The force starts once the hand has been above the plane, so that
+/// no plane begins inside the wall.
 class IntervalForce final : public device::ForceSource {
  public:
   /// \param stiffness_n_per_mm  of the wall
@@ -34,8 +34,8 @@ class IntervalForce final : public device::ForceSource {
   bool has_lifted_ = false;
 };
 
-/// The lateral forces of a simulated stroke in circles, whatever the device's position: it
-/// reproduces the sound of the motors with the hand off (study::Played). Stops by itself.
+/// The lateral forces of a simulated circular stroke, whatever the device's position. It reproduces
+/// the sound of the motors with the hand off (study::Played), and stops by itself.
 class PlayedForce final : public device::ForceSource {
  public:
   PlayedForce(const engine::RenderingModel& model, const PlaneGeometry& plane,
@@ -59,20 +59,20 @@ class PlayedForce final : public device::ForceSource {
   std::int64_t tick_ = 0;
 };
 
-/// How the planes of a trial ended.
+/// How the presentation of a trial's planes ended.
 enum class PlanesEnd {
-  explored,      ///< all as instructed
-  time_is_up,    ///< of a plane that is explored freely, in a study that then takes no response
-  not_explored,  ///< a plane's time was up before its clock ran out
-  interrupted,   ///< by a fault or a comfort stop, in an exploration
-  paused,     ///< by the experimenter, during an exploration or between two; start over afterwards
-  broken_off  ///< between two explorations: the session was stopped or left, or interrupted
+  explored,      ///< all planes were explored as instructed
+  time_is_up,    ///< time ran out on a freely explored plane, and the study rejects late answers
+  not_explored,  ///< time ran out before a plane's clock did
+  interrupted,   ///< by a fault or a comfort stop during an exploration
+  paused,        ///< by the experimenter; the trial starts over afterwards
+  aborted,       ///< between two explorations, because the session was stopped, left or interrupted
 };
 
 /// Callbacks of each exploration.
 struct PlaneListener {
-  /// Called before a plane is rendered; returns the trace to fill. Null: the plane is late, and the
-  /// trial starts over.
+  /// Called before a plane is rendered; returns the trace to fill, or null if the plane is late and
+  /// the trial must start over.
   std::function<record::Trace*()> plane_on;
   std::function<void(const Exploration&)> explored;
 };

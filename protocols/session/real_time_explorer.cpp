@@ -25,19 +25,19 @@ namespace {
 /// How long the session's thread waits for the servo's end before it polls the participant again.
 constexpr std::chrono::milliseconds kPollInterval{5};
 
-/// Capacity of the largest ring, samples: 6.5 s at 10 kHz. A writer that falls further behind loses
+/// Maximum capacity of the ring, samples: 6.5 s at 10 kHz. A writer that falls further behind loses
 /// samples.
 constexpr std::size_t kMaxRing = std::size_t{1} << 16U;
 
-// The writer polls, because the servo must not spend time on waking it; the ring holds seconds.
+// The writer polls, because the servo must not spend time on waking it.
 constexpr std::chrono::milliseconds kBetweenDrains{2};
 constexpr std::size_t kAtOnce = 256;
 
-/// A thread that empties the servo's ring while the servo fills it: samples go to the trace, which
-/// fills gaps, and to the participant. Made and destroyed on one thread.
+/// A thread that drains the servo's ring while the servo fills it, and passes the samples to the
+/// trace and the participant. Constructed and destroyed on the same thread.
 class TraceWriter {
  public:
-  /// All must outlive this, which has exclusive use of builder and `feel`.
+  /// All arguments must outlive this, which has exclusive use of `builder` and Participant::feel.
   TraceWriter(device::SampleRing& ring, TraceBuilder& builder, Participant& participant)
       : ring_(ring), builder_(builder), participant_(participant), thread_([this] { write(); }) {}
   /// Drains the ring. The servo must have ended.
@@ -111,7 +111,7 @@ struct RealTimeExplorer::Impl {
 
   /// Allocates the servo's memory before it runs.
   void make_room(const device::ServoOptions& servo) {
-    const std::size_t wanted = std::clamp(most_samples(servo), std::size_t{1}, kMaxRing);
+    const std::size_t wanted = std::clamp(max_samples(servo), std::size_t{1}, kMaxRing);
     if (!ring || ring->capacity() < wanted) ring.emplace(wanted);
     if (!recorder || recorder_rate_hz != servo.rate_hz) {
       recorder.emplace(options.flight_s, servo.rate_hz);
@@ -163,7 +163,8 @@ device::ServoReport RealTimeExplorer::Impl::run(device::HapticDevice& device,
   while (running.runs(kPollInterval)) participant.exploring(control);
   running.finish();
   if (watchdog.disarm() && !is_interrupted(report)) {
-    // The watchdog tripped as the run ended by itself. The device is halted: an interruption.
+    // The watchdog tripped just as the run ended by itself. It has halted the device, so this
+    // counts as an interruption.
     report.end = device::ServoEnd::fault;
     report.fault = device::SafetyFault::stalled;
   }
@@ -193,7 +194,7 @@ Exploration RealTimeExplorer::explore(device::ForceSource& force, const PlaneGeo
   Impl& m = *impl_;
   m.make_room(options);
   device::HapticDevice& device = participant.begin_exploring(plane);
-  TraceBuilder builder(trace, options.rate_hz, most_samples(options));
+  TraceBuilder builder(trace, options.rate_hz, max_samples(options));
   device::RingSink sink(*m.ring);
   Exploration done;
   {

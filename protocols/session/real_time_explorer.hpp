@@ -21,12 +21,12 @@ struct RealTimeOptions {
   std::function<std::unique_ptr<device::ServoClock>()> clock{};
 };
 
-/// Runs the servo on its own thread, which has asked for real-time scheduling once. A ring takes
-/// the samples to a second thread, which writes the trace. The session's thread polls the
-/// participant. A watchdog monitors the servo; signals and crashes halt the device (StopOnSignals).
-/// An interrupted exploration leaves the device halted, so that no force is sent before a person
-/// rearms it (HapticDevice::rearm). All functions belong to the session's thread, except those of
-/// the object that `control` returns.
+/// Runs the servo on its own thread with real-time scheduling, if available. A ring passes the
+/// samples to a second thread, which writes the trace. The session's thread polls the participant.
+/// A watchdog monitors the servo; signals and crashes halt the device (StopOnSignals). An
+/// interrupted exploration leaves the device halted, so that no force is sent before a person
+/// rearms it (HapticDevice::rearm). Call all functions on the session's thread, except those of the
+/// object that `control` returns.
 class RealTimeExplorer final : public Explorer {
  public:
   explicit RealTimeExplorer(const RealTimeOptions& options = {});
@@ -40,8 +40,8 @@ class RealTimeExplorer final : public Explorer {
 
   /// The scheduling of the servo's thread.
   [[nodiscard]] const device::SchedulingObtained& scheduling() const noexcept;
-  /// For other threads. Requests apply to the current exploration; an emergency stop between two
-  /// explorations applies to the next.
+  /// Requests from other threads. They apply to the current exploration; an emergency stop between
+  /// two explorations applies to the next one.
   [[nodiscard]] device::ServoControl& control() noexcept;
 
  private:

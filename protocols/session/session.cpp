@@ -11,14 +11,14 @@
 namespace touchtrial::session {
 namespace {
 
-/// Whether nearly all of enough answers are at one position.
+/// Whether at least 95 % of 20 answers or more are at the same position.
 bool is_one_key(const std::map<int, int>& answers, int n) {
-  constexpr int kEnough = 20;
-  constexpr int kOtherOneIn = 20;
-  if (n < kEnough) return false;
-  const auto& [position, most] =
+  constexpr int kMinAnswers = 20;
+  constexpr int kMaxOthersOneIn = 20;
+  if (n < kMinAnswers) return false;
+  const auto& [position, at_position] =
       *std::ranges::max_element(answers, {}, &std::pair<const int, int>::second);
-  return (n - most) * kOtherOneIn <= n;
+  return (n - at_position) * kMaxOthersOneIn <= n;
 }
 
 }  // namespace
@@ -55,11 +55,11 @@ Session::Session(std::unique_ptr<study::Order> order, const study::TrialOptions&
       recorder_(std::move(recorder)),
       seal_block_(std::move(seal)) {
   if (options.on_interruption == study::OnInterruption::restart_block && !seal_block_) {
-    throw std::invalid_argument("Session: a study that restarts blocks needs to seal them");
+    throw std::invalid_argument("Session: `seal` is required if the study restarts blocks");
   }
 }
 
-bool Session::is_under_way() const noexcept {
+bool Session::is_open() const noexcept {
   return phase_ != Phase::fresh && phase_ != Phase::closed;
 }
 
@@ -101,14 +101,14 @@ bool Session::accepts(SessionInput input) const noexcept {
     case Input::practise:
       return phase_ == Phase::ready && begun_ == 0;
     case Input::pause:
-      return is_under_way() && phase_ != Phase::exploring && phase_ != Phase::paused &&
+      return is_open() && phase_ != Phase::exploring && phase_ != Phase::paused &&
              phase_ != Phase::stopped;
     case Input::resume:
       return phase_ == Phase::paused;
     case Input::note:
-      return is_under_way();
+      return is_open();
     case Input::stop:
-      return is_under_way() && phase_ != Phase::finished && phase_ != Phase::stopped;
+      return is_open() && phase_ != Phase::finished && phase_ != Phase::stopped;
     case Input::close:
       return phase_ == Phase::finished || phase_ == Phase::stopped;
   }
@@ -117,10 +117,10 @@ bool Session::accepts(SessionInput input) const noexcept {
 
 void Session::require(SessionInput input, Time at) const {
   if (!accepts(input)) {
-    throw std::logic_error("a session that is " + std::string(name_of(phase_)) + " does not take " +
-                           std::string(name_of(input)));
+    throw std::logic_error("a session in the phase " + std::string(name_of(phase_)) +
+                           " does not accept the input " + std::string(name_of(input)));
   }
-  if (at < last_) throw std::logic_error("a session's time went back");
+  if (at < last_) throw std::logic_error("the session's time went backwards");
   if (observer_) observer_(input, current() == nullptr ? 0 : current()->place.trial);
 }
 
@@ -136,7 +136,7 @@ SessionPhase Session::between_trials() const noexcept {
 bool Session::break_due() const noexcept {
   if (phase_ != Phase::ready || done_since_break_ == 0) return false;
   const bool by_trials = options_.break_every > 0 && done_since_break_ >= options_.break_every;
-  const std::chrono::duration<double, std::ratio<60>> since = last_ - rested_at_;
+  const std::chrono::duration<double, std::ratio<60>> since = last_ - work_began_at_;
   const bool by_time = options_.break_after_min > 0.0 && since.count() >= options_.break_after_min;
   return by_trials || by_time;
 }
@@ -150,13 +150,13 @@ void Session::open(Time at, const record::SessionOpening& opening,
 
 void Session::calibrate(Time at, const std::string& text) {
   require(Input::calibrate, at);
-  recorder_.remarked(at, record::EventKind::calibrated, text);
+  recorder_.add(at, record::EventKind::calibrated, record::TextBody{.text = text});
   move_to(Phase::calibrated, at);
 }
 
 void Session::instruct(Time at, const std::string& text) {
   require(Input::instruct, at);
-  recorder_.remarked(at, record::EventKind::instructed, text);
+  recorder_.add(at, record::EventKind::instructed, record::TextBody{.text = text});
   move_to(between_trials(), at);
 }
 
@@ -168,7 +168,7 @@ void Session::present(Time at) {
 
 void Session::begin_presentation(Time at) noexcept {
   // The hand has rested before the first trial after a break, instructions or practice.
-  if (done_since_break_ == 0) rested_at_ = at;
+  if (done_since_break_ == 0) work_began_at_ = at;
   had_contact_ = false;
   was_timed_out_ = false;
   evidence_.reset();
@@ -218,7 +218,7 @@ void Session::keep_evidence(record::TrialEvidence evidence) {
 
 void Session::explore_again(Time at) {
   require(Input::explore_again, at);
-  recorder_.explored_again(at, current()->place.trial);
+  recorder_.add(at, record::EventKind::explored_again, record::TrialBody{current()->place.trial});
   answer_.reset();
   move_to(Phase::exploring, at);
 }
@@ -226,7 +226,7 @@ void Session::explore_again(Time at) {
 void Session::choose(int position) {
   require(Input::choose, last_);
   if (position < 0 || position >= static_cast<int>(layout().size())) {
-    throw std::invalid_argument("there is no picture at this position");
+    throw std::invalid_argument("no choice is at position " + std::to_string(position));
   }
   const auto* const before = answer_ ? std::get_if<Chosen>(&*answer_) : nullptr;
   if (before != nullptr && before->position == position) return;  // the same choice is not a change
@@ -263,7 +263,7 @@ void Session::count(const Answer& answer) {
   if (const auto* const chosen = std::get_if<Chosen>(&answer)) ++choices_[chosen->position];
 }
 
-std::optional<int> Session::trial_under_way() const noexcept {
+std::optional<int> Session::current_trial_number() const noexcept {
   return in_presentation() ? std::optional(current()->place.trial) : std::nullopt;
 }
 
@@ -280,7 +280,7 @@ void Session::finish_presentation(Time at, const std::optional<Answer>& answer) 
 }
 
 void Session::void_presentation(Time at, const std::string& reason) {
-  if (reason != record::kPauseReason) course_.spoil();
+  if (reason != record::kPauseReason) course_.interrupt();
   evidence_.reset();
   move_to(between_trials(), at);
 }
@@ -296,69 +296,71 @@ void Session::restart_block(Time at) {
 
 void Session::take_break(Time at, const std::string& text) {
   require(Input::take_break, at);
-  recorder_.remarked(at, record::EventKind::break_taken, text);
+  recorder_.add(at, record::EventKind::break_taken, record::TextBody{.text = text});
   done_since_break_ = 0;
   move_to(Phase::ready, at);
 }
 
 void Session::pause(Time at, const std::string& reason) {
   require(Input::pause, at);
-  recorder_.paused(at, {.text = reason, .trial = trial_under_way()});
+  recorder_.add(at, record::EventKind::paused,
+                record::PauseBody{.text = reason, .trial = current_trial_number()});
   before_pause_ = phase_;
   move_to(Phase::paused, at);
 }
 
 void Session::resume(Time at) {
   require(Input::resume, at);
-  recorder_.resumed(at, {.after = "pause",
-                         .away_s = std::chrono::duration<double>(at - last_).count(),
-                         .trial = trial_under_way()});
+  recorder_.add(at, record::EventKind::resumed,
+                record::ResumedBody{.after = "pause",
+                                    .away_s = std::chrono::duration<double>(at - last_).count(),
+                                    .trial = current_trial_number()});
   move_to(before_pause_, at);
 }
 
 void Session::practise(Time at, const record::PracticeBody& body) {
   require(Input::practise, at);
-  recorder_.practised(at, body);
+  recorder_.add(at, record::EventKind::practised, body);
   remarks_.practice.push_back(body);
   move_to(phase_, at);
 }
 
 void Session::deviate(Time at, const record::DeviationBody& body) {
   require(Input::note, at);
-  recorder_.deviated(at, body);
+  recorder_.add(at, record::EventKind::deviated, body);
   remarks_.deviations.insert(body.code);
   move_to(phase_, at);
 }
 
 void Session::tick(Time at, const std::string& item) {
   require(Input::note, at);
-  recorder_.remarked(at, record::EventKind::ticked, item);
+  recorder_.add(at, record::EventKind::ticked, record::TextBody{.text = item});
   remarks_.ticked.insert(item);
   move_to(phase_, at);
 }
 
 void Session::question(Time at, const std::string& name, const std::string& answers) {
   require(Input::note, at);
-  recorder_.questioned(at, name, answers);
+  recorder_.add(at, record::EventKind::questioned, record::TextBody{name}, answers);
   remarks_.questionnaires.insert(name);
   move_to(phase_, at);
 }
 
 void Session::mark(Time at, const record::MarksBody& marks) {
   require(Input::note, at);
-  recorder_.marked(at, marks);
+  recorder_.add(at, record::EventKind::marked, record::EmptyBody{}, to_json(marks));
   move_to(phase_, at);
 }
 
 void Session::note(Time at, const std::string& text) {
   require(Input::note, at);
-  recorder_.remarked(at, record::EventKind::noted, text);
+  recorder_.add(at, record::EventKind::noted, record::RemarkBody{.text = text});
   move_to(phase_, at);
 }
 
 void Session::stop(Time at, const std::string& reason, const std::string& code) {
   require(Input::stop, at);
-  recorder_.stopped(at, {.code = code, .text = reason});
+  recorder_.add(at, record::EventKind::stopped, record::StopBody{.code = code, .text = reason});
   move_to(Phase::stopped, at);
 }
 

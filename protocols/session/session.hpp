@@ -1,8 +1,8 @@
 /// \file The state machine of one session: which inputs each phase accepts, and what they record.
-///   Simulated and real sessions share it; it is independent of participants and clocks.
+/// Simulated and real sessions share it; it is independent of participants and clocks.
 #pragma once
 
-#include "record/payload.hpp"
+#include "record/session_bodies.hpp"
 #include "record/session_recorder.hpp"
 #include "study/course.hpp"
 #include "study/study_key.hpp"
@@ -18,21 +18,19 @@
 #include <string_view>
 #include <vector>
 
-namespace touchtrial::record {
-struct MarksBody;
-}
+namespace touchtrial::record {}
 
 namespace touchtrial::session {
 
 /// The state of a session.
 enum class SessionPhase {
   fresh,       ///< nothing recorded yet
-  opened,      ///< the device is to be calibrated
-  calibrated,  ///< the participant is to be instructed
+  opened,      ///< waits for the device's calibration
+  calibrated,  ///< waits for the participant's instruction
   ready,       ///< between trials
   exploring,   ///< the plane is on
   answering,   ///< the plane is off or fading; no picture chosen yet
-  chosen,      ///< an answer is given, waiting for Next
+  chosen,      ///< an answer is chosen but not confirmed
   paused,
   finished,  ///< every presentation is done
   stopped,   ///< ended before all presentations were done
@@ -58,18 +56,18 @@ enum class SessionInput {
   take_break,
   pause,
   resume,
-  note,  ///< and other remarks: deviations, ticks, questionnaires, marks
+  note,  ///< also for other remarks: deviations, ticks, questionnaires, marks
   stop,
   close,
 };
 [[nodiscard]] std::string_view name_of(SessionInput input);
 
-/// What is sealed of a block's new trials (OnInterruption::restart_block).
+/// Serialises a restarted block's trials for sealing (OnInterruption::restart_block).
 using SealBlock = std::function<std::string(const std::vector<study::Trial>&)>;
 /// \param codes  must outlive the session
 [[nodiscard]] SealBlock seal_with(const study::StudyCodes& codes);
 
-/// The remarks so far, so that no question is asked twice.
+/// The remarks recorded so far, so that no question is asked twice.
 struct SessionRemarks {
   std::set<std::string> ticked;                ///< items of the day sheet
   std::set<std::string> deviations;            ///< codes
@@ -78,12 +76,12 @@ struct SessionRemarks {
 };
 
 /// A session as an event-driven state machine, which owns its place in the schedule and the
-/// recorder. Times are arguments: since the session's opening, never decreasing.
+/// recorder. Times are arguments: they count from the session's opening and never decrease.
 ///
-/// Every input below throws std::logic_error if the phase does not accept it (see `accepts`) or its
-/// time is before the last event's, and StoreError if the event could not be stored. In both cases
-/// nothing has changed. An answer therefore counts, and may be acknowledged on a screen, as soon as
-/// `confirm` has returned. Not thread-safe.
+/// Every input below throws std::logic_error if the phase does not accept it (see `accepts`) or if
+/// its time is before the last event's, and StoreError if the event could not be stored. In both
+/// cases nothing has changed. An answer therefore counts, and may be acknowledged on a screen, as
+/// soon as `confirm` has returned. Not thread-safe.
 class Session {
  public:
   using Time = std::chrono::nanoseconds;
@@ -92,17 +90,17 @@ class Session {
   Session(std::unique_ptr<study::Order> order, const study::TrialOptions& options,
           record::SessionRecorder recorder, SealBlock seal = {});
 
-  /// Brings a fresh session to the state after its stored events; the recorder continues after the
-  /// last one. Records nothing.
-  /// \param events  opened (record::opened_event)
-  /// \throws StoreError if the events cannot be those of such a session
+  /// Restores the state after a session's stored events; the recorder continues after the last one.
+  /// Records nothing.
+  /// \param events  decrypted (record::opened_event)
+  /// \throws StoreError if the events are impossible for such a session
   void restore(std::span<const record::Event> events);
   /// Resumes the session after the program ended: interrupts the current presentation, if there is
   /// one, and ends a pause.
   void resume_after_exit(Time at, const record::ResumedBody& body);
 
-  /// Called for every input that is accepted, before it is recorded, with the current trial's
-  /// number (0: none is left).
+  /// Called for every accepted input, before it is recorded, with the current trial's number (0 if
+  /// none is left).
   using Observer = std::function<void(SessionInput, int trial)>;
   void set_observer(Observer observer) { observer_ = std::move(observer); }
 
@@ -115,9 +113,9 @@ class Session {
   }
   /// The current trial, or between trials the next one; null when all are done.
   [[nodiscard]] const study::Trial* current() const noexcept { return course_.current(); }
-  /// Presentations that remain, with the current one.
+  /// The number of remaining presentations, including the current one.
   [[nodiscard]] int presentations_left() const noexcept { return course_.left(); }
-  /// Presentations begun so far, with interrupted ones.
+  /// The number of presentations begun so far, including interrupted ones.
   [[nodiscard]] int presentations_begun() const noexcept { return begun_; }
   /// Whether a presentation has begun and is not done.
   [[nodiscard]] bool in_presentation() const noexcept;
@@ -143,9 +141,9 @@ class Session {
   void time_out(Time at);
   /// A comfort stop or a device fault interrupted the presentation. The study's on_interruption
   /// decides whether it is repeated. Its evidence is discarded.
-  /// \param reason  in clear: a fixed phrase that does not depend on the stimulus; after
-  ///   record::kPauseReason the same presentation is the next one
-  /// \param detail  sealed except the faults' names
+  /// \param reason  stored unencrypted: a fixed phrase that does not depend on the stimulus. After
+  ///   record::kPauseReason the same presentation comes next.
+  /// \param detail  sealed, except for the names of faults
   void interrupt(Time at, const std::string& reason,
                  const std::optional<record::InterruptionDetail>& detail = std::nullopt);
   /// SessionRecorder::packed. May be called on another thread, except during `restore`.
@@ -154,30 +152,30 @@ class Session {
                                              const record::Trace& trace) const {
     return recorder_.packed(body, measures, trace);
   }
-  /// Keeps the evidence of the presentation so far in place of any kept before. It is stored
-  /// together with the answer, or with a time-out without an answer.
+  /// Replaces the evidence of the current presentation. It is stored together with the answer, or
+  /// with a time-out without an answer.
   void keep_evidence(record::TrialEvidence evidence);
-  /// The participant goes back to the plane before answering; impossible after a time-out.
+  /// The participant returns to the plane before answering; not accepted after a time-out.
   void explore_again(Time at);
 
-  /// Chooses a picture, which can be changed once before `confirm` records it.
+  /// Chooses an alternative, which can be changed once before `confirm` records it.
   /// \param position  in the layout
   /// \throws std::invalid_argument if there is no such position
   void choose(int position);
-  /// Rates, in place of any choice or rating before.
+  /// Sets the ratings, which replace earlier ones until `confirm` records them.
   /// \throws std::invalid_argument if a value is not finite
   void rate(std::vector<double> values);
-  /// Records the answer, the one before a change, and the evidence: all or nothing.
+  /// Records the answer (with the first choice, if it was changed) and the evidence atomically.
   void confirm(Time at, std::optional<int> confidence = std::nullopt);
 
-  /// One presentation of the practice, between instruction and the first trial.
+  /// Records one presentation of practice, between instruction and the first trial.
   void practise(Time at, const record::PracticeBody& body);
   void take_break(Time at, const std::string& text = "");
-  /// Accepted whenever the plane is off; `resume` returns to the phase before. While a presentation
-  /// is explored, first `interrupt` it with record::kPauseReason.
+  /// Accepted whenever the plane is off; `resume` returns to the previous phase. During an
+  /// exploration, first `interrupt` the presentation with record::kPauseReason.
   void pause(Time at, const std::string& reason);
   void resume(Time at);
-  // Remarks, possible at any time between opening and closing.
+  // Remarks, which are accepted at any time between opening and closing.
   void note(Time at, const std::string& text);
   void deviate(Time at, const record::DeviationBody& body);
   /// \param item  its code
@@ -187,37 +185,37 @@ class Session {
   /// Records the marks sent to other instruments.
   void mark(Time at, const record::MarksBody& marks);
   /// Ends the session early. The current presentation remains without an answer.
-  /// \param reason  in the experimenter's words, sealed; may be empty
-  /// \param code  in clear, if the program stops it
+  /// \param reason  free text of the experimenter, sealed; may be empty
+  /// \param code  why the program stops the session, unencrypted; else empty
   void stop(Time at, const std::string& reason, const std::string& code = "");
-  /// \param may_name_one_key  the choices have drawn positions (study::Choose::has_pictures). Only
-  ///   then does the end state in clear whether 95 % of 20 answers or more are at one position:
-  ///   otherwise a position is the outcome
+  /// \param may_name_one_key  whether the positions of the choices are randomised
+  ///   (study::Ask::has_pictures). Only then does the closing event state, unencrypted, whether 95
+  ///   % of 20 answers or more are at one position; otherwise a position would reveal the outcome.
   void close(Time at, bool may_name_one_key = false);
 
  private:
   void require(SessionInput input, Time at) const;
-  [[nodiscard]] bool is_under_way() const noexcept;
+  [[nodiscard]] bool is_open() const noexcept;
   [[nodiscard]] bool is_changed() const noexcept;
   void move_to(SessionPhase phase, Time at) noexcept;
   void begin_presentation(Time at) noexcept;
   void finish_presentation(Time at, const std::optional<Answer>& answer);
   void count(const Answer& answer);
-  [[nodiscard]] std::optional<int> trial_under_way() const noexcept;
+  [[nodiscard]] std::optional<int> current_trial_number() const noexcept;
   void note_force(double largest_n);
-  /// Voids the current presentation as the study's on_interruption requires; after kPauseReason it
-  /// is the next one.
+  /// Voids the current presentation as the study's on_interruption requires; after kPauseReason the
+  /// same presentation comes next.
   void void_presentation(Time at, const std::string& reason);
   /// Redraws, records and restarts a block, if the course waits for it.
   void restart_block(Time at);
   /// The phase between trials, or after the last.
   [[nodiscard]] SessionPhase between_trials() const noexcept;
 
-  // The effects of stored events, by group (session_restore.cpp).
-  void follow(const record::Event& event);
-  [[nodiscard]] bool follow_trial(const record::Event& event);
-  [[nodiscard]] bool follow_remark(const record::Event& event);
-  void follow_course(const record::Event& event);
+  // Apply stored events, by group (session_restore.cpp). The first two return whether they did.
+  void apply(const record::Event& event);
+  [[nodiscard]] bool apply_to_trial(const record::Event& event);
+  [[nodiscard]] bool apply_to_remarks(const record::Event& event);
+  void apply_to_course(const record::Event& event);
 
   study::Course course_;
   study::TrialOptions options_;
@@ -233,11 +231,11 @@ class Session {
   std::optional<Answer> answer_;
   SessionRemarks remarks_;
   int answered_ = 0;
-  std::map<int, int> choices_;             ///< how many, by position
-  std::optional<double> largest_force_n_;  ///< sent in presentations
+  std::map<int, int> choices_;             ///< number of choices by position
+  std::optional<double> largest_force_n_;  ///< maximum over all presentations
   int begun_ = 0;
   int done_since_break_ = 0;
-  Time rested_at_{};  ///< when the first trial after the last break began
+  Time work_began_at_{};  ///< start of the first trial after the last break
 };
 
 }  // namespace touchtrial::session

@@ -12,9 +12,9 @@ class SessionClock {
   virtual ~SessionClock() = default;
 
   [[nodiscard]] virtual Time now() = 0;
-  /// Advances virtual time; no effect in real time, which has advanced already.
+  /// Advances virtual time; has no effect in real time.
   virtual void pass(Time duration) = 0;
-  /// Converts a time of the servo's monotonic clock. Virtual time returns `now`.
+  /// Converts a time of the servo's monotonic clock. In virtual time, returns `now`.
   [[nodiscard]] virtual Time of(std::chrono::steady_clock::time_point) { return now(); }
 };
 
@@ -30,7 +30,7 @@ class VirtualSessionClock final : public SessionClock {
   Time now_{};
 };
 
-/// Real time since the clock was made, by the machine's monotonic clock.
+/// Real time since construction, by the machine's monotonic clock.
 class SteadySessionClock final : public SessionClock {
  public:
   /// \param start  first value; not 0 in a resumed session

@@ -14,7 +14,7 @@ constexpr std::chrono::milliseconds kBetweenShows{250};
 constexpr std::chrono::milliseconds kPollPause{2};
 
 constexpr const char* kComfortStop = "comfort stop";
-constexpr const char* kStopped = "stopped";  ///< the stage after one
+constexpr const char* kStopped = "stopped";  ///< stage after a comfort stop
 
 std::string with_text(const std::string& words, const std::string& text) {
   return text.empty() ? words : words + ": " + text;
@@ -185,15 +185,15 @@ void SessionDesk::handle_while_exploring(Request request, device::ServoControl& 
       servo.comfort_stop();
       break;
     case Request::Kind::pause:
-      // A participant who is done already continues to the answer screen, and is paused there.
+      // If the participant has already finished, the answer screen follows, and the pause is there.
       was_cut_short_ = was_cut_short_ || !servo.finish_asked();
       servo.finish();
       break;
     default:
       break;
   }
-  // Recorded after the exploration: events are in the order of their times, and the first contact,
-  // which is known at the end, comes before.
+  // Recorded after the exploration, because events are stored in chronological order, and the time
+  // of the first contact is known only at the end.
   postponed_.push_back(std::move(request));
 }
 
@@ -239,7 +239,7 @@ bool SessionDesk::handle(const Request& request) {
     case Request::Kind::pause:
       return handle_pause(request);
     case Request::Kind::resume:
-      return true;  // nothing is paused
+      return true;  // the session is not paused
     case Request::Kind::comfort_stop:
       return handle_comfort_stop(request);
     case Request::Kind::abort:
@@ -277,7 +277,7 @@ bool SessionDesk::handle_pause(const Request& request) {
   }
 }
 
-/// Recorded as a finished pause, because the wait would otherwise count as answering time.
+/// Records the delay as a completed pause, because it would otherwise count as answering time.
 bool SessionDesk::handle_delay(const Request& request) {
   session_.deviate(now(), {request.code, request.text});
   if (!session_.in_presentation()) return true;
@@ -285,14 +285,14 @@ bool SessionDesk::handle_delay(const Request& request) {
     session_.interrupt(now(), record::kPauseReason);
     return false;
   }
-  if (!session_.accepts(SessionInput::pause)) return true;  // paused already
+  if (!session_.accepts(SessionInput::pause)) return true;  // already paused
   session_.pause(now(), request.code);
   session_.resume(now());
   return true;
 }
 
-/// Called without force. Interrupts the current presentation; the device asks for consent before
-/// force is sent again.
+/// Handles a comfort stop while no force is on. Interrupts the current presentation; the device
+/// asks for consent before force is sent again.
 bool SessionDesk::handle_comfort_stop(const Request& request) {
   if (session_.phase() == SessionPhase::paused) session_.resume(now());
   const bool interrupts = session_.accepts(SessionInput::interrupt);

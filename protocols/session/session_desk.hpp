@@ -1,6 +1,6 @@
-/// \file Everything in a session that takes time: it shows steps to the participant until they
-/// reply, runs explorations, waits for the device, and handles the experimenter's requests
-/// meanwhile. It does not decide on trials or stages. Private to protocols/session.
+/// \file The blocking operations of a session: showing steps until the participant replies, running
+/// explorations, and waiting for the device, while the experimenter's requests are handled. It does
+/// not decide on trials or stages. Private to protocols/session.
 #pragma once
 
 #include "protocols/session/hand_meter.hpp"
@@ -14,7 +14,7 @@
 
 namespace touchtrial::session {
 
-/// Belongs to the session's thread.
+/// Used only on the session's thread.
 class SessionDesk {
  public:
   using Time = SessionClock::Time;
@@ -25,7 +25,7 @@ class SessionDesk {
   [[nodiscard]] Session& session() noexcept { return session_; }
   [[nodiscard]] const SessionParts& parts() const noexcept { return parts_; }
 
-  /// The time; never before the session's last event.
+  /// The current time; never before the session's last event.
   [[nodiscard]] Time now();
   /// The time of a reply; neither in the future nor before the session's last event.
   [[nodiscard]] Time when(const StepReply& reply);
@@ -39,28 +39,28 @@ class SessionDesk {
   /// \return empty if the step was aborted: the session was stopped or left, or the current
   ///   presentation was interrupted
   [[nodiscard]] std::optional<StepReply> attend(const Step& step);
-  /// Runs an exploration, and advances the clock. In real time the experimenter's requests end it,
-  /// or are handled after it.
+  /// Runs an exploration, and advances the clock. In real time, requests of the experimenter end
+  /// the exploration or are handled after it.
   /// \param trace  gets every sample
   [[nodiscard]] Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
                                     const device::ServoOptions& options, record::Trace& trace);
-  /// Whether the experimenter's pause ended the last exploration, and not the participant.
+  /// Whether the last exploration was ended by the experimenter's pause, not by the participant.
   [[nodiscard]] bool was_cut_short() const noexcept { return was_cut_short_; }
-  /// Pauses of this run so far.
+  /// The number of pauses so far in this run.
   [[nodiscard]] int pauses() const noexcept { return pauses_; }
   /// The options of the session's explorations.
   [[nodiscard]] device::ServoOptions servo_options() const;
   /// Handles the experimenter's requests.
   /// \return whether the current step continues
   [[nodiscard]] bool handle();
-  /// Waits until forces may be sent, and after a comfort stop until the participant continues or
-  /// the experimenter consents. Pauses the session meanwhile if the device is not ready.
+  /// Waits until forces may be sent; after a comfort stop, until the participant continues or the
+  /// experimenter consents. Pauses the session while the device is not ready.
   /// \return whether forces may be sent
   [[nodiscard]] bool await_device();
 
-  /// Whether the session was neither stopped nor aborted nor left.
+  /// Whether the session has been neither stopped, aborted, left nor closed.
   [[nodiscard]] bool is_running() const noexcept;
-  /// Why the session is left open; empty if it is not.
+  /// Why the session was left open; empty if it was not.
   [[nodiscard]] const std::optional<std::string>& left() const noexcept { return left_; }
   /// Marks the session's start and end in the other instruments' records.
   void mark_session_start() { marks_.begin(); }
@@ -68,7 +68,7 @@ class SessionDesk {
   /// Records the marks sent since the last call.
   void record_marks();
   /// Counts an interrupted exploration; the device needs consent before the next one.
-  /// \return the reason, in clear
+  /// \return the reason, which may be stored unencrypted
   [[nodiscard]] std::string note_interruption(const device::ServoReport& report);
   [[nodiscard]] int interruptions() const noexcept { return status_.interruptions; }
 
@@ -79,7 +79,7 @@ class SessionDesk {
   /// Called repeatedly in real time while the plane is on.
   void look(device::ServoControl& servo);
   [[nodiscard]] bool end_is_postponed() const noexcept;
-  /// Ends the exploration if a request requires it. Postpones what has to be recorded.
+  /// Ends the exploration if the request requires it. Postpones events that must be recorded.
   void handle_while_exploring(Request request, device::ServoControl& servo);
   [[nodiscard]] std::optional<Request> next_request();
   [[nodiscard]] bool handle(const Request& request);
@@ -91,8 +91,8 @@ class SessionDesk {
   [[nodiscard]] bool wait_for_device(SupplyState device);
   /// What the participant sees while the device is not ready.
   [[nodiscard]] Step waiting_page() const;
-  /// Shows the participant a page about a comfort stop until they continue.
-  /// \return whether they continue; true at once if there was no stop
+  /// After a comfort stop, shows the participant a page until they continue.
+  /// \return whether they continue; true immediately if there was no stop
   [[nodiscard]] bool wait_for_consent();
   [[nodiscard]] std::string count_interruption(const std::string& words);
   void show();
@@ -103,15 +103,14 @@ class SessionDesk {
   const SessionParts& parts_;
   SessionMarks marks_;
   std::optional<std::string> left_;
-  bool is_aborted_ = false;  ///< after the last trial, when there is nothing left to stop
+  bool is_aborted_ = false;  ///< aborted after the last trial, so that the session stays complete
   SessionStatus status_;
   HandMeter hand_;
   std::deque<Request> postponed_;
-  std::optional<std::string> reason_;  ///< of an interruption that the experimenter asked for
+  std::optional<std::string> reason_;  ///< of an interruption requested by the experimenter
   bool is_stopped_ = false;            ///< a comfort stop is pending
-  bool is_participants_stop_ =
-      false;                ///< the comfort stop is the participant's, not the experimenter's
-  bool announces_ = false;  ///< the next presentation is announced
+  bool is_participants_stop_ = false;  ///< whether the participant requested the comfort stop
+  bool announces_ = false;             ///< whether the next presentation is announced
   bool was_cut_short_ = false;
   int pauses_ = 0;
   std::chrono::steady_clock::time_point shown_{};

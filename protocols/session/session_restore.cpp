@@ -20,9 +20,10 @@ using Phase = SessionPhase;
 }  // namespace
 
 void Session::restore(std::span<const record::Event> events) {
-  if (phase_ != Phase::fresh) throw std::logic_error("a session is restored before it begins");
+  if (phase_ != Phase::fresh)
+    throw std::logic_error("Session: only a fresh session can be restored");
   for (const record::Event& event : events) {
-    follow(event);
+    apply(event);
     last_ = event.at;
   }
   if (!events.empty()) recorder_.continue_after(events.back());
@@ -30,29 +31,29 @@ void Session::restore(std::span<const record::Event> events) {
 
 void Session::resume_after_exit(Time at, const record::ResumedBody& body) {
   require(SessionInput::note, at);
-  recorder_.resumed(at, body);
+  recorder_.add(at, record::EventKind::resumed, body);
   move_to(phase_ == Phase::paused ? before_pause_ : phase_, at);
   if (in_presentation()) interrupt(at, "program ended");
   restart_block(at);  // the program may have ended before restarting it
 }
 
-void Session::follow(const record::Event& event) {
-  if (follow_trial(event) || follow_remark(event)) return;
-  follow_course(event);
+void Session::apply(const record::Event& event) {
+  if (apply_to_trial(event) || apply_to_remarks(event)) return;
+  apply_to_course(event);
 }
 
-bool Session::follow_trial(const record::Event& event) {
+bool Session::apply_to_trial(const record::Event& event) {
   const auto require_current = [&] {
-    const int trial = record::trial_from_json(event.body).trial;
+    const int trial = record::from_json<record::TrialBody>(event.body).trial;
     if (!in_presentation() || current()->place.trial != trial) {
-      refuse(event, "trial " + std::to_string(trial) + " is not under way");
+      refuse(event, "trial " + std::to_string(trial) + " is not the current trial");
     }
   };
   switch (event.kind) {
     case record::EventKind::presented:
       if (phase_ != Phase::ready ||
-          current()->place.trial != record::trial_from_json(event.body).trial) {
-        refuse(event, "is not what the schedule has next");
+          current()->place.trial != record::from_json<record::TrialBody>(event.body).trial) {
+        refuse(event, "is not the next trial of the schedule");
       }
       begin_presentation(event.at);
       return true;
@@ -61,7 +62,7 @@ bool Session::follow_trial(const record::Event& event) {
       had_contact_ = true;
       return true;
     case record::EventKind::trace_stored:
-      note_force(record::trace_body_from_json(event.body).largest_force_n);
+      note_force(record::from_json<record::TraceBody>(event.body).largest_force_n);
       return true;
     case record::EventKind::timed_out:
       require_current();
@@ -74,12 +75,13 @@ bool Session::follow_trial(const record::Event& event) {
       return true;
     case record::EventKind::answered: {
       require_current();
-      const std::optional<Answer> answer = record::answer_from_json(event.body).answer;
-      if (!answer) refuse(event, "is not opened");
+      const std::optional<Answer> answer = record::from_json<record::AnswerBody>(event.body).answer;
+      if (!answer) refuse(event, "has no decrypted answer");
       const auto* const chosen = std::get_if<Chosen>(&*answer);
       if (chosen != nullptr &&
           (chosen->position < 0 || chosen->position >= static_cast<int>(layout().size()))) {
-        refuse(event, "answers at a position that does not exist");
+        refuse(event, "chooses position " + std::to_string(chosen->position) +
+                          ", which the layout does not have");
       }
       count(*answer);
       finish_presentation(event.at, answer);
@@ -88,8 +90,8 @@ bool Session::follow_trial(const record::Event& event) {
     case record::EventKind::interrupted:
       require_current();
       {
-        const record::TrialBody body = record::trial_from_json(event.body);
-        note_force(body.largest_force_n);
+        const auto body = record::from_json<record::InterruptedBody>(event.body);
+        note_force(body.largest_force_n.value_or(0.0));
         void_presentation(event.at, body.reason);
       }
       return true;
@@ -102,29 +104,26 @@ bool Session::follow_trial(const record::Event& event) {
   }
 }
 
-bool Session::follow_remark(const record::Event& event) {
+bool Session::apply_to_remarks(const record::Event& event) {
   switch (event.kind) {
-    case record::EventKind::noted:
-    case record::EventKind::marked:
-      return true;
     case record::EventKind::practised:
-      remarks_.practice.push_back(record::practice_from_json(event.body));
+      remarks_.practice.push_back(record::from_json<record::PracticeBody>(event.body));
       return true;
     case record::EventKind::ticked:
-      remarks_.ticked.insert(record::remark_from_json(event.body));
+      remarks_.ticked.insert(record::from_json<record::TextBody>(event.body).text);
       return true;
     case record::EventKind::deviated:
-      remarks_.deviations.insert(record::deviation_from_json(event.body).code);
+      remarks_.deviations.insert(record::from_json<record::DeviationBody>(event.body).code);
       return true;
     case record::EventKind::questioned:
-      remarks_.questionnaires.insert(record::remark_from_json(event.body));
+      remarks_.questionnaires.insert(record::from_json<record::TextBody>(event.body).text);
       return true;
     default:
       return false;
   }
 }
 
-void Session::follow_course(const record::Event& event) {
+void Session::apply_to_course(const record::Event& event) {
   switch (event.kind) {
     case record::EventKind::opened:
       phase_ = Phase::opened;
@@ -139,7 +138,8 @@ void Session::follow_course(const record::Event& event) {
       done_since_break_ = 0;
       return;
     case record::EventKind::block_restarted: {
-      course_.restart(course_.redrawn_block(record::block_from_json(event.body).block));
+      course_.restart(
+          course_.redrawn_block(record::from_json<record::BlockBody>(event.body).block));
       done_since_break_ = 0;
       return;
     }
@@ -157,7 +157,7 @@ void Session::follow_course(const record::Event& event) {
       phase_ = Phase::closed;
       return;
     default:
-      refuse(event, "does not belong to a session");
+      if (belongs_to_file_chain(event.kind)) refuse(event, "does not belong to a session");
   }
 }
 

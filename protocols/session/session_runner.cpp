@@ -14,14 +14,14 @@ namespace {
 
 using Time = SessionClock::Time;
 
-// In virtual time; people take their own time.
+// Durations in virtual time only.
 constexpr std::chrono::seconds kBreak{60};
 constexpr std::chrono::seconds kBetweenTrials{2};
-/// With less time than this left, the participant may not go back to the plane.
+/// Minimum remaining time for which the participant may return to the plane.
 constexpr double kMinAgainS = 0.5;
 
-/// The trials of a session, one after the other. In each presentation the participant gets ready,
-/// explores, and answers; the session records it.
+/// Runs the trials of a session one after the other. In each presentation the participant gets
+/// ready, explores, and answers; the session records it.
 class TrialRun {
  public:
   TrialRun(SessionDesk& desk, SessionTally& tally)
@@ -45,8 +45,8 @@ class TrialRun {
   };
   [[nodiscard]] Span note_exploration(const Exploration& done, Time plane_on);
   /// Presents the trial's planes.
-  /// \param again  the participant goes back to the plane before answering
-  /// \return whether the participant is to answer
+  /// \param again  whether the participant returns to the plane before answering
+  /// \return whether the participant must answer
   [[nodiscard]] bool explore(bool again);
   [[nodiscard]] PlanesEnd run_planes(bool again);
   [[nodiscard]] bool interrupt_if_late();
@@ -69,9 +69,9 @@ class TrialRun {
   Time presented_at_{};
   Exploration last_{};         ///< of the trial
   Time ended_{};               ///< that exploration
-  int of_ = 0;                 ///< trials in all, as far as known
+  int of_ = 0;                 ///< expected total of trials
   int repeated_ = 0;           ///< trials that were not explored as instructed
-  bool hand_was_off_ = false;  ///< in the trial before
+  bool hand_was_off_ = false;  ///< in the previous trial
   bool time_is_up_ = false;
 };
 
@@ -96,8 +96,8 @@ void TrialRun::run() {
       desk_.attend(NoticeStep{NoticeStep::What::time_is_up, session_.presentations_begun()}));
 }
 
-/// Interrupts a trial whose plane was delayed, for example by a locked database; it is presented
-/// again.
+/// Interrupts a trial whose plane was delayed, for example by a locked database, so that it is
+/// presented again.
 bool TrialRun::interrupt_if_late() {
   constexpr std::chrono::seconds kLate{1};
   const Time now = desk_.now();
@@ -106,9 +106,9 @@ bool TrialRun::interrupt_if_late() {
   return true;
 }
 
-/// Ticks count from the servo's start, a moment after plane-on was recorded. Later events
-/// are stamped with the end of the exploration, not with the current time: how long it takes to
-/// pack a trace or to write a flight record differs between rough and smooth textures.
+/// Ticks count from the servo's start, shortly after plane-on was recorded. Later events are
+/// stamped with the end of the exploration, not with the current time, because the time to pack a
+/// trace or to write a flight record differs between rough and smooth textures.
 TrialRun::Span TrialRun::note_exploration(const Exploration& done, Time plane_on) {
   const Time began =
       done.began ? std::clamp(parts_.clock.of(*done.began), plane_on, desk_.now()) : plane_on;
@@ -149,7 +149,7 @@ PlanesEnd TrialRun::run_planes(bool again) {
 
 bool TrialRun::explore(bool again) {
   switch (run_planes(again)) {
-    case PlanesEnd::broken_off:
+    case PlanesEnd::aborted:
       return false;
     case PlanesEnd::interrupted:
       session_.interrupt(ended_, desk_.note_interruption(last_.servo), last_.detail);
@@ -245,7 +245,7 @@ void take_break(SessionDesk& desk) {
 void run_trials(SessionDesk& desk, SessionTally& tally) {
   Session& session = desk.session();
   TrialRun trials(desk, tally);
-  const int most_interruptions = session.presentations_left();
+  const int max_interruptions = session.presentations_left();
   while (desk.is_running() && session.phase() == SessionPhase::ready) {
     if (!desk.await_device()) continue;
     desk.parts().clock.pass(kBetweenTrials);
@@ -254,16 +254,16 @@ void run_trials(SessionDesk& desk, SessionTally& tally) {
     trials.run();
     desk.record_marks();
     static_cast<void>(desk.handle());
-    if (desk.interruptions() > most_interruptions && session.accepts(SessionInput::stop)) {
+    if (desk.interruptions() > max_interruptions && session.accepts(SessionInput::stop)) {
       session.stop(desk.now(), "", "too many faults");
     }
-    if (trials.repeated() > most_interruptions && session.accepts(SessionInput::stop)) {
+    if (trials.repeated() > max_interruptions && session.accepts(SessionInput::stop)) {
       session.stop(desk.now(), "", "too many trials not explored as asked for");
     }
   }
 }
 
-/// Everything is stored by now, so the experimenter may leave.
+/// Shows the last page. Everything is stored by now, so the experimenter may leave.
 void show_end(SessionDesk& desk) {
   desk.enter("end");
   const auto asked_to_end = [&] {

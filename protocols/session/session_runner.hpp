@@ -25,17 +25,17 @@ namespace touchtrial::session {
 
 /// Counts of a session, without outcomes.
 struct SessionTally {
-  int presentations = 0;  ///< with interrupted ones
+  int presentations = 0;  ///< including interrupted ones
   int invalid_trials = 0;
   std::int64_t ticks = 0;
   std::chrono::nanoseconds duration{};
-  /// Why the session was left open, to be resumed; empty: it is closed.
+  /// Why the session was left open for later; empty: it is closed.
   std::optional<std::string> left{};
 };
 
-/// An experimenter who shows, asks and ticks nothing.
+/// An experimenter who makes no requests and ticks nothing.
 [[nodiscard]] Experimenter& no_experimenter();
-/// Nothing to read and nothing to ask.
+/// Texts without instructions and questions.
 [[nodiscard]] const SessionTexts& no_texts();
 
 class Instruments;
@@ -56,27 +56,29 @@ struct SessionParts {
   std::function<study::Practice(int round)> practice{};
   std::string participant_name{};      ///< for the experimenter
   std::string device_name{};           ///< for the experimenter
-  device::LabLimits limits{};          ///< the lab's, beside those of the study
+  device::LabLimits limits{};          ///< of the laboratory, in addition to the study's
   Instruments* instruments = nullptr;  ///< receives marks of the session's events in real time
 };
 
-/// Runs an opened or resumed session until it is closed or left: the opening stages that are not
-/// done yet, the trials, and the closing questions.
+/// Runs an opened or resumed session until it is closed or left: the remaining opening stages, the
+/// trials, and the closing questions.
 ///
-/// Nothing stored in clear depends on what is presented, except whether the exploration was long
-/// enough and the hand within its windows (record::HandWindows), and the summary at a session's end
-/// (record::ClosedBody). An answer is acknowledged once it is durable. A presentation that ends in
-/// a fault or a comfort stop is recorded as interrupted, and the study decides whether it is
-/// repeated; the session is then paused until the device supply is ready again. The session is
-/// stopped when the supply gives up, the experimenter aborts it, or interruptions outnumber its
-/// trials. It is left open when the experimenter leaves it, or a signal asked the program to end
-/// (StopOnSignals::asked). No force is on when this returns or throws.
+/// Unencrypted events do not depend on what is presented, with two exceptions: whether the
+/// exploration was long enough and the hand within its windows (record::HandWindows), and the
+/// summary at a session's end (record::ClosedBody). An answer is acknowledged once it is durable.
+///
+/// A presentation that ends in a fault or a comfort stop is recorded as interrupted, and the
+/// study's settings determine whether it is repeated; the session is paused until the device supply
+/// is ready again. The session is stopped when the supply gives up, the experimenter aborts it, or
+/// interruptions outnumber its trials. It is left open when the experimenter leaves it, or a signal
+/// requests the end of the program (StopOnSignals::asked). No force is on when this returns or
+/// throws.
 /// \throws StoreError if an event could not be stored
 /// \throws whatever participant, experimenter and supply throw
 SessionTally run_session(Session& session, const SessionParts& parts);
 
-/// Runs a session in virtual time, from 0 on.
-/// \param participant  brings a simulated hand
+/// Runs a session in virtual time, which starts at 0.
+/// \param participant  has a simulated hand
 SessionTally run_session_in_virtual_time(Session& session, const study::StudyCodes& key,
                                          const StimulusSource& source, Participant& participant);
 

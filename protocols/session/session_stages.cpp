@@ -12,7 +12,7 @@
 namespace touchtrial::session {
 namespace {
 
-// In virtual time; people take their own time.
+// Durations in virtual time only.
 constexpr std::chrono::seconds kCalibration{30};
 constexpr std::chrono::seconds kInstruction{120};
 
@@ -92,7 +92,7 @@ nlohmann::json answer_to_json(study::QuestionKind kind, const std::string& answe
   return answer;
 }
 
-/// One JSON object from question ids to answers, without the questions that were left out. Format:
+/// A JSON object that maps question ids to answers, without skipped questions. Format:
 /// docs/data-dictionary.md.
 std::string answers_to_json(const study::Questionnaire& questionnaire,
                             const std::vector<std::string>& answers) {
@@ -102,7 +102,7 @@ std::string answers_to_json(const study::Questionnaire& questionnaire,
     const study::Question& question = questionnaire.questions[i];
     object[question.id] = answer_to_json(question.kind, answers[i]);
   }
-  // Typed text is stored as it is, but bytes that are not UTF-8 are replaced.
+  // Typed text is stored unchanged, except that invalid UTF-8 is replaced.
   return object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
@@ -128,8 +128,8 @@ struct PracticeProgress {
   bool passed = false;
 };
 
-/// \param practised  in chronological order
-/// \param plan  any round
+/// \param practised  recorded practice, in chronological order
+/// \param plan  any round; all have the same number of trials
 PracticeProgress progress_of(const std::vector<record::PracticeBody>& practised,
                              const study::Practice& plan) {
   PracticeProgress progress;
@@ -161,10 +161,10 @@ class PracticeRun {
     return progress_of(desk_.session().remarks().practice, plan_);
   }
   [[nodiscard]] bool run_round(int round);
-  /// \return empty if it was interrupted; to be repeated if the session continues
+  /// \return empty if the presentation was interrupted, and must be repeated if the session continues
   [[nodiscard]] std::optional<record::PracticeBody> present(const PracticeProgress& at,
                                                             const study::Trial& trial);
-  /// \return how it ended; empty if it was interrupted
+  /// \return how the exploration ended; empty if it was interrupted
   [[nodiscard]] std::optional<device::ServoEnd> explore(const study::Trial& trial);
 
   SessionDesk& desk_;
@@ -254,7 +254,7 @@ std::optional<device::ServoEnd> PracticeRun::explore(const study::Trial& trial) 
           NoticeStep{NoticeStep::What::not_explored, desk_.session().presentations_begun()}));
       return std::nullopt;
     case PlanesEnd::paused:
-    case PlanesEnd::broken_off:
+    case PlanesEnd::aborted:
       break;
   }
   return std::nullopt;
@@ -267,7 +267,7 @@ bool practise(SessionDesk& desk) {
   if (!wanted || desk.session().presentations_begun() > 0) return true;
   const std::size_t before = desk.session().remarks().practice.size();
   if (!PracticeRun(desk).run()) return false;
-  if (desk.session().remarks().practice.size() == before) return true;  // it was over already
+  if (desk.session().remarks().practice.size() == before) return true;  // practice was already over
   desk.enter("practice is over");
   return attend_until_reply(desk, NoticeStep{NoticeStep::What::practice_over}).has_value();
 }
@@ -296,7 +296,7 @@ bool run_opening_stages(SessionDesk& desk) {
 }
 
 void ask_closing_questions(SessionDesk& desk) {
-  // If interrupted, the questions are skipped: the trials are stored.
+  // If this is interrupted, the questions are skipped, because the trials are already stored.
   static_cast<void>(ask(desk, desk.parts().texts.closing));
 }
 

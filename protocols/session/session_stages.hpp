@@ -1,5 +1,5 @@
 /// \file The stages before the first trial and after the last one: day sheet, instructions,
-///   questions and practice.
+/// questions and practice.
 #pragma once
 
 #include "protocols/session/experimenter.hpp"
@@ -11,7 +11,7 @@
 
 namespace touchtrial::session {
 
-/// The texts of one session, in its language. Empty members are left out of the session.
+/// The texts of one session, in its language. The session skips the stages of empty members.
 struct SessionTexts {
   std::vector<std::string> instructions;           ///< pages
   std::optional<study::Questionnaire> handedness;  ///< asked after the instructions
@@ -21,12 +21,12 @@ struct SessionTexts {
 
 class SessionDesk;
 
-/// Goes through the stages before the first trial that are not done yet: day sheet, device,
-/// instructions, handedness, practice, pictures.
+/// Runs the remaining stages before the first trial: day sheet, device, instructions, handedness,
+/// practice, pictures.
 /// \return whether trials may begin
 [[nodiscard]] bool run_opening_stages(SessionDesk& desk);
 
-/// Asks the closing questions of a session whose trials are done.
+/// Asks the closing questions after the last trial.
 void ask_closing_questions(SessionDesk& desk);
 
 }  // namespace touchtrial::session

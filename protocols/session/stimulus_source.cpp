@@ -32,12 +32,13 @@ StimulusSource::StimulusSource(const engine::Pack& pack, const engine::Rendering
     const engine::FieldView view = fields_.back().view();
     if (view.model != rendering.model) {
       throw FileError(one_line(folder_ + ": field " + entry.code +
-                               " is of another rendering model than the study; run `touchtrial "
+                               " has another rendering model than the study; run `touchtrial "
                                "prepare`"));
     }
     stimuli_.emplace(entry.code, Stimulus{view, entry.gains,
                                           engine::RenderingModel(view, rendering, entry.gains)});
-    // The blank plane is made from a field, so that the servo takes as long as for others.
+    // The blank plane is made from a field, so that its computation takes as long as that of
+    // others.
     if (!flat_) flat_.emplace(view, rendering, engine::Gains{});
     if (stimuli_.size() == 1) plane_ = view.geometry;
     plane_.height_px = std::min(plane_.height_px, view.geometry.height_px);
@@ -76,7 +77,7 @@ StimulusSource::Mix StimulusSource::mix_of(const study::Plane& plane) noexcept {
 StimulusSource::StimulusSource(const engine::Pack& pack, const study::StudyCodes& codes)
     : StimulusSource(pack, codes.study.rendering) {
   for (const study::KeyedStimulus& keyed : codes.fields()) static_cast<void>(stimulus(keyed.code));
-  // From the same field in all practice.
+  // The blank plane always comes from the same field, that with the first code.
   const auto first = std::ranges::min_element(codes.stimuli, {}, &study::KeyedStimulus::code);
   flat_.emplace(stimulus(first->code).field, rendering_, engine::Gains{});
   const study::Fields fields = codes.study.task->fields(codes.study);
@@ -102,7 +103,7 @@ StimulusSource::Applied StimulusSource::applied(const Mix& mix,
       engine::FieldWithGains{other.field, engine::scaled(other.gains, mix.share)}};
   Applied sum{engine::applied_sum(parts), 1.0};
   if (rendering_.equalise != engine::Equalise::rms) return sum;
-  // As strong as the first field alone, like every stimulus of the study.
+  // Scaled to the rms force of the first field alone, which all stimuli of the study have.
   const double wanted = engine::lateral_rms(engine::applied_sum(alone).view());
   const double mixed = engine::lateral_rms(sum.field.view());
   sum.factor = mixed > 0.0 ? wanted / mixed : 1.0;
@@ -112,7 +113,7 @@ StimulusSource::Applied StimulusSource::applied(const Mix& mix,
 engine::RenderingModel StimulusSource::levelled(const study::Plane& plane) const {
   const auto found = mixes_.find(mix_of(plane));
   if (found == mixes_.end()) {
-    throw std::logic_error("StimulusSource: a plane that the task did not name");
+    throw std::logic_error("StimulusSource: the plane is not in Fields::mixtures of the task");
   }
   const double gain =
       plane.blank ? 0.0 : found->second.factor * std::pow(10.0, plane.gain_db / 20.0);

@@ -1,4 +1,4 @@
-/// \file The force models of a pack, by opaque code, which is all that trials know about stimuli.
+/// \file The force models of a pack, by opaque code. Trials know stimuli only by these codes.
 #pragma once
 
 #include "engine/pack/pack.hpp"
@@ -13,8 +13,8 @@
 
 namespace touchtrial::session {
 
-/// Maps every field of a pack, and makes its force model once. The constructor reads the fields'
-/// headers; pages of samples are read when a stylus first touches them, or by `fetch`. Thread-safe
+/// Maps every field of a pack into memory, and makes its force model once. The constructor reads
+/// only the fields' headers; samples are read from disk on first access, or by `fetch`. Thread-safe
 /// once constructed.
 class StimulusSource {
  public:
@@ -22,7 +22,7 @@ class StimulusSource {
   /// \throws FileError if a field is missing, truncated, malformed or of another rendering model,
   ///   or the pack is empty
   StimulusSource(const engine::Pack& pack, const engine::RenderingOptions& rendering);
-  /// The same for sessions, whose planes may be levelled and mixed.
+  /// Overload for sessions, whose planes may be levelled and mixed.
   /// \throws FileError also if the pack lacks one of the codes' fields
   StimulusSource(const engine::Pack& pack, const study::StudyCodes& codes);
 
@@ -35,14 +35,14 @@ class StimulusSource {
   /// \throws FileError if the pack has no such code
   [[nodiscard]] engine::RenderingModel model(const std::string& code, double gain_db) const;
 
-  /// A field with its gains, which refers to this.
+  /// A field with its gains. It refers to memory of this object.
   /// \throws FileError if the pack has no such code
   [[nodiscard]] engine::FieldWithGains field(const std::string& code) const;
 
-  /// What a trial presents. In a study that levels its fields (study::Fields::levelled), mean
-  /// heights are removed, so that a texture's wall lies where that of the blank plane does. Gains
-  /// scale forces, which are linear in them below the limits during contact.
-  /// \throws std::logic_error if the study's task did not name the mix
+  /// The model of a plane. In a study that levels its fields (study::Fields::levelled), mean
+  /// heights are removed, so that a texture's wall coincides with that of the blank plane. Gains
+  /// then scale forces, which are linear in the gains during contact and below the limits.
+  /// \throws std::logic_error if the plane is not in the task's Fields::mixtures
   /// \throws FileError if the pack has no such field
   [[nodiscard]] engine::RenderingModel plane_of(const study::Plane& plane,
                                                 const study::StudyCodes& codes) const;
@@ -50,13 +50,13 @@ class StimulusSource {
   /// A plane without texture, for catch trials.
   [[nodiscard]] const engine::RenderingModel& flat() const noexcept { return *flat_; }
 
-  /// Reads a byte of every page of every field, so that the servo finds them in memory. All fields,
-  /// not only the next one: otherwise the time to fetch pages would distinguish a stimulus that was
-  /// presented before from a new one.
+  /// Reads a byte of every memory page of every field, so that the servo does not wait for the
+  /// disk. It reads all fields, not only the next one, because otherwise the time to read would
+  /// distinguish new stimuli from repeated ones.
   void fetch() const noexcept;
 
-  /// The part of the plane that all stimuli have in common. Participants explore this part, so that
-  /// its extent reveals nothing.
+  /// The area that all stimuli have in common. Participants explore this area, so that its extent
+  /// reveals nothing.
   [[nodiscard]] const PlaneGeometry& plane() const noexcept { return plane_; }
 
  private:
@@ -69,14 +69,14 @@ class StimulusSource {
   };
   [[nodiscard]] const Stimulus& stimulus(const std::string& code) const;
 
-  /// Two stimuli, or one twice, and the share of the second.
+  /// Two stimuli and the share of the second; `one` equals `other` if there is no mix.
   struct Mix {
     study::StimulusIndex one;
     study::StimulusIndex other;
     double share = 0.0;
     friend auto operator<=>(const Mix&, const Mix&) = default;
   };
-  /// A field in memory, and the factor at which all gains are 1.
+  /// A field with its gains applied, and a factor that equalises its strength.
   struct Applied {
     engine::TextureField field;
     double factor = 1.0;

@@ -11,8 +11,8 @@ namespace {
 struct ContactSums {
   std::int64_t samples = 0;
   std::int64_t saturated = 0;
-  std::int64_t weak = 0;    ///< below the least median force
-  std::int64_t strong = 0;  ///< above the largest
+  std::int64_t weak = 0;    ///< below the minimum of the median force
+  std::int64_t strong = 0;  ///< above the maximum of the median force
   double path_mm = 0.0;
   double force_squares = 0.0;
 };
@@ -33,16 +33,16 @@ ContactSums sums_of(const record::Trace& trace, double max_force_n,
     ++sums.samples;
     sums.force_squares += force_square;
     sums.saturated += force_square >= saturation ? 1 : 0;
-    sums.weak += force_square < squared(rule.least_median_n) ? 1 : 0;
-    sums.strong += force_square > squared(rule.largest_median_n) ? 1 : 0;
+    sums.weak += force_square < squared(rule.min_median_n) ? 1 : 0;
+    sums.strong += force_square > squared(rule.max_median_n) ? 1 : 0;
     if (before != nullptr) sums.path_mm += norm(sample.position_mm - before->position_mm);
     before = &sample;
   }
   return sums;
 }
 
-/// What the hand did at the plane. The only force used is that across the plane, which on average
-/// is the hand's own push.
+/// What the hand did at the plane. It uses only the force normal to the plane, whose mean equals
+/// the hand's own push.
 record::HandWindows hand_windows(const record::Trace& trace, const study::ValidityRule& rule) {
   double samples = 0.0;
   double path_mm = 0.0;
@@ -62,14 +62,14 @@ record::HandWindows hand_windows(const record::Trace& trace, const study::Validi
     before = &sample;
   }
   if (samples == 0.0) return {.contact = false, .path = false, .force = false, .speed = false};
-  const auto is_within = [](double value, double least, double largest) {
-    return value >= least && value <= largest;
+  const auto is_within = [](double value, double min, double max) {
+    return value >= min && value <= max;
   };
   const double time_s = samples / trace.rate_hz;
-  return {.contact = time_s >= rule.least_contact_s,
-          .path = path_mm >= rule.least_path_mm,
-          .force = is_within(normal_n / samples, rule.least_median_n, rule.largest_median_n),
-          .speed = is_within(path_mm / time_s, study::kSlowestMmS, study::kFastestMmS)};
+  return {.contact = time_s >= rule.min_contact_s,
+          .path = path_mm >= rule.min_path_mm,
+          .force = is_within(normal_n / samples, rule.min_median_n, rule.max_median_n),
+          .speed = is_within(path_mm / time_s, study::kMinStrokeMmS, study::kMaxStrokeMmS)};
 }
 
 double exploring_s(const record::Trace& trace) {
@@ -87,7 +87,7 @@ record::TrialMeasures measures_of(const ContactSums& sums, double rate_hz) {
           static_cast<double>(sums.saturated) / samples};
 }
 
-/// The worse of two explorations in every respect.
+/// Combines two explorations: the worse of each measure, and sums of counts.
 record::ServoHealth joined(const record::ServoHealth& one, const record::ServoHealth& other) {
   return {.rate_hz = std::min(one.rate_hz, other.rate_hz),
           .lateness_p50_us = std::max(one.lateness_p50_us, other.lateness_p50_us),
@@ -104,13 +104,14 @@ TrialFindings findings_of(const record::Trace& trace, double max_force_n,
                           const study::ValidityRule& rule) {
   const ContactSums sums = sums_of(trace, max_force_n, rule);
   record::TrialMeasures measures = measures_of(sums, trace.rate_hz);
-  // The median is within its bounds if at most half of the samples are beyond each: no sorting.
+  // The median is within its limits if at most half of the samples are beyond each, so no sorting
+  // is needed.
   const bool median_fits = 2 * sums.weak <= sums.samples && 2 * sums.strong <= sums.samples;
-  measures.within_limits = measures.contact_s >= rule.least_contact_s &&
-                           measures.path_mm >= rule.least_path_mm && median_fits &&
+  measures.within_limits = measures.contact_s >= rule.min_contact_s &&
+                           measures.path_mm >= rule.min_path_mm && median_fits &&
                            measures.saturated_share < rule.saturated_share;
   return {.measures = measures,
-          .long_enough = exploring_s(trace) >= rule.least_exploring_s,
+          .long_enough = exploring_s(trace) >= rule.min_exploring_s,
           .hand = hand_windows(trace, rule),
           .saturated = measures.saturated_share >= rule.saturated_share};
 }
@@ -145,9 +146,9 @@ void TrialTrace::add(const Exploration& done, std::chrono::nanoseconds began) {
   if (done.health) health_ = health_ ? joined(*health_, *done.health) : *done.health;
 }
 
-void TrialTrace::pack(const Session& session, bool beside) {
+void TrialTrace::pack(const Session& session, bool in_background) {
   const int trial = session.current()->place.trial;
-  packing_ = std::async(beside ? std::launch::async : std::launch::deferred,
+  packing_ = std::async(in_background ? std::launch::async : std::launch::deferred,
                         [this, &session, trial] { return judged(session, trial); });
 }
 

@@ -1,10 +1,10 @@
 /// \file The trace of one trial: measures of its samples, the rule for a valid trial, and the
-///   evidence that is stored with the answer.
+/// evidence that is stored with the answer.
 #pragma once
 
 #include "protocols/session/exploration.hpp"
 #include "protocols/session/session.hpp"
-#include "record/payload.hpp"
+#include "record/session_bodies.hpp"
 #include "record/trace.hpp"
 
 #include <chrono>
@@ -17,16 +17,16 @@ namespace touchtrial::session {
 
 struct TrialFindings {
   record::TrialMeasures measures;
-  /// Derived from the number of samples and the time of landing, which do not depend on forces. In
-  /// clear.
+  /// Whether the exploration lasted long enough. It depends on the number of samples and the time
+  /// of landing, not on forces, and is stored unencrypted.
   bool long_enough = false;
-  /// By the rule's windows and the speeds of the instructions, while the hand was at the plane, at
-  /// most kLandingHeightMm above it: duration, path along the plane, mean force across it, and mean
-  /// speed. None depends on the texture unless it holds the hand back: over a second the mean force
-  /// equals the hand's push, whatever the relief, the lateral force or the force limit. In clear.
-  /// Source: docs/decisions/0054-what-a-trial-shows.md.
+  /// Whether duration, path along the plane, mean normal force and mean speed were within the
+  /// limits of the rule and the instructions, while the hand was at most kLandingHeightMm above the
+  /// plane. None depends on the texture unless the texture impedes the hand: over a second, the
+  /// mean force equals the hand's push, whatever the relief, the lateral force or the force limit.
+  /// Stored unencrypted. Source: docs/decisions/0054-what-a-trial-shows.md.
   record::HandWindows hand{};
-  bool saturated = false;  ///< by the rule's share; sealed
+  bool saturated = false;  ///< whether the share of saturated samples exceeds the rule's; sealed
 
   /// Whether the whole rule is met, except that no tick in contact may be missing.
   [[nodiscard]] bool valid() const noexcept { return long_enough && measures.within_limits; }
@@ -39,14 +39,14 @@ struct TrialFindings {
 [[nodiscard]] TrialFindings findings_of(const record::Trace& trace, double max_force_n,
                                         const study::ValidityRule& rule = {});
 
-/// Evidence, and whether the trial was valid.
+/// The evidence of a trial, and whether the trial was valid.
 struct JudgedEvidence {
   record::TrialEvidence evidence;
   bool valid = false;
 };
 
-/// The trace of the current presentation, of one exploration or several. Its memory is reused by
-/// the next presentation. Belongs to the session's thread.
+/// The trace of the current presentation, with one or more explorations. The next presentation
+/// reuses its memory. Used only on the session's thread.
 class TrialTrace {
  public:
   /// Begins a new presentation.
@@ -56,15 +56,15 @@ class TrialTrace {
   /// Appends that exploration.
   /// \param began  its first tick, since the presentation began
   void add(const Exploration& done, std::chrono::nanoseconds began);
-  /// Ticks of the servo's clock that the explorations took.
+  /// Duration of the explorations in ticks of the servo's clock.
   [[nodiscard]] std::int64_t ticks() const noexcept { return ticks_; }
 
-  /// Begins to judge and pack all samples, while the participant answers.
+  /// Starts evaluating and packing all samples while the participant answers.
   /// \param session  must outlive this
-  /// \param beside  on another thread. The duration differs between textures, so nothing may wait
-  ///   for it.
-  void pack(const Session& session, bool beside);
-  /// The result of `pack`, once.
+  /// \param in_background  whether to use another thread. Nothing may wait for it, because the
+  ///   duration differs between textures.
+  void pack(const Session& session, bool in_background);
+  /// Waits for `pack` and returns its result. Call once for each `pack`.
   /// \throws whatever packing threw
   [[nodiscard]] JudgedEvidence take_evidence() { return packing_.get(); }
 

@@ -9,14 +9,14 @@ namespace touchtrial::simulation {
 namespace {
 
 /// A participant's own value: the population's, plus spread times a standard normal number. Each
-/// purpose has its own stream, so that no spread shifts another draw.
-double varied(double value, double spread, std::string_view purpose, std::uint64_t seed,
-              std::uint64_t number) {
+/// purpose has its own stream, so that no spread changes another draw.
+double individual_value(double value, double spread, std::string_view purpose, std::uint64_t seed,
+                        std::uint64_t number) {
   if (spread == 0.0) return value;
   return value + spread * RandomStream(seed, purpose, number).normal();
 }
 
-/// Presentations felt at the visits before and not forgotten since.
+/// Presentations felt at earlier visits and not yet forgotten.
 double felt_before(const Learning& learning, int visit, int presentations) {
   double felt = 0.0;
   for (int earlier = 1; earlier < visit; ++earlier) {
@@ -33,14 +33,14 @@ Condition::Condition(const SubjectModel& subject, std::uint64_t seed, int number
       seed_(seed),
       number_(static_cast<std::uint64_t>(number)),
       visit_(visit),
-      first_log_(
-          std::log(subject.learning.factor) *
-          std::exp(varied(0.0, subject.learning.spread, "subject: learning", seed, number_))),
+      first_log_(std::log(subject.learning.factor) *
+                 std::exp(individual_value(0.0, subject.learning.spread, "subject: learning", seed,
+                                           number_))),
       felt_before_(felt_before(subject.learning, visit, presentations)),
-      to_answer_(varied(subject.serial.answer, subject.serial.answer_spread,
-                        "subject: leaning to the last answer", seed, number_)),
-      to_stimulus_(varied(subject.serial.stimulus, subject.serial.stimulus_spread,
-                          "subject: leaning to the last stimulus", seed, number_)) {}
+      to_answer_(individual_value(subject.serial.answer, subject.serial.answer_spread,
+                                  "subject: leaning to the last answer", seed, number_)),
+      to_stimulus_(individual_value(subject.serial.stimulus, subject.serial.stimulus_spread,
+                                    "subject: leaning to the last stimulus", seed, number_)) {}
 
 Moment Condition::before(int nth, int block) {
   tire(nth - 1);
@@ -85,8 +85,8 @@ double Condition::period_log(int block) {
     constexpr unsigned kBlockBits = 8;
     const std::uint64_t period =
         (static_cast<std::uint64_t>(visit_) << kBlockBits) + static_cast<std::uint64_t>(block);
-    found->second = varied(0.0, subject_->period_noise_spread, "subject: period", seed_,
-                           (number_ << kPeriodBits) + period);
+    found->second = individual_value(0.0, subject_->period_noise_spread, "subject: period", seed_,
+                                     (number_ << kPeriodBits) + period);
   }
   return found->second;
 }

@@ -1,5 +1,5 @@
-/// \file The condition that a simulated participant is in, from trial to trial of one visit.
-/// Source: docs/planning.md, "From trial to trial".
+/// \file How a simulated participant changes from trial to trial within a visit: learning, fatigue
+/// and serial dependence. Source: docs/planning.md, "From trial to trial".
 #pragma once
 
 #include "protocols/simulation/subject_model.hpp"
@@ -13,25 +13,25 @@
 
 namespace touchtrial::simulation {
 
-/// What one trial's condition adds to a decision. Without anything: a decision that depends on
-/// nothing but the trial.
+/// The effects of a participant's condition on the decision in one trial. The defaults have no
+/// effect.
 struct Moment {
   double noise_factor = 1.0;    ///< on the noise of all features
-  double lapse_log_odds = 0.0;  ///< added to those of the participant's lapses
-  /// Support that the trial before gives to pictures, and their positions.
+  double lapse_log_odds = 0.0;  ///< added to the log odds of a lapse
+  /// Support that the previous trial adds to the picture at a position.
   struct Leaning {
     std::size_t position = 0;
     double log_odds = 0.0;
   };
-  std::optional<Leaning> to_answer{};    ///< of the trial before
-  std::optional<Leaning> to_stimulus{};  ///< likewise
-  /// How long thought takes; null: as long, whatever is felt.
+  std::optional<Leaning> to_answer{};    ///< towards the previous answer
+  std::optional<Leaning> to_stimulus{};  ///< towards the previous stimulus
+  /// The model of thinking time; null: independent of what is felt.
   const ThoughtTime* thought = nullptr;
 };
 
-/// One participant in one visit. Learns, tires, and leans on the trial before. A function of
-/// subject, seed, number, visit and of the calls that were made: the same in a session and without
-/// one. Refers to the subject, which must outlive it.
+/// The condition of one participant in one visit, with learning, fatigue and serial dependence. It
+/// depends only on subject, seed, number, visit and the calls made, with or without a session. The
+/// subject must outlive it.
 class Condition {
  public:
   /// \param number  of the participant, from 1
@@ -40,13 +40,13 @@ class Condition {
   Condition(const SubjectModel& subject, std::uint64_t seed, int number, int visit = 1,
             int presentations = 0);
 
-  /// The condition in which the next presentation is felt and answered.
+  /// The effects on the next presentation.
   /// \param nth  presentation of the visit, from 1
   /// \param block  of the presentation, from 0
   [[nodiscard]] Moment before(int nth, int block);
 
-  /// A break.
-  /// \param begun  presentations of the visit so far
+  /// Takes a break.
+  /// \param begun  number of presentations of the visit so far
   void rest(int begun);
 
   /// Ends a trial.
@@ -54,7 +54,7 @@ class Condition {
   /// \param presented  position of the picture that the presented class is matched to, if known
   void after(std::size_t answered, std::optional<std::size_t> presented);
 
-  /// Forgets the trial before: nothing of it carries over.
+  /// Forgets the previous trial, so that nothing carries over.
   void forget() noexcept;
 
  private:
@@ -65,10 +65,10 @@ class Condition {
   std::uint64_t seed_;
   std::uint64_t number_;
   int visit_;
-  double first_log_;        ///< ln of the factor on the noise before anything is felt
+  double first_log_;        ///< natural logarithm of the noise factor at the first presentation
   double felt_before_;      ///< presentations felt at earlier visits and not forgotten
-  double tired_min_ = 0.0;  ///< minutes of exploring that breaks have left
-  int tired_by_ = 0;        ///< presentations that are counted in them
+  double tired_min_ = 0.0;  ///< minutes of exploring, less the recovery in breaks
+  int tired_by_ = 0;        ///< presentations counted in `tired_min_`
   double to_answer_;
   double to_stimulus_;
   std::map<int, double> period_logs_;  ///< by block

@@ -21,7 +21,7 @@ void check(const FeltBankOptions& options) {
   }
 }
 
-/// Reports progress, from any thread.
+/// Reports progress from several threads.
 class Count {
  public:
   Count(const study::Progress& progress, int of) : progress_(progress), of_(of) {}

@@ -1,5 +1,5 @@
-/// \file Explorations of every stimulus, felt once and used many times: planning draws from them
-/// and need not run the servo for every trial of every simulated study.
+/// \file Precomputed explorations of every stimulus. Planning draws from them, so that the servo need
+/// not run for every trial of every simulated study.
 #pragma once
 
 #include "core/random.hpp"
@@ -16,20 +16,19 @@ namespace touchtrial::simulation {
 
 struct FeltBankOptions {
   int explorations = 200;  ///< of each stimulus, 1 .. 2^24 - 1
-  std::uint64_t seed = 1;  ///< of their paths, which differ from those of trials and training
-  int jobs = 1;            ///< threads, >= 1; the bank does not depend on them
+  std::uint64_t seed = 1;  ///< of the paths, which differ from those of trials and training
+  int jobs = 1;            ///< threads, >= 1; results do not depend on it
 };
 
-/// The features, before noise, of many explorations of each stimulus (class x exemplar x method).
-/// Hand, servo, force limit and sense are those of trials, so that exploration i of a stimulus is
-/// an independent draw from what any trial with it feels like, its gain included. Exploration i is
-/// a function of study, fields, subject (hand and path alone, no noise or bias), seed, the
-/// stimulus's place and i: a larger bank begins with the smaller one. Refers to nothing; immutable,
-/// thread-safe.
+/// Features without noise of many explorations of each stimulus (class x exemplar x method). Hand,
+/// servo, force limit and sense are those of trials, so that each exploration is an independent
+/// draw from the features of a trial with that stimulus, its gain included. Exploration i depends
+/// only on study, fields, seed, the stimulus's place, i, and the subject's hand and path. A larger
+/// bank therefore begins with the smaller one. Holds no references; immutable and thread-safe.
 class FeltBank {
  public:
-  /// Explores every stimulus. Cost: explorations x stimuli x explore_s x 0.15 ms of one thread
-  /// (1.5 ms for 10 s); memory: 184 bytes per exploration.
+  /// Explores every stimulus. Time: explorations x stimuli x explore_s x 0.15 ms of one thread
+  /// (1.5 ms for 10 s). Memory: 184 bytes per exploration.
   /// \param study  the study of the fields; it sets the exploration limit and the force limit
   /// \param progress  counts explorations; called from one thread at a time
   /// \throws std::invalid_argument if an option is out of range
@@ -58,13 +57,13 @@ class FeltBank {
   std::vector<engine::FeltFeatures> felt_;
 };
 
-/// The features that a participant of simulate_study feels in one presentation, to the bit: the
-/// same exploration without its session. Cost: that of one exploration of a bank.
-/// \param gain_db  the presentation's
+/// The features that a participant of simulate_study feels in one presentation, computed without a
+/// session but with bit-identical results. Takes as long as one exploration of a bank.
+/// \param gain_db  of the presentation
 /// \param seed  of the simulation
 /// \param number  of the participant, from 1
-/// \param nth  place of the presentation among those that the participant begins, from 1; unscored
-///   ones count
+/// \param nth  number of the presentation among those that the participant begins, from 1, including
+///   unscored ones
 [[nodiscard]] engine::FeltFeatures feel_trial(const LabelledField& field, double gain_db,
                                               const PlaneGeometry& plane, const study::Study& study,
                                               const SubjectModel& subject, std::uint64_t seed,

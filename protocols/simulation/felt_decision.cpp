@@ -11,23 +11,25 @@
 
 namespace touchtrial::simulation {
 
-double moved(double probability, double log_odds) {
+double with_log_odds(double probability, double log_odds) {
   if (probability <= 0.0 || probability >= 1.0) return probability;
   return 1.0 / (1.0 + std::exp(-(std::log(probability / (1.0 - probability)) + log_odds)));
 }
 
 namespace {
 
-/// Standard normal. Each purpose has its own stream, so that one spread does not affect the others.
+/// A standard normal number. Each purpose has its own stream, so that no spread changes another
+/// draw.
 double deviation(std::string_view purpose, std::uint64_t seed, std::uint64_t number) {
   return RandomStream(seed, purpose, number).normal();
 }
 
-/// Varies the log odds, so that the result stays a probability. A median of 0 or 1 has none: then
-/// all participants are alike.
+/// Varies the log odds, so that the result stays a probability. With a median of 0 or 1 all
+/// participants are equal.
 double individual_lapse(const SubjectModel& subject, std::uint64_t seed, std::uint64_t number) {
   if (subject.lapse_spread == 0.0) return subject.lapse;
-  return moved(subject.lapse, subject.lapse_spread * deviation("subject: lapse", seed, number));
+  return with_log_odds(subject.lapse,
+                       subject.lapse_spread * deviation("subject: lapse", seed, number));
 }
 
 double individual_position_bias(const SubjectModel& subject, std::uint64_t seed,
@@ -37,9 +39,9 @@ double individual_position_bias(const SubjectModel& subject, std::uint64_t seed,
          subject.position_bias_spread * deviation("subject: position bias", seed, number);
 }
 
-/// Preference for the class of this label, wherever its picture lies.
-double liking(const SubjectModel& subject, const std::string& label, std::uint64_t seed,
-              std::uint64_t number) {
+/// Preference for the class with this label, wherever its picture lies.
+double class_preference(const SubjectModel& subject, const std::string& label, std::uint64_t seed,
+                        std::uint64_t number) {
   if (subject.class_bias_spread == 0.0) return 0.0;
   return subject.class_bias_spread * deviation("subject: bias for " + label, seed, number);
 }
@@ -58,8 +60,8 @@ std::optional<FeltFloor> individual_floor(const SubjectModel& subject, engine::F
                   subject.threshold_spread_db * deviation("subject: threshold", seed, number));
 }
 
-constexpr double kQuickestThoughtS = 0.8;
-constexpr double kSlowestThoughtS = 4.0;
+constexpr double kMinThoughtS = 0.8;
+constexpr double kMaxThoughtS = 4.0;
 
 /// The label of the picture that a class is matched to, given the class's own label.
 const std::string& matched_label(const SubjectModel& subject, const std::string& label) {
@@ -76,14 +78,14 @@ void lean(const std::optional<Moment::Leaning>& leaning, std::vector<double>& su
   }
 }
 
-/// Index of the largest value; a random one of several equal ones.
-int strongest(const std::vector<double>& support, RandomStream& random) {
-  const double most = *std::ranges::max_element(support);
-  std::vector<int> equals;
+/// Index of the maximum; ties are broken at random.
+int index_of_max(const std::vector<double>& support, RandomStream& random) {
+  const double max = *std::ranges::max_element(support);
+  std::vector<int> ties;
   for (std::size_t i = 0; i < support.size(); ++i) {
-    if (support[i] == most) equals.push_back(static_cast<int>(i));
+    if (support[i] == max) ties.push_back(static_cast<int>(i));
   }
-  return equals[random.below(equals.size())];
+  return ties[random.below(ties.size())];
 }
 
 }  // namespace
@@ -111,7 +113,7 @@ std::vector<double> Individual::bias(const std::vector<std::string>& labels) con
     for (const ClassBias& preferred : subject_->class_bias) {
       if (preferred.label == labels[i]) bias[i] += preferred.log_odds;
     }
-    bias[i] += liking(*subject_, labels[i], seed_, number_);
+    bias[i] += class_preference(*subject_, labels[i], seed_, number_);
   }
   return bias;
 }
@@ -122,7 +124,7 @@ SeenPictures see(const std::vector<std::string>& labels, const SubjectModel& sub
   for (const std::string& felt : knowledge.label_of_prototype) {
     const auto picture = std::ranges::find(labels, matched_label(subject, felt));
     if (picture == labels.end()) {
-      throw std::invalid_argument("SimulatedParticipant: a class that was learnt has no picture");
+      throw std::invalid_argument("SimulatedParticipant: a learnt class has no picture");
     }
     seen.picture_of_prototype.push_back(static_cast<std::size_t>(picture - labels.begin()));
   }
@@ -164,10 +166,11 @@ FeltDecision::FeltDecision(const Individual& individual, const FeltKnowledge& kn
 ParticipantAnswer FeltDecision::answer(const engine::FeltFeatures& felt,
                                        const SeenPictures& pictures, RandomStream& random,
                                        const Moment& moment) const {
-  const double lapse = moment.lapse_log_odds == 0.0 ? lapse_ : moved(lapse_, moment.lapse_log_odds);
+  const double lapse =
+      moment.lapse_log_odds == 0.0 ? lapse_ : with_log_odds(lapse_, moment.lapse_log_odds);
   const bool lapses = random.uniform() < lapse;
   const int anything = static_cast<int>(random.below(pictures.bias.size()));
-  double thought_s = random.uniform(kQuickestThoughtS, kSlowestThoughtS);
+  double thought_s = random.uniform(kMinThoughtS, kMaxThoughtS);
   const engine::FeltNoise noise{noise_.own * moment.noise_factor,
                                 noise_.common * moment.noise_factor};
   engine::FeltFeatures perceived = felt;
@@ -180,7 +183,7 @@ ParticipantAnswer FeltDecision::answer(const engine::FeltFeatures& felt,
   std::vector<double> support = support_of_pictures(classifier_, pictures, perceived);
   lean(moment.to_answer, support);
   lean(moment.to_stimulus, support);
-  const int named = strongest(support, random);
+  const int named = index_of_max(support, random);
   if (moment.thought != nullptr) {
     thought_s = thought_time_s(*moment.thought, margin_of(support), random);
   }

@@ -1,5 +1,5 @@
-/// \file From felt features to an answer: everything of a simulated participant except the hand and
-/// the skin. Works on features from the servo and from a FeltBank.
+/// \file From felt features to an answer: everything about a simulated participant except hand and
+/// skin. The features come from the servo or from a FeltBank.
 #pragma once
 
 #include "core/random.hpp"
@@ -19,9 +19,8 @@
 
 namespace touchtrial::simulation {
 
-/// The random stream of one presentation: a function of the seed, a purpose, the participant, and
-/// the presentation's place among those that the participant begins. Lead-ins, catch trials and
-/// repetitions count.
+/// The random stream of one presentation, for a purpose. Presentations are numbered in the order in
+/// which the participant begins them, including lead-ins, catch trials and repetitions.
 /// \param number  of the participant, from 1
 /// \param nth  from 1, < 2^24
 [[nodiscard]] RandomStream stream_of_trial(std::uint64_t seed, const char* purpose, int number,
@@ -31,12 +30,12 @@ inline constexpr const char* kExplorationPurpose = "subject: exploration";
 /// Purpose of the stream for a decision.
 inline constexpr const char* kAnswerPurpose = "subject: answer";
 
-/// Moves a probability by log odds. 0 and 1 have none, and stay.
-[[nodiscard]] double moved(double probability, double log_odds);
+/// Adds log odds to a probability; 0 and 1 stay unchanged.
+[[nodiscard]] double with_log_odds(double probability, double log_odds);
 
-/// One participant of a population. A function of subject model, seed and number: the same in every
-/// study and thread. Source of the distributions: docs/planning.md, "Differences between
-/// participants".
+/// One participant of a population, determined by subject model, seed and number, and therefore the
+/// same in every study and thread. Source of the distributions: docs/planning.md, "Differences
+/// between participants".
 class Individual {
  public:
   /// \param subject  must outlive this
@@ -45,11 +44,11 @@ class Individual {
 
   /// Noise on the logarithms of felt intensities.
   [[nodiscard]] engine::FeltNoise noise() const noexcept { return noise_; }
-  /// The threshold; nothing with a flat sense.
+  /// The threshold; empty for a flat sense.
   [[nodiscard]] const std::optional<FeltFloor>& floor() const noexcept { return floor_; }
   /// Probability of a random answer, 0 .. 1.
   [[nodiscard]] double lapse() const noexcept { return lapse_; }
-  /// Log odds of each picture, whatever is felt.
+  /// Bias towards each picture, log odds, whatever is felt.
   /// \param labels  of the pictures, by position
   [[nodiscard]] std::vector<double> bias(const std::vector<std::string>& labels) const;
 
@@ -63,16 +62,16 @@ class Individual {
   double position_bias_;
 };
 
-/// The pictures on the screen, for one individual.
+/// The pictures on the screen, with one individual's biases.
 struct SeenPictures {
   std::vector<double> bias;  ///< log odds, by position
-  /// Position of the picture that each prototype of the knowledge is matched to, after label swaps.
+  /// For each prototype of the knowledge, the position of its picture, after label swaps.
   std::vector<std::size_t> picture_of_prototype;
 };
 
+/// Matches prototypes and biases to the pictures on the screen.
 /// \param labels  of the pictures, by position
-/// \param individual  gives the biases
-/// \throws std::invalid_argument if a class that was learnt has no picture
+/// \throws std::invalid_argument if a learnt class has no picture
 [[nodiscard]] SeenPictures see(const std::vector<std::string>& labels, const SubjectModel& subject,
                                const Individual& individual, const FeltKnowledge& knowledge);
 
@@ -81,31 +80,30 @@ struct SeenPictures {
                                                     const SeenPictures& pictures,
                                                     const FeltKnowledge& knowledge);
 
-/// Ends a trial: keeps what of it the next answer leans on.
+/// Ends a trial, and records what affects the next answer.
 /// \param place  of the trial
 /// \param answered  position of the picture
 void end_trial(Condition& condition, const TrialPlace& place, int answered,
                const SeenPictures& pictures, const FeltKnowledge& knowledge);
 
-/// The support of each picture: the largest sum of log density and bias among the prototypes that
-/// are matched to it; minus infinity if there are none. Cost: a few microseconds.
+/// The support of each picture: the maximum of log density plus bias over its prototypes; minus
+/// infinity if it has none. Takes a few microseconds.
 /// \param perceived  features with noise
 [[nodiscard]] std::vector<double> support_of_pictures(const engine::FeltClassifier& classifier,
                                                       const SeenPictures& pictures,
                                                       const engine::FeltFeatures& perceived);
 
-/// How one individual chooses a picture. Refers to nothing; immutable, thread-safe.
+/// How one individual chooses a picture. Holds no references; immutable and thread-safe.
 class FeltDecision {
  public:
-  /// Cost: about 20 us for 40 examples.
+  /// Takes about 20 us for 40 examples.
   /// \throws std::invalid_argument as FeltClassifier
   FeltDecision(const Individual& individual, const FeltKnowledge& knowledge);
 
-  /// Names a picture. Perceives each feature with noise of its own and takes the
-  /// picture with the most support, one of several equal ones at random; or lapses, and takes any
-  /// picture. Every call draws lapse, lapse's picture, time to think, noise and tie, in this order,
-  /// and at last a time to think that depends on the margin, so that no draw shifts another. Cost:
-  /// a few microseconds.
+  /// Chooses a picture. Adds noise to each feature and takes the picture with the maximum support,
+  /// with ties broken at random; in a lapse, takes any picture. Every call draws lapse, lapse's
+  /// picture, thinking time, noise and tie, in this order, then a thinking time that depends on the
+  /// margin, so that no draw changes another. Takes a few microseconds.
   /// \param felt  features without noise, natural logarithms of newtons
   /// \param random  stream_of_trial for kAnswerPurpose
   /// \param moment  the participant's condition; its positions are those of `pictures`

@@ -7,8 +7,8 @@
 namespace touchtrial::simulation {
 namespace {
 
-constexpr double kLowestStartMm = 10.0;
-constexpr double kHighestStartMm = 20.0;
+constexpr double kMinStartMm = 10.0;
+constexpr double kMaxStartMm = 20.0;
 
 class SensingSink final : public device::SampleSink {
  public:
@@ -57,7 +57,7 @@ device::SimulatedHand make_exploring_hand(const SubjectModel& subject, const Pla
   hand.factors = factors;
   hand.push_n = subject.push_n;
   hand.explore_s = subject.explore_s;
-  hand.start_height_mm = random.uniform(kLowestStartMm, kHighestStartMm);
+  hand.start_height_mm = random.uniform(kMinStartMm, kMaxStartMm);
   device::ExplorationOptions exploration;
   exploration.slowest_mm_s = subject.slowest_mm_s;
   exploration.fastest_mm_s = subject.fastest_mm_s;

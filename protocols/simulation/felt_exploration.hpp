@@ -1,4 +1,4 @@
-/// \file A simulated hand that explores a plane, and what it feels: no session, no trace.
+/// \file A simulated hand that explores a plane, and what it feels, without session and trace.
 #pragma once
 
 #include "core/plane_geometry.hpp"
@@ -14,7 +14,7 @@
 
 namespace touchtrial::simulation {
 
-/// What a subject feels through a hand: the servo's forces, or how they accelerate the tip.
+/// What a subject feels through a hand: the servo's forces, or the accelerations of the tip.
 class HandSense final : private device::TipSense {
  public:
   explicit HandSense(const SubjectModel& subject);
@@ -22,11 +22,11 @@ class HandSense final : private device::TipSense {
   HandSense& operator=(const HandSense&) = delete;
   ~HandSense() override = default;
 
-  /// Starts anew, with a hand at the beginning of its exploration; the hand must not outlive this.
+  /// Restarts with a hand at the beginning of its exploration; the hand must not outlive this.
   void begin(device::SimulatedHand& hand, const PlaneGeometry& plane);
-  /// A sample of the servo. Cost: as TextureSense.
+  /// Adds a sample of the servo. Takes as long as TextureSense.
   void feel(const device::ServoSample& sample) noexcept;
-  /// Before what a person adds: FeltDecision. After the last tick alone.
+  /// Features without noise (see FeltDecision). Call only after the last tick.
   [[nodiscard]] engine::FeltFeatures features() const noexcept { return sense_.features(); }
   /// TextureSense::mean_powers.
   [[nodiscard]] auto mean_powers() const noexcept { return sense_.mean_powers(); }
@@ -39,26 +39,26 @@ class HandSense final : private device::TipSense {
   engine::TextureSense sense_;
 };
 
-/// By how much a participant's hand differs from the median: a function of its arguments. Source:
-/// docs/planning.md, "Differences between participants".
+/// Factors by which a participant's hand differs from the median, determined by the arguments.
+/// Source: docs/planning.md, "Differences between participants".
 /// \param number  of the participant, from 1
 [[nodiscard]] device::HandFactors hand_of_participant(const SubjectModel& subject,
                                                       std::uint64_t seed, std::uint64_t number);
 
-/// A hand above the plane. Draws its path and its starting height.
-/// \param factors  the participant's: hand_of_participant
+/// Makes a hand above the plane with a random path and starting height.
+/// \param factors  of the participant: hand_of_participant
 [[nodiscard]] device::SimulatedHand make_exploring_hand(const SubjectModel& subject,
                                                         const PlaneGeometry& plane,
                                                         RandomStream& random,
                                                         const device::HandFactors& factors = {});
 
-/// Puts a subject's hand on a plane, through device, servo and safety chain in virtual time, and
-/// senses what the servo did. A function of its arguments; thread-safe. Virtual time and the
-/// simulated hand have no faults. A force that is not finite ends the exploration; the features
-/// are then those of the ticks before it. Cost: about 0.1 us a tick.
-/// \param plane  extent of the explored part: session::StimulusSource::plane
+/// Runs an exploration through device, servo and safety chain in virtual time, and senses it. The
+/// result depends only on the arguments; thread-safe. Virtual time and the simulated hand have no
+/// faults, but a force that is not finite ends the exploration; the features are then those of the
+/// ticks before it. Takes about 0.1 us per tick.
+/// \param plane  extent of the explored area: session::StimulusSource::plane
 /// \param random  for the path and the starting height
-/// \param factors  the participant's: hand_of_participant
+/// \param factors  of the participant: hand_of_participant
 /// \return the features without noise, natural logarithms of newtons
 [[nodiscard]] engine::FeltFeatures feel_exploration(const engine::RenderingModel& model,
                                                     const PlaneGeometry& plane,
@@ -67,8 +67,8 @@ class HandSense final : private device::TipSense {
                                                     RandomStream random,
                                                     const device::HandFactors& factors = {});
 
-/// The same with a hand that is at the beginning of its exploration. Copies of one that has
-/// foreseen its way explore several fields in less time.
+/// Overload with a hand at the beginning of its exploration. Copies of a hand with a precomputed
+/// path (SimulatedHand::precompute) explore several fields in less time.
 [[nodiscard]] engine::FeltFeatures feel_exploration(const engine::RenderingModel& model,
                                                     const PlaneGeometry& plane,
                                                     const SubjectModel& subject,

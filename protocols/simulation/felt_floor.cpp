@@ -18,7 +18,7 @@ double strength_noise(engine::FeltNoise noise) noexcept {
 FeltFloor floor_of(engine::FeltNoise noise, double more_sensitive_db) noexcept {
   constexpr double kMinNoise = 0.01;
   const double step = kThresholdDPrime * std::max(strength_noise(noise), kMinNoise);
-  // At the threshold the power is 1: 0.5 ln((1 + floor) / floor) is to be the step.
+  // At the threshold the power is 1, so 0.5 ln((1 + floor) / floor) must equal the step.
   return {std::pow(10.0, more_sensitive_db / 10.0), 1.0 / std::expm1(2.0 * step)};
 }
 

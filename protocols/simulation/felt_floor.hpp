@@ -12,11 +12,12 @@
 
 namespace touchtrial::simulation {
 
-/// With a sense by a curve, features are logarithms of intensities in thresholds. A person feels
-/// 0.5 ln(share exp(2 f) + floor) of a feature f: those far below the threshold are all alike.
+/// A person's threshold. If a threshold curve defines the sense, features are logarithms of
+/// intensities in units of the threshold. A person perceives a feature f as
+/// 0.5 ln(share exp(2 f) + floor), so that features far below the threshold are indistinguishable.
 struct FeltFloor {
-  double share = 1.0;  ///< of the power, by how sensitive the person is, > 0
-  double floor = 1.0;  ///< power of what is felt where there is nothing, > 0
+  double share = 1.0;  ///< factor on the power by the person's sensitivity, > 0
+  double floor = 1.0;  ///< power perceived without any stimulus, > 0
 
   void apply_to(std::span<double> features) const noexcept;
 };
@@ -25,15 +26,15 @@ struct FeltFloor {
 /// track settles.
 inline constexpr double kThresholdDPrime = 1.6232289;
 
-/// \return the standard deviation of the noise of a texture's strength: of the mean of all features
+/// \return the standard deviation of the noise of a texture's strength, the mean of all features
 [[nodiscard]] double strength_noise(engine::FeltNoise noise) noexcept;
 
-/// \return the floor above which a vibration at the curve's threshold stands by kThresholdDPrime:
-///   floor and noise are one parameter. Noise below 1 % counts as 1 %.
-/// \param more_sensitive_db  than the curve
+/// Computes the floor from which a vibration at the curve's threshold differs by kThresholdDPrime.
+/// The noise thus determines the floor; noise below 1 % counts as 1 %.
+/// \param more_sensitive_db  by how much the person is more sensitive than the curve
 [[nodiscard]] FeltFloor floor_of(engine::FeltNoise noise, double more_sensitive_db) noexcept;
 
-/// \return what was learnt as a person feels it; without a floor, as it is
+/// \return the examples as a person with this floor perceives them; unchanged without a floor
 [[nodiscard]] std::vector<engine::FeltExample> examples_above(
     const FeltKnowledge& knowledge, const std::optional<FeltFloor>& floor);
 

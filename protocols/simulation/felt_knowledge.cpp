@@ -11,7 +11,7 @@
 namespace touchtrial::simulation {
 namespace {
 
-/// A pass has no time limit: it lasts as long as the subject explores.
+/// A training pass has no time limit: it lasts as long as the subject explores.
 device::ServoOptions training_options(const SubjectModel& subject, double max_force_n) {
   const auto ticks =
       static_cast<std::int64_t>(std::ceil(subject.explore_s * device::kServoRateHz)) + 1;
@@ -27,12 +27,12 @@ LabelledFields::LabelledFields(const study::StudyCodes& key, const session::Stim
     fields_.push_back(
         {key.study.classes[keyed.stimulus.class_index].label, keyed.stimulus, &source, keyed.code});
   }
-  // By stimulus and not by code: codes are random, and training must not depend on them.
+  // Sorted by stimulus, not by code, because training must not depend on the random codes.
   std::ranges::sort(fields_, {}, &LabelledField::stimulus);
 }
 
 double LabelledFields::draw_gain_db(RandomStream random) const {
-  return trials_.own_gain_db() + study::drawn_rove_db(trials_.rove_db, random);
+  return trials_.own_gain_db() + study::draw_rove_db(trials_.rove_db, random);
 }
 
 FeltKnowledge learn_by_feeling(const LabelledFields& fields, const SubjectModel& subject,
@@ -44,8 +44,8 @@ FeltKnowledge learn_by_feeling(const LabelledFields& fields, const SubjectModel&
   const auto passes = static_cast<std::size_t>(subject.training_passes);
   knowledge.examples.resize(fields.all().size() * passes);
   const device::ServoOptions options = training_options(subject, max_force_n);
-  // The same strokes on every field, so that prototypes differ by texture and not by the places
-  // that happened to be stroked, and fields without a difference are learnt as equals.
+  // The strokes are the same on every field, so that prototypes differ only by texture, and equal
+  // fields are learnt as equal.
   const auto feel_pass = [&](std::size_t pass) {
     RandomStream random(seed, "subject: training pass", pass);
     device::SimulatedHand hand = make_exploring_hand(subject, fields.plane(), random);

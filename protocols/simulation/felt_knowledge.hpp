@@ -13,7 +13,7 @@
 
 namespace touchtrial::simulation {
 
-/// A field with the name of its class: one image of the class by one method. Refers to the source.
+/// A field with the label of its class, from one image and one method. Refers to the source.
 struct LabelledField {
   std::string label;
   study::StimulusIndex stimulus{};
@@ -26,9 +26,9 @@ struct LabelledField {
   }
 };
 
-/// The only way to a field by its label, which the code of trials does not have. Holds every
-/// presented stimulus of a study, ordered by class, image and method. Refers to the source, which
-/// must outlive it.
+/// Every presented stimulus of a study by label, ordered by class, image and method. This is the
+/// only access to fields by label; the code that runs trials does not use it. The source must
+/// outlive it.
 class LabelledFields {
  public:
   /// \throws FileError if the pack lacks a stimulus of the study
@@ -36,7 +36,7 @@ class LabelledFields {
 
   [[nodiscard]] const std::vector<LabelledField>& all() const noexcept { return fields_; }
   [[nodiscard]] const PlaneGeometry& plane() const noexcept { return plane_; }
-  /// A gain as trials have them, dB re the pack's.
+  /// Draws a gain like those of trials, dB re the pack's.
   [[nodiscard]] double draw_gain_db(RandomStream random) const;
 
  private:
@@ -53,10 +53,9 @@ struct FeltKnowledge {
       label_of_prototype;  ///< class label, in the order of LabelledFields::all
 };
 
-/// Feels every labelled field `training_passes` times, with the device and servo of the trials.
-/// Each pass has its own path and, where gains are roved, its own gain. They are the same on every
-/// field, and the path differs from those of all trials. A function of its arguments, except for
-/// `jobs`.
+/// Explores every labelled field `training_passes` times, with the device and servo of the trials.
+/// Each pass has its own path and, where gains are roved, its own gain, both the same on every
+/// field; no trial has that path. The result depends on all arguments except `jobs`.
 /// \param max_force_n  limit of the servo's force, N
 /// \param jobs  threads, >= 1
 [[nodiscard]] FeltKnowledge learn_by_feeling(const LabelledFields& fields,

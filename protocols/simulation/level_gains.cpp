@@ -15,9 +15,9 @@ namespace {
 
 using Fields = std::vector<engine::FieldWithGains>;
 
-/// A stimulus that is this near its level has it, dB.
-constexpr double kNearDb = 0.05;
-/// Hands are not quite linear: gains are corrected by the level that they gave.
+/// Tolerance of a stimulus's level, dB.
+constexpr double kToleranceDb = 0.05;
+/// Hands are not quite linear, so gains are corrected by the levels that they produced.
 constexpr int kMaxTries = 4;
 
 /// The budget of a study's textures on its device, N/mm.
@@ -28,7 +28,7 @@ double stiffness_bound(const engine::RenderingOptions& rendering,
                                              : bound;
 }
 
-/// The lateral force, as a root mean square, that a device's motors hold beside a press.
+/// The rms lateral force that a device's motors can sustain in addition to a press.
 double motor_bound_n(const device::DeviceModel& device) {
   if (!(device.continuous_force_n > engine::kStatedLoadN)) {
     return std::numeric_limits<double>::infinity();
@@ -37,9 +37,9 @@ double motor_bound_n(const device::DeviceModel& device) {
                    engine::kStatedLoadN * engine::kStatedLoadN);
 }
 
-/// The largest gains that stiffness and motors allow.
-Fields largest(std::span<const engine::FieldView> views, engine::RenderingOptions rendering,
-               const device::DeviceModel& device, double stiffness_n_per_mm) {
+/// The fields with the maximum gains that stiffness and motors allow.
+Fields with_max_gains(std::span<const engine::FieldView> views, engine::RenderingOptions rendering,
+                      const device::DeviceModel& device, double stiffness_n_per_mm) {
   rendering.texture_stiffness_n_per_mm = stiffness_n_per_mm;
   const engine::StudyGains gains = engine::choose_gains(views, rendering);
   Fields fields;
@@ -57,7 +57,7 @@ Fields largest(std::span<const engine::FieldView> views, engine::RenderingOption
   return fields;
 }
 
-/// Works out levels of one study's fields on its device.
+/// Computes levels of one study's fields on its device.
 class LevelMeter {
  public:
   LevelMeter(const study::Study& study, const device::DeviceModel& device, const LevelCurve& curve,
@@ -91,9 +91,9 @@ std::optional<std::size_t> weakest(const std::vector<double>& levels) {
   return place;
 }
 
-/// What to change for a level that is out of reach, and what that would give.
-std::string levers(const study::Study& study, std::span<const engine::FieldView> views,
-                   const device::DeviceModel& device, const LevelMeter& meter) {
+/// The changes that would raise the level, and the resulting levels.
+std::string remedies(const study::Study& study, std::span<const engine::FieldView> views,
+                     const device::DeviceModel& device, const LevelMeter& meter) {
   std::string text;
   if (study.trials.rove_db > 0.0) {
     text = fmt::format("/trials/rove_db 0 gives {:.1f} dB more", -study.trials.own_gain_db());
@@ -110,15 +110,15 @@ std::string levers(const study::Study& study, std::span<const engine::FieldView>
   const double clean = stiffness_bound(stiffest, device);
   if (clean > bound) {
     name(fmt::format("/rendering/texture_stiffness_n_per_mm {:g}", clean),
-         largest(views, study.rendering, device, clean));
+         with_max_gains(views, study.rendering, device, clean));
   }
   constexpr double kWider = 2.0;
   std::vector<engine::FieldView> wider(views.begin(), views.end());
   for (engine::FieldView& view : wider) view.geometry.pitch_mm *= kWider;
-  // The filter's pixels stay, as the fields are not extracted anew.
+  // The filter keeps its width in pixels, because the fields are not extracted again.
   name(fmt::format("/rendering/pitch_mm {:g} and filter_mm {:g} with crops of half the side",
                    kWider * study.rendering.pitch_mm, kWider * study.rendering.filter_mm),
-       largest(wider, study.rendering, device, bound));
+       with_max_gains(wider, study.rendering, device, bound));
   return text;
 }
 
@@ -146,7 +146,7 @@ LevelledGains gains_at_level(const study::StudyCodes& key,
   const double wanted_db = study.level.value().db;
   const double bound = stiffness_bound(study.rendering, device);
   const LevelMeter meter(study, device, curve, jobs);
-  const Fields max_fields = largest(fields, study.rendering, device, bound);
+  const Fields max_fields = with_max_gains(fields, study.rendering, device, bound);
   const std::vector<double> max_levels = meter.levels(max_fields);
   LevelledGains result;
   Fields chosen = max_fields;
@@ -157,27 +157,27 @@ LevelledGains gains_at_level(const study::StudyCodes& key,
   const double target_db = place ? std::min(wanted_db, max_levels[*place]) : wanted_db;
   for (int attempt = 0; place && attempt < kMaxTries; ++attempt) {
     const double weakest_db = levels[*weakest(levels)];
-    double farthest_db = 0.0;
+    double max_error_db = 0.0;
     for (std::size_t i = 0; i < chosen.size(); ++i) {
       if (levels[i] == kNoLevelDb) continue;
       const double more_db = target_db - (all_alike ? levels[i] : weakest_db);
       factors[i] = std::min(1.0, factors[i] * std::pow(10.0, more_db / 20.0));
       chosen[i].gains = engine::scaled(max_fields[i].gains, factors[i]);
-      farthest_db = std::max(farthest_db, std::abs(more_db));
+      max_error_db = std::max(max_error_db, std::abs(more_db));
     }
-    if (farthest_db < kNearDb) break;
+    if (max_error_db < kToleranceDb) break;
     levels = meter.levels(chosen);
   }
   for (const engine::FieldWithGains& field : chosen) {
     result.gains.of_field.push_back(field.gains);
   }
-  if (place && max_levels[*place] < wanted_db - kNearDb) {
+  if (place && max_levels[*place] < wanted_db - kToleranceDb) {
     result.remarks.push_back(fmt::format(
-        "/rendering/gains/level_db: {:g} dB by {} is out of reach on {}: {} has {:.1f} dB at "
+        "/rendering/gains/level_db: {:g} dB by {} cannot be reached on {}: {} has {:.1f} dB at "
         "{:g} N/mm; {}",
         wanted_db, study.level->curve, device.name,
         name_of_stimulus(study, key.stimuli[*place].stimulus), max_levels[*place], bound,
-        levers(study, fields, device, meter)));
+        remedies(study, fields, device, meter)));
   }
   return result;
 }

@@ -1,4 +1,4 @@
-/// \file The gains with which stimuli have the level that a study states.
+/// \file The gains at which stimuli have the level that a study states.
 /// Source: docs/perception.md, "A study's level".
 #pragma once
 
@@ -15,39 +15,39 @@
 
 namespace touchtrial::simulation {
 
-/// Stiffer textures feel "alive" at a servo rate of 1 kHz, N/mm: between 0.33 at 250 Hz and 0.90 at
-/// 40 kHz, linearly in the logarithm of the rate. Choi and Tan 2004.
+/// Stiffness above which textures feel "alive" at a servo rate of 1 kHz, N/mm. It lies between 0.33
+/// at 250 Hz and 0.90 at 40 kHz, linearly in the logarithm of the rate. Choi and Tan 2004.
 inline constexpr double kCleanStiffnessNPerMm = 0.48;
 
-/// By what thresholds a level is meant.
+/// The thresholds relative to which levels are stated.
 struct LevelCurve {
   engine::ThresholdCurve curve = engine::ThresholdCurve::israr_2006;
-  /// How much less sensitive the people of this laboratory were on this device, dB; nothing: it has
-  /// measured no thresholds.
+  /// By how much the laboratory's pilots were less sensitive on this device than the curve, dB;
+  /// empty if it has measured no thresholds.
   std::optional<double> pilots_db;
-  bool simulated_pilots = false;  ///< those were simulated people
+  bool simulated_pilots = false;  ///< whether the pilots were simulated
 
-  /// \return a level by the curve as one by this
+  /// Converts a level relative to the curve.
   [[nodiscard]] double level(double db) const noexcept { return db - pilots_db.value_or(0.0); }
 };
 
-/// Turns levels by the curve into levels by the laboratory's own thresholds.
+/// Converts levels relative to the curve into levels relative to the laboratory's own thresholds.
 /// \pre curve.pilots_db
 void apply(const LevelCurve& curve, StimulusLevels& levels);
 
 struct LevelledGains {
   engine::StudyGains gains;
-  /// That the level is out of reach, and what would give more; none if it is reached.
+  /// A warning that the level cannot be reached, with remedies; empty if it is reached.
   std::vector<std::string> remarks;
 };
 
-/// The weakest stimulus gets the study's level, by one factor on all gains; with Equalise::level,
-/// every stimulus gets it, or the level that the weakest can have. Gains are never larger than
-/// those at which textures are as stiff as the study's budget, kCleanStiffnessNPerMm or the device
-/// allow, or the motors could not hold the forces beside a press of kStatedLoadN. Flat stimuli do
-/// not count.
+/// Computes the gains at which the weakest stimulus has the study's level, with one factor on all
+/// gains; with Equalise::level, every stimulus gets that level, or the highest that the weakest can
+/// have. Gains are limited by the stiffness that the study's budget, kCleanStiffnessNPerMm and the
+/// device allow, and by the forces that the motors can sustain in addition to a press of
+/// kStatedLoadN. Flat stimuli are ignored.
 /// \param fields  of key.stimuli
-/// \param device  the study's
+/// \param device  of the study
 /// \param jobs  threads, >= 1
 /// \pre the study has a level
 [[nodiscard]] LevelledGains gains_at_level(const study::StudyCodes& key,

@@ -12,10 +12,10 @@
 namespace touchtrial::simulation {
 namespace {
 
-/// Two people share a quarter of their passes on average.
+/// Two participants share a quarter of their passes on average.
 constexpr int kPassesToDrawFrom = 4;
 
-/// Draws passes for every stimulus alike, because a pass has the same path on all of them.
+/// Draws the same passes for every stimulus, because a pass has the same path on all of them.
 FeltKnowledge own_passes(const FeltKnowledge& learnt, int remembered, RandomStream random) {
   const std::size_t prototypes = learnt.label_of_prototype.size();
   const std::size_t passes = learnt.examples.size() / prototypes;
@@ -45,8 +45,8 @@ void shift(engine::FeltExample& example, const Errors& errors) {
   for (std::size_t f = 0; f < errors.size(); ++f) example.features[f] += errors[f];
 }
 
-/// Each prototype has errors of its own.
-void misremember(FeltKnowledge& known, double noise, RandomStream random) {
+/// Adds memory errors, which are the same for all examples of a prototype.
+void add_memory_errors(FeltKnowledge& known, double noise, RandomStream random) {
   std::vector<Errors> errors;
   for (std::size_t i = 0; i < known.label_of_prototype.size(); ++i) {
     errors.push_back(drawn_errors(noise, random));
@@ -77,7 +77,7 @@ std::shared_ptr<const FeltKnowledge> remembered(const std::shared_ptr<const Felt
                                              RandomStream(seed, "subject: own training", index))
                                 : *learnt;
   if (subject.memory_noise > 0.0) {
-    misremember(known, subject.memory_noise, RandomStream(seed, "subject: memory", index));
+    add_memory_errors(known, subject.memory_noise, RandomStream(seed, "subject: memory", index));
   }
   return std::make_shared<const FeltKnowledge>(std::move(known));
 }

@@ -11,17 +11,18 @@
 
 namespace touchtrial::simulation {
 
-/// What a study's participants learn from, by the subject's kind of training: the explorations that
-/// all remember (`shared`), or four times as many, of which each remembers some (`own`). A function
-/// of its arguments, except for `jobs`. Cost: that of the explorations, 1.5 ms each for 10 s.
+/// The explorations from which a study's participants learn, by the subject's kind of training:
+/// those that all remember (`shared`), or four times as many, of which each remembers a quarter
+/// (`own`). The result depends on all arguments except `jobs`. Takes 1.5 ms per exploration of 10
+/// s.
 /// \param study  of the fields
 [[nodiscard]] std::shared_ptr<const FeltKnowledge> learn(const LabelledFields& fields,
                                                          const study::Study& study,
                                                          const SubjectModel& subject,
                                                          std::uint64_t seed, int jobs);
 
-/// What one participant remembers of it: `learnt` itself if all remember the same. A function of
-/// its arguments. Cost: some 10 us for 40 examples.
+/// The part of `learnt` that one participant remembers; `learnt` itself if all remember the same.
+/// Takes some 10 us for 40 examples.
 /// \param learnt  from `learn` with this subject
 /// \param number  of the participant, from 1
 [[nodiscard]] std::shared_ptr<const FeltKnowledge> remembered(

@@ -1,4 +1,4 @@
-/// \file The simulated participants of a study. How they answer is up to its protocol.
+/// \file The simulated participants of a study. Its protocol defines how they answer.
 #pragma once
 
 #include "protocols/session/stimulus_source.hpp"
@@ -12,32 +12,32 @@
 
 namespace touchtrial::simulation {
 
-/// What a population is made from; everything must outlive it.
+/// The input of a population; everything must outlive the population.
 struct PopulationSetting {
   const study::StudyCodes& key;
   const session::StimulusSource& source;
   const SubjectModel& subject;
-  std::uint64_t seed = 1;  ///< of everything random in participants
-  int jobs = 1;            ///< threads for what is learnt before the first trial, >= 1
+  std::uint64_t seed = 1;  ///< of all random numbers of participants
+  int jobs = 1;            ///< threads for the training before the first trial, >= 1
 };
 
-/// Participants who learnt what their study's protocol asks of them. Immutable and thread-safe.
+/// Trained participants. Immutable and thread-safe.
 class Population {
  public:
   virtual ~Population() = default;
   /// \param number  of the participant, from 1
-  /// \return somebody who must not outlive the population
+  /// \return a participant, which must not outlive the population
   [[nodiscard]] virtual std::unique_ptr<SimulatedParticipant> participant(int number) const = 0;
 };
 
 using MakePopulation = std::unique_ptr<const Population> (*)(const PopulationSetting&);
 
-/// Says how a protocol's simulated participants are made. Call before the first simulation; not
-/// thread-safe.
+/// Registers how a protocol's simulated participants are made. Call before the first simulation;
+/// not thread-safe.
 /// \param protocol  its name; outlives the program's use of it
 void add_population(std::string_view protocol, MakePopulation make);
 
-/// The participants of a study. May take as long as they need to learn.
+/// Makes and trains the participants of a study.
 /// \throws StudyError if its protocol has no simulated participants
 [[nodiscard]] std::unique_ptr<const Population> population_of(const PopulationSetting& setting);
 

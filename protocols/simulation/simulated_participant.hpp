@@ -20,28 +20,28 @@
 
 namespace touchtrial::simulation {
 
-/// A choice or ratings, and the time that it took after exploring.
+/// A choice or ratings, and the thinking time after exploring.
 struct ParticipantAnswer {
   int position = 0;  ///< index of the picture, from 0
   std::chrono::nanoseconds thought{};
-  std::vector<double> ratings{};  ///< not empty: in place of the choice
+  std::vector<double> ratings{};  ///< if not empty, they replace the choice
 };
 
-/// Leaves every question of a questionnaire out, and gives the lowest confidence. Subclasses
-/// explore and choose.
+/// A participant who replies to every step immediately, skips all questions of questionnaires, and
+/// reports the lowest confidence. Subclasses explore and choose.
 class PromptParticipant : public session::Participant {
  public:
   [[nodiscard]] std::optional<session::StepReply> attend(const session::Step& step) final {
     session::StepReply reply;
     if (const auto* const asked = std::get_if<session::AnswerStep>(&step)) {
       this->asked(*asked);
-      const ParticipantAnswer given = answer();
-      if (given.ratings.empty()) {
-        reply.answer = Chosen{given.position};
+      const ParticipantAnswer own = answer();
+      if (own.ratings.empty()) {
+        reply.answer = Chosen{own.position};
       } else {
-        reply.answer = Rated{given.ratings};
+        reply.answer = Rated{own.ratings};
       }
-      reply.took = given.thought;
+      reply.took = own.thought;
       if (asked->confidence_levels > 0) reply.confidence = 1;
     }
     if (const auto* const asked = std::get_if<session::QuestionStep>(&step)) {
@@ -68,16 +68,16 @@ class PromptParticipant : public session::Participant {
   static constexpr std::chrono::seconds kBetweenIntervals{1};
 };
 
-/// In each trial, strokes the plane on a new path and answers from what was felt. Everything random
-/// is a function of the seed, the participant's number, and the number of earlier trials.
-/// Subclasses make the choice. Refers to the subject, which must outlive it.
+/// A participant who strokes the plane on a new path in each trial and answers from what was felt.
+/// Random numbers depend only on the seed, the participant's number, and the number of earlier
+/// trials. Subclasses make the choice. The subject must outlive it.
 class SimulatedParticipant : public PromptParticipant {
  public:
   /// \param number  from 1
   SimulatedParticipant(const SubjectModel& subject, std::uint64_t seed, int number)
       : subject_(subject), seed_(seed), number_(number), sense_(subject) {}
 
-  /// Comes to a visit, where paths and noise are others than at those before.
+  /// Starts a visit, with paths and noise that differ from those of earlier visits.
   /// \param visit  from 1
   /// \param course  of the visit; may be empty
   void start_visit(int visit, TrialCourse course = {}) {
@@ -85,10 +85,11 @@ class SimulatedParticipant : public PromptParticipant {
     trials_begun_ = trials_before(visit);
     begin_visit(visit, std::move(course));
   }
-  /// Gets what decides the presentations, for observers who are told the level.
+  /// Receives the order that chooses presentations, for observers who need to know the level.
   /// \param order  of this visit
   virtual void follow(std::unique_ptr<study::Order> /*order*/) {}
-  /// How many trials a visit counts as coming after: more than any session has.
+  /// The number of trials that count as done before a visit; each visit has room for more trials
+  /// than any session has.
   [[nodiscard]] static std::uint64_t trials_before(int visit) noexcept {
     constexpr std::uint64_t kTrialsOfVisit = 1'000'000;
     return static_cast<std::uint64_t>(visit - 1) * kTrialsOfVisit;
@@ -104,11 +105,11 @@ class SimulatedParticipant : public PromptParticipant {
   /// \param random  stream_of_trial for kAnswerPurpose
   [[nodiscard]] virtual ParticipantAnswer choose(const engine::FeltFeatures& felt,
                                                  RandomStream& random) = 0;
-  /// Called when the participant comes to a visit.
+  /// Called at the start of a visit.
   virtual void begin_visit(int /*visit*/, TrialCourse /*course*/) {}
-  /// What was felt of the last exploration, without noise.
+  /// The features of the last exploration, without noise.
   [[nodiscard]] engine::FeltFeatures felt_last() const noexcept { return sense_.features(); }
-  /// Presentations, or intervals, of this visit that have begun.
+  /// The number of presentations, or intervals, that have begun in this visit.
   [[nodiscard]] int begun() const noexcept {
     return static_cast<int>(trials_begun_ - trials_before(visit_));
   }

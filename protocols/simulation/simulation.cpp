@@ -21,14 +21,14 @@
 namespace touchtrial::simulation {
 namespace {
 
-/// Jobs may be more than the processor has cores. Still more gain nothing, and the system may
-/// refuse them.
-int most_jobs() noexcept {
+/// The maximum number of jobs. It may exceed the number of cores, but not by much, because the
+/// system may refuse more threads.
+int max_jobs() noexcept {
   constexpr unsigned kThreadsACore = 4;
   return static_cast<int>(kThreadsACore * std::max(1U, std::thread::hardware_concurrency()));
 }
 
-/// Shared by all sessions of a simulation, read-only.
+/// Read-only data shared by all sessions of a simulation.
 struct Setting {
   const study::StudyKey& key;
   const session::StimulusSource& source;
@@ -41,11 +41,11 @@ struct Setting {
 /// A session, its participant and its visit.
 struct Place {
   int session = 0;
-  int number = 0;  ///< participant's, and enrolment number
+  int number = 0;  ///< of the participant; also the enrolment number
   int visit = 1;
 };
 
-/// A session on its way to the database.
+/// A session that is not stored yet.
 struct FinishedSession {
   int visit = 1;
   record::BufferedEvents events;
@@ -75,7 +75,7 @@ record::SessionOpening opening_of(const Setting& setting, const Place& place) {
   return opening;
 }
 
-/// A function of the simulation's seed, so that it can be repeated, and of the study's secret.
+/// The key depends on the simulation's seed, so that it is reproducible, and on the study's secret.
 SecretKey participant_key(const Setting& setting, const Place& place) {
   SeededEntropy entropy(setting.seed);
   const SecretKey drawn =
@@ -109,7 +109,7 @@ FinishedSession run_session(const Setting& setting, const Place& place) {
 /// Stores sessions in the order in which they arrive, and counts them and their presentations.
 class Collector {
  public:
-  /// \param sessions  how many will come
+  /// \param sessions  total number of sessions, for progress
   Collector(record::StudyStore& store, const study::Progress& progress,
             const study::VisitPlan& visits, int sessions)
       : store_(store), progress_(progress), visits_(visits), sessions_(sessions) {
@@ -117,11 +117,11 @@ class Collector {
     if (!file_chain.empty()) at_ = file_chain.back().at;
   }
 
-  void take(const FinishedSession& session) {
-    // Virtual sessions follow one another without a pause, but for the days between visits.
+  void add(const FinishedSession& session) {
+    // Virtual sessions follow each other without a gap, except for the days between visits.
     if (session.visit > visit_) {
       using Days = std::chrono::duration<double, std::ratio<86'400>>;
-      at_ += std::chrono::ceil<std::chrono::nanoseconds>(Days(visits_.least_days));
+      at_ += std::chrono::ceil<std::chrono::nanoseconds>(Days(visits_.min_days));
     }
     visit_ = session.visit;
     at_ += session.tally.duration;
@@ -151,9 +151,8 @@ void check(const SimulationOptions& options) {
   }
 }
 
-/// Runs sessions in parallel and stores them in the order of the visits and, of each visit, of the
-/// participants. No exception leaves a filter: oneTBB would leak the
-/// sessions in flight.
+/// Runs sessions in parallel and stores them by visit and, within a visit, by participant. No
+/// exception leaves a filter, because oneTBB would leak the sessions in flight.
 void run_sessions(const Setting& setting, const SimulationOptions& options, int first_session,
                   int sessions, Collector& collector) {
   int started = 0;
@@ -183,7 +182,7 @@ void run_sessions(const Setting& setting, const SimulationOptions& options, int 
     if (fault) return;
     fault = outcome->fault;
     try {
-      if (!fault) collector.take(outcome->session);
+      if (!fault) collector.add(outcome->session);
     } catch (...) {
       fault = std::current_exception();
     }
@@ -193,7 +192,7 @@ void run_sessions(const Setting& setting, const SimulationOptions& options, int 
   const auto pipeline = tbb::make_filter<void, int>(in_order, next) &
                         tbb::make_filter<int, Finished>(tbb::filter_mode::parallel, run) &
                         tbb::make_filter<Finished, void>(in_order, store);
-  const int jobs = std::min(options.jobs, most_jobs());
+  const int jobs = std::min(options.jobs, max_jobs());
   const auto threads = static_cast<std::size_t>(jobs);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
   tbb::task_arena arena(jobs);

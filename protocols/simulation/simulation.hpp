@@ -14,12 +14,12 @@ namespace touchtrial::simulation {
 
 struct SimulationOptions {
   int participants = 20;      ///< >= 1
-  std::uint64_t seed = 1;     ///< of everything random in participants
-  int jobs = 1;               ///< threads, >= 1; results do not depend on them
+  std::uint64_t seed = 1;     ///< of all random numbers of participants
+  int jobs = 1;               ///< threads, >= 1; results do not depend on it
   int first_participant = 1;  ///< >= 1; P001 is the first, and has enrolment number 1
 };
 
-/// Counts of what was done, without outcomes.
+/// Counts of a simulation, without outcomes.
 struct SimulationReport {
   int sessions = 0;
   int presentations = 0;
@@ -28,16 +28,16 @@ struct SimulationReport {
   std::string device{};    ///< recorded_device of the subject
 };
 
-/// Teaches the participants the study's labelled fields as the subject model says. Then runs one
-/// session for each participant and visit through the session state machine and stores it:
-/// everybody's first visit in the participants' order, then everybody's second, and so on. Groups
-/// have no effect. The stored data are a function of key, pack, subject, seed and first
-/// participant. At most a few sessions are in memory at a time.
+/// Trains the participants on the study's labelled fields as the subject model specifies. Then runs
+/// one session for each participant and visit through the session state machine and stores it: the
+/// first visits of all participants in their order, then the second visits, and so on. Groups have
+/// no effect. The stored data depend only on key, pack, subject, seed and first participant. Only a
+/// few sessions are in memory at a time.
 /// \param progress  called after each session, from one thread at a time
 /// \throws StudyError if the subject names a class that the study does not have
 /// \throws FileError if the pack lacks a stimulus
-/// \throws StoreError if a participant is already in the database or it refuses a write; the
-///   sessions stored before remain
+/// \throws StoreError if a participant is already in the database or a write fails; sessions stored
+///   before that remain
 /// \throws std::invalid_argument if an option is out of range
 SimulationReport simulate_study(const study::StudyKey& key, const engine::Pack& pack,
                                 const SubjectModel& subject, const SimulationOptions& options,

@@ -24,12 +24,13 @@
 namespace touchtrial::simulation {
 namespace {
 
-/// Of each plane, each as long as an interval of the default detection study.
+/// Explorations of each plane, each as long as an interval of the default detection study.
 constexpr std::size_t kExplorations = 8;
-/// Of the blank plane, whose differences from stroke to stroke set the threshold where it is felt.
+/// Explorations of the blank plane. If it can be felt, its variance between strokes determines the
+/// threshold.
 constexpr std::size_t kBlankExplorations = 64;
 constexpr double kIntervalS = 2.5;
-/// Gains farther from the pack's than this are not tried.
+/// Maximum distance from the pack's gain at which gains are tried.
 constexpr double kTrustedDb = 40.0;
 
 using Powers = std::array<double, engine::kSenseBins + 1>;
@@ -41,7 +42,7 @@ class NoSamples final : public device::SampleSink {
   void record(const device::ServoSample&) noexcept override {}
 };
 
-/// What one exploration feels like by each curve.
+/// Senses one exploration by each threshold curve.
 class CurveSenses final : public device::TipSense {
  public:
   explicit CurveSenses(const PlaneGeometry& plane) {
@@ -63,7 +64,7 @@ class CurveSenses final : public device::TipSense {
 /// Features by exploration.
 using Explored = std::vector<engine::FeltFeatures>;
 
-/// The same by curve.
+/// Features by curve and exploration.
 struct Felt {
   std::array<Explored, kCurves> features{};
   Powers powers{};  ///< mean over explorations
@@ -71,9 +72,10 @@ struct Felt {
 
 using Hands = std::vector<device::SimulatedHand>;
 
+/// Explores a plane with several hands.
 /// \param hands  before their first tick, one for each exploration
-Felt stroked(const engine::RenderingModel& model, const PlaneGeometry& plane,
-             const device::ServoOptions& servo, std::span<const device::SimulatedHand> hands) {
+Felt feel_plane(const engine::RenderingModel& model, const PlaneGeometry& plane,
+                const device::ServoOptions& servo, std::span<const device::SimulatedHand> hands) {
   Felt felt;
   for (device::SimulatedHand hand : hands) {
     CurveSenses senses(plane);
@@ -114,9 +116,9 @@ double decibels(double power) noexcept {
   return 10.0 * std::log10(std::max(power, std::pow(10.0, kNoLevelDb / 10.0)));
 }
 
-/// The median person of a subject model, who tells a texture from the blank plane by every feature
-/// as far as the whole texture changes it. Intervals differ by the person's noise, and by what
-/// happens to be stroked.
+/// The median person of a subject model, who distinguishes a texture from the blank plane. Features
+/// are weighted by how much the texture at full gain changes them. Intervals differ by the person's
+/// noise and by the path of the stroke.
 class Detector {
  public:
   Detector(const SubjectModel& subject, const Explored& blank, const Explored& whole)
@@ -138,7 +140,7 @@ class Detector {
                            noise_.common * noise_.common * sum * sum + variance_of_blank());
   }
 
-  /// Takes how a gain feels, from which others are extrapolated.
+  /// Sets the features at one gain, from which those at other gains are extrapolated.
   void add(double gain_db, const Explored& felt) {
     texture_ = powers_of(felt);
     for (std::size_t i = 0; i < kExplorations; ++i) {
@@ -147,14 +149,15 @@ class Detector {
       }
     }
   }
-  /// \return the gain at which the texture is told from the blank plane, dB; nothing if none is
+  /// \return the gain at which the texture is distinguished from the blank plane, dB; empty if there
+  ///   is none
   [[nodiscard]] std::optional<double> threshold_db() const {
     double below_db = kMinGainDb;
     double above_db = kMaxGainDb;
-    if (!is_told(above_db)) return std::nullopt;
+    if (!detects(above_db)) return std::nullopt;
     while (above_db - below_db > kStepDb) {
       const double middle_db = 0.5 * (below_db + above_db);
-      (is_told(middle_db) ? above_db : below_db) = middle_db;
+      (detects(middle_db) ? above_db : below_db) = middle_db;
     }
     return above_db;
   }
@@ -193,7 +196,7 @@ class Detector {
     for (const double one : strengths) squares += (one - mean) * (one - mean);
     return squares / (count - 1.0);
   }
-  [[nodiscard]] bool is_told(double gain_db) const {
+  [[nodiscard]] bool detects(double gain_db) const {
     double more = 0.0;
     for (std::size_t i = 0; i < kExplorations; ++i) {
       more += (strength(i, power_of(gain_db)) - strength(i, 0.0)) / kExplorations;
@@ -204,7 +207,7 @@ class Detector {
   engine::FeltNoise noise_;
   FeltFloor floor_;
   Explored blank_;    // powers
-  Explored texture_;  // what the whole texture adds to the first of them
+  Explored texture_;  // powers that the texture at full gain adds to the first of them
   engine::FeltFeatures weights_{};
   double deviation_ = 0.0;  // of the sum of weighted features, from interval to interval
 };
@@ -249,11 +252,10 @@ FieldLevels levels_of_fields(std::span<const engine::FieldWithGains> fields,
   }
   const device::ServoOptions servo = session::trial_servo_options(study, device::kServoRateHz, {});
   SubjectModel subject = default_subject();
-  subject.sense = engine::ThresholdCurve::israr_2006;  // so that accelerations are felt
+  subject.sense = engine::ThresholdCurve::israr_2006;  // any curve: accelerations are then felt
   subject.explore_s = kIntervalS + device::SimulatedHand::kPushBuildUpS;
-  // By device: a hand for each exploration, on the same paths for every plane. Meanwhile the
-  // weights of each curve, which are worked out once in a program's life, while whoever else asks
-  // for them waits.
+  // For each device, a hand for each exploration, with the same paths for every plane. The weights
+  // of the curves, which are computed once per process, are computed in parallel.
   std::vector<Hands> hands(devices.size());
   in_parallel(jobs, kCurves + devices.size(), [&](std::size_t i) {
     if (i < kCurves) {
@@ -272,8 +274,8 @@ FieldLevels levels_of_fields(std::span<const engine::FieldWithGains> fields,
                            std::size_t explorations) {
     const engine::FieldWithGains& stroked_field = fields[field];
     const engine::Gains own = engine::scaled_db(stroked_field.gains, study.trials.own_gain_db());
-    return stroked({stroked_field.field, study.rendering, engine::scaled(own, factor)}, plane,
-                   servo, std::span(hands[device]).first(explorations));
+    return feel_plane({stroked_field.field, study.rendering, engine::scaled(own, factor)}, plane,
+                      servo, std::span(hands[device]).first(explorations));
   };
   std::vector<Felt> blanks(devices.size());
   in_parallel(jobs, devices.size(),
@@ -291,7 +293,8 @@ FieldLevels levels_of_fields(std::span<const engine::FieldWithGains> fields,
       Detector person(subject, blanks[d].features[curve], whole.features[curve]);
       std::optional<double> threshold_db = person.threshold_db();
       if (threshold_db && std::abs(*threshold_db) < kTrustedDb) {
-        // A hand with friction and mass is not linear: once more, near the threshold.
+        // A hand with friction and mass is not linear, so the estimate is refined near the
+        // threshold.
         person.add(*threshold_db, felt_at(*threshold_db).features[curve]);
         threshold_db = person.threshold_db();
       }

@@ -1,5 +1,5 @@
-/// \file How strong a study's stimuli are on a device, by published thresholds for vibrations of a
-/// held stylus. Source: docs/perception.md.
+/// \file Levels of a study's stimuli on a device, relative to published thresholds for vibrations of
+/// a held stylus. Source: docs/perception.md.
 #pragma once
 
 #include "device/model/device_model.hpp"
@@ -16,7 +16,7 @@
 
 namespace touchtrial::simulation {
 
-/// Octaves of frequency in time, with what lies below them and above them.
+/// A band of temporal frequencies; the bands are octaves, except the first and the last.
 struct LevelBand {
   double from_hz;
   double to_hz;
@@ -29,16 +29,16 @@ inline constexpr std::array<LevelBand, 7> kLevelBands{{{0.0, 10.0},
                                                        {160.0, 320.0},
                                                        {320.0, 500.0}}};
 
-/// What a hand feels of one plane on one device by one curve.
+/// The level of one plane on one device relative to one curve.
 struct StimulusLevel {
   std::string device;  ///< name of the model
   engine::ThresholdCurve curve{};
-  /// By how many decibels the stimulus's gain lies above the one at which the median person of the
-  /// default subject model tells it from the blank plane in 79.4 % of three intervals; kNoLevelDb
-  /// where no gain helps. Of the blank plane: its power above that of a vibration at the threshold.
+  /// Gain above that at which the median person of the default subject model detects the stimulus
+  /// beside the blank plane in 79.4 % of trials with three intervals, dB; kNoLevelDb if no gain
+  /// suffices. For the blank plane: its power above that of a vibration at the threshold, dB.
   double db = 0.0;
-  /// Power above the greater of threshold and blank plane, dB, in each band by itself; of the blank
-  /// plane above the threshold.
+  /// Power in each band above the greater of threshold and blank plane, dB; for the blank plane,
+  /// above the threshold.
   std::array<double, kLevelBands.size()> bands_db{};
 };
 inline constexpr double kNoLevelDb = -100.0;
@@ -50,22 +50,23 @@ struct StimulusLevels {
   std::vector<study::StimulusIndex> stimuli;  ///< by class, exemplar and method
   std::vector<PlaneLevels> levels;            ///< of each stimulus
   PlaneLevels blank;                          ///< of the same wall without a texture
-  /// By curves of other people; false: by thresholds that the laboratory measured on its device.
+  /// Whether levels are relative to published curves, not to thresholds that the laboratory
+  /// measured on its device.
   bool provisional = true;
-  bool simulated_pilots = false;  ///< by thresholds of simulated people
+  bool simulated_pilots = false;  ///< whether the measured thresholds are those of simulated people
 };
 
-/// Below this a stimulus is warned of.
+/// Level below which `prepare` warns about a stimulus.
 inline constexpr double kMinLevelDb = 10.0;
 
 /// The model of the device that a study names, as device::model_of_device; a file is relative to
 /// the study's folder.
 /// \pre the study names one
-/// \throws StudyError with its place in the study and the remedy if there is no such model
+/// \throws StudyError with the place in the study and the remedy if there is no such model
 [[nodiscard]] device::DeviceModel device_of(const study::Study& study);
 
-/// The models that a study's levels are computed for: the device that the study names, else all
-/// that the program ships.
+/// The device models for which a study's levels are computed: that of the study, or else all
+/// built-in ones.
 /// \throws as device_of
 [[nodiscard]] std::vector<device::DeviceModel> level_devices(const study::Study& study);
 
@@ -74,10 +75,10 @@ struct FieldLevels {
   PlaneLevels blank;                ///< of the same wall without a texture
 };
 
-/// Where the study roves gains, levels are those of a stimulus's own gain.
-/// A hand of the default subject model strokes every field and the blank plane on each device: the
-/// same paths on all. A function of its arguments, but for `jobs`. Cost: some 15 ms of one thread
-/// for each plane and device.
+/// Computes levels. A hand of the default subject model strokes every field and the blank plane on
+/// each device, on the same paths. If the study roves gains, the levels are those at the centre of
+/// the range. The result depends on all arguments except `jobs`. Takes some 15 ms of one thread for
+/// each plane and device.
 /// \param fields  at least one, of the study's rendering model
 /// \param jobs  threads, >= 1
 [[nodiscard]] FieldLevels levels_of_fields(std::span<const engine::FieldWithGains> fields,
@@ -85,18 +86,18 @@ struct FieldLevels {
                                            const std::vector<device::DeviceModel>& devices,
                                            int jobs, std::uint64_t seed = 1);
 
-/// The same for a pack.
+/// Overload for a pack.
 /// \throws FileError if the pack lacks a stimulus
 [[nodiscard]] StimulusLevels levels_of(const study::StudyCodes& key,
                                        const session::StimulusSource& source,
                                        const std::vector<device::DeviceModel>& devices, int jobs,
                                        std::uint64_t seed = 1);
 
-/// \return a stimulus in a few words: its class, and exemplar and method where there are several
+/// \return a short name of a stimulus: its class, with exemplar and method if there are several
 [[nodiscard]] std::string name_of_stimulus(const study::Study& study,
                                            const study::StimulusIndex& index);
 
-/// The least and the greatest level of a plane on a device, over the curves.
+/// The minimum and maximum level of a plane on a device, over the curves.
 struct LevelRange {
   double low_db = 0.0;
   double high_db = 0.0;

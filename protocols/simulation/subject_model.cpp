@@ -10,7 +10,7 @@
 namespace touchtrial::simulation {
 namespace {
 
-/// Refuses a label that the study lacks.
+/// Refuses a label that the study does not have.
 /// \param pointer  the label's place in the subject file
 void check_label(const std::string& label, const std::string& pointer, const std::string& source,
                  const std::vector<std::string_view>& known) {

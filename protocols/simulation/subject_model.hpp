@@ -1,4 +1,4 @@
-/// \file The parameters of simulated participants, read from a subject file and written to one.
+/// \file The parameters of simulated participants, which subject files store.
 /// Format: docs/planning.md and config/schema/subject.schema.json.
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace touchtrial::simulation {
 
-/// A preference for the picture of one class, whatever is felt.
+/// A preference for the picture of one class, independent of what is felt.
 struct ClassBias {
   std::string label;
   double log_odds = 0.0;
@@ -28,16 +28,16 @@ struct ClassBias {
 /// How participants explore, perceive, err and answer, and how they differ (`Individual` in
 /// protocols/simulation/felt_decision.hpp draws one of them).
 struct SubjectModel {
-  /// The thresholds by which accelerations of the tip are felt; nothing: a flat sense of the
+  /// The threshold curve by which accelerations of the tip are felt; empty: a flat sense of the
   /// servo's forces, with a threshold of 2 mN.
   std::optional<engine::ThresholdCurve> sense{};
-  /// Differences between participants: standard deviation of all their thresholds, dB, >= 0. Of no
+  /// Differences between participants: standard deviation of all their thresholds, dB, >= 0. No
   /// effect on the flat sense.
   double threshold_spread_db = 0.0;
-  /// Standard deviation of the noise that each felt log intensity has by itself, >= 0.
+  /// Standard deviation of the independent noise of each felt log intensity, >= 0.
   double feature_noise = 0.0;
-  /// Standard deviation of the noise that all felt log intensities of a presentation share, >= 0:
-  /// how unsure the strength of a texture is, whatever its pattern.
+  /// Standard deviation of the noise common to all felt log intensities of a presentation, >= 0. It
+  /// makes the strength of a texture uncertain, whatever its pattern.
   double common_noise = 0.0;
   /// Differences between participants: both noises times exp(spread * z), z standard normal.
   double feature_noise_spread = 0.0;
@@ -50,8 +50,7 @@ struct SubjectModel {
   std::vector<ClassBias> class_bias{};
   /// Standard deviation between participants of the preference for each class, >= 0.
   double class_bias_spread = 0.0;
-  /// Pairs of labels whose pictures the participants exchange: each is matched to what the other
-  /// feels like.
+  /// Pairs of labels that the participants confuse: each texture is matched to the other's picture.
   std::vector<std::pair<std::string, std::string>> label_swap{};
   double explore_s = 10.0;  ///< exploration time of a trial, > 0
   double push_n = 0.7;      ///< force towards the plane, > 0
@@ -59,7 +58,7 @@ struct SubjectModel {
   double fastest_mm_s = 150.0;
   device::HandKind hand = device::HandKind::point_mass;
   /// Differences between participants: stiffness, damping and mass of the hand times
-  /// exp(hand_spread * z), each with a z of its own, in [0, 1].
+  /// exp(hand_spread * z), each with its own z; in [0, 1].
   double hand_spread = 0.0;
   int training_passes = 8;  ///< explorations of each stimulus before the first trial, >= 1
   Training training = Training::shared;
@@ -72,12 +71,12 @@ struct SubjectModel {
   double period_noise_spread = 0.0;
   SerialDependence serial{};
   Fatigue fatigue{};
-  /// Nothing: from 0.8 to 4 s, each time equally likely, whatever is felt.
+  /// Empty: thinking time is uniform from 0.8 to 4 s, whatever is felt.
   std::optional<ThoughtTime> thought{};
-  /// Nothing: answers follow from what is felt.
+  /// Empty: answers depend on what is felt.
   std::optional<GivenFunction> given_function{};
 
-  /// What the hand holds; an ideal device unless a command or the study names one. Not in the file.
+  /// The device; an ideal one unless a command or the study names another. Not in the file.
   device::DeviceModel device{};
 
   std::string source{};  ///< the file, for error messages
@@ -87,15 +86,15 @@ struct SubjectModel {
   void check_labels(const study::Study& study) const;
 };
 
-/// \return the device as sessions of this subject record it (record::SessionOpening):
-///   device::words_of_simulated, or "given-function" if nothing is felt
+/// \return the device name that sessions of this subject record (record::SessionOpening):
+///   device::words_of_simulated, or "given-function" if answers do not depend on what is felt
 [[nodiscard]] std::string recorded_device(const SubjectModel& model);
 
-/// \return as subject files have it: "flat", "israr_2006" or "tan_1994"
+/// \return the name in subject files: "flat", "israr_2006" or "tan_1994"
 [[nodiscard]] std::string_view name_of_sense(
     const std::optional<engine::ThresholdCurve>& sense) noexcept;
 
-/// \return config/subjects/default.json as it was when the program was built
+/// \return config/subjects/default.json, as built into the program
 [[nodiscard]] SubjectModel default_subject();
 
 /// Reads a subject file strictly: refuses unknown keys, wrong types and impossible values. Missing
@@ -109,8 +108,8 @@ struct SubjectModel {
 /// \throws StudyError as load_subject_model
 [[nodiscard]] SubjectModel parse_subject_model(std::string_view text, const std::string& source);
 
-/// The text of a subject file with every key, but for `thought` and `given_function` if there is
-/// none. parse_subject_model reads it back as the same model except for the source: numbers have
+/// The text of a subject file with every key, except for an empty `thought` or `given_function`.
+/// parse_subject_model reads it back as the same model except for the source, because numbers have
 /// all their digits. Indented; ends with a line feed.
 [[nodiscard]] std::string subject_model_json(const SubjectModel& model);
 

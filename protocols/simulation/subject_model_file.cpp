@@ -1,4 +1,4 @@
-/// \file Subject files: every key of a subject model, as it is read and written.
+/// \file Subject files: describes every key for reading, writing and the schema.
 #include "core/describe.hpp"
 #include "core/files.hpp"
 #include "protocols/simulation/subject_model.hpp"
@@ -64,7 +64,7 @@ void refuse_second_swap(const JsonValue& place, const SubjectModel& model) {
       if (used.insert(*label).second) continue;
       place.refuse_below(
           "/label_swap/" + std::to_string(i) + (label == &one ? "/0" : "/1"),
-          "the label " + in_quotes(*label) + " is swapped already; a label can be in one pair");
+          "the label " + in_quotes(*label) + " is in two pairs; use each label in one pair only");
     }
   }
 }
@@ -124,10 +124,10 @@ void describe_thought(ObjectIo& io, ThoughtTime& thought) {
             {"nobody is slower; more than `shift_s`"});
   io.rule([&thought](const JsonValue& place, const JsonObject& /*object*/) {
     if (thought.hard_s < thought.easy_s) {
-      place.refuse("hard_s is less than easy_s: the harder a trial, the longer the thought");
+      place.refuse("hard_s is less than easy_s; raise hard_s, or lower easy_s");
     }
     if (thought.longest_s <= thought.shift_s) {
-      place.refuse("longest_s is not more than shift_s: raise longest_s");
+      place.refuse("longest_s must be greater than shift_s; raise longest_s");
     }
   });
 }
@@ -156,7 +156,7 @@ void describe_paths(ObjectIo& io, SubjectModel& model) {
   io.rule([&model](const JsonValue& place, const JsonObject& object) {
     if (model.slowest_mm_s <= model.fastest_mm_s) return;
     place.refuse_below(object.find("slowest_mm_s") ? "/slowest_mm_s" : "/fastest_mm_s",
-                       "the slowest stroke is faster than the fastest; exchange the two speeds");
+                       "slowest_mm_s is greater than fastest_mm_s; swap the two speeds");
   });
 }
 
@@ -225,8 +225,8 @@ SubjectModel parse_subject_model(std::string_view text, const std::string& sourc
 }
 
 SubjectModel load_subject_model(const std::filesystem::path& path) {
-  constexpr std::uintmax_t kLargest = 1U << 20U;
-  const Bytes content = read_file(path, kLargest);
+  constexpr std::uintmax_t kMaxBytes = 1U << 20U;
+  const Bytes content = read_file(path, kMaxBytes);
   return parse_subject_model(text_of(content), path.string());
 }
 

@@ -5,7 +5,7 @@
 
 namespace touchtrial::simulation {
 
-/// \return as annotated_schema() makes it
+/// The schema in the form of annotated_schema().
 [[nodiscard]] std::string subject_model_schema();
 
 }  // namespace touchtrial::simulation

@@ -8,13 +8,13 @@ namespace touchtrial::simulation {
 
 double margin_of(std::span<const double> support) {
   constexpr double kNone = -std::numeric_limits<double>::infinity();
-  double most = kNone;
-  double next = kNone;
+  double max = kNone;
+  double second = kNone;
   for (const double one : support) {
-    next = std::max(next, std::min(one, most));
-    most = std::max(most, one);
+    second = std::max(second, std::min(one, max));
+    max = std::max(max, one);
   }
-  return next == kNone ? std::numeric_limits<double>::infinity() : most - next;
+  return second == kNone ? std::numeric_limits<double>::infinity() : max - second;
 }
 
 double thought_time_s(const ThoughtTime& thought, double margin, RandomStream& random) {

@@ -8,11 +8,11 @@
 
 namespace touchtrial::simulation {
 
-/// The difference between the two largest supports; infinite if there is one alone.
+/// The difference between the two largest supports; infinite if there is only one.
 /// \param support  log odds by picture
 [[nodiscard]] double margin_of(std::span<const double> support);
 
-/// Draws one standard normal number.
+/// Draws a thinking time, with one standard normal number.
 /// \param margin  log odds, >= 0
 /// \return seconds from shift_s to longest_s
 [[nodiscard]] double thought_time_s(const ThoughtTime& thought, double margin,

@@ -1,4 +1,4 @@
-/// \file What of a visit's schedule affects how a simulated participant answers later trials of it.
+/// \file The parts of a visit's schedule that affect a simulated participant's later answers.
 #pragma once
 
 #include "study/schedule.hpp"
@@ -12,16 +12,16 @@ struct Study;
 
 namespace touchtrial::simulation {
 
-/// One presentation, apart from what is felt of it.
+/// One presentation, without what is felt.
 struct TrialPlace {
   int block = 0;
-  /// false: a plane without texture, after which nothing of the trial before is left.
+  /// Whether the trial affects the next one. A plane without texture does not.
   bool carries_over = true;
-  /// Of the presented class; empty if it is not known. For what follows the answer alone.
+  /// Label of the presented class; empty if unknown. It must affect only later trials.
   std::string label;
 };
 
-/// By presentation of one visit.
+/// The presentations of one visit.
 using TrialCourse = std::vector<TrialPlace>;
 
 [[nodiscard]] TrialCourse course_of(const study::Study& study, const study::Schedule& schedule);

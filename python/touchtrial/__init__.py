@@ -73,13 +73,13 @@ class Extraction:
     subband_HL: Optional[Array]
     subband_HH: Optional[Array]
     csgv: Optional[Array]
-    """(H, W): how steep the picture is in all sub-bands together (adaptive)."""
+    """(H, W): the slope of the picture over all sub-bands (adaptive)."""
     order: Optional[Array]
     """(H, W): the order of differentiation, in [0, 1) (adaptive, fixed)."""
     enhanced: Optional[Array]
     """(H, W): picture plus texture."""
     cartoon: Optional[Array]
-    """(H, W): picture less texture (tv-gabor)."""
+    """(H, W): picture minus texture (tv-gabor)."""
     texture_u8: Optional[Array]
     """(H, W) uint8: the texture as a picture."""
     force_x: Optional[Array]
@@ -87,7 +87,7 @@ class Extraction:
     force_y: Optional[Array]
     """(H, W): the tangential force downwards in the picture, grey levels per pixel."""
     components: List[Tuple[float, float]]
-    """Cycles per pixel and degrees of the oscillations that were used (tv-gabor)."""
+    """Cycles per pixel and degrees of the oscillations used (tv-gabor)."""
     gap: float
     """The relative gap that was reached (tv-gabor)."""
     steps: int
@@ -105,7 +105,7 @@ class Extraction:
 
 @dataclass(eq=False)
 class Trace:
-    """Position and force of a trial, sampled evenly from the moment the plane was there."""
+    """Position and force of a trial, sampled evenly from the moment the plane could be felt."""
 
     rate_hz: float
     position_mm: Array
@@ -193,7 +193,7 @@ _INT = (-(2**31), 2**31 - 1)
 
 
 def _shown(value: Any) -> str:
-    """A value in a message of one line."""
+    """A value as text for a one-line message."""
     text = " ".join(repr(value).split())
     return text if len(text) <= 60 else text[:57] + "..."
 
@@ -216,7 +216,7 @@ def _text(name: str, value: Any) -> str:
 
 
 def _path(name: str, value: Any) -> bytes:
-    """A path's bytes: names of files need not be UTF-8."""
+    """A path's bytes, because file names need not be UTF-8."""
     try:
         path = os.fsencode(value)
     except TypeError:
@@ -231,7 +231,7 @@ def _is_masked(array: Any) -> bool:
 
 
 def _image(name: str, value: Any) -> Any:
-    """A picture's path or samples, as the native functions take them."""
+    """A picture's path or samples for the native functions."""
     if isinstance(value, (str, bytes, os.PathLike)):
         _path(name, value)
         return value if isinstance(value, (str, bytes)) else os.fspath(value)
@@ -241,7 +241,7 @@ def _image(name: str, value: Any) -> Any:
 
 
 def _is_picture(source: Any) -> bool:
-    """Whether a source of a field is still to be extracted."""
+    """Whether a field's source is a picture, which has to be extracted first."""
     return isinstance(source, (str, bytes, os.PathLike)) or np.asarray(source).dtype.kind == "u"
 
 
@@ -263,7 +263,7 @@ def _method(
     control: Optional[str],
     seed: Optional[int],
 ) -> _touchtrial.Method:
-    """The method as the study file's reader knows it."""
+    """The method's name in study files."""
     if method == "fixed" and order is None:
         raise ValueError("the method fixed needs order, 0 <= order < 1")
     if seed is not None and control in (None, "none"):
@@ -302,12 +302,12 @@ def _method(
 
 @lru_cache(maxsize=64, typed=True)
 def _known_method(seed: int, **keys: Any) -> _touchtrial.Method:
-    """Reading options takes as long as extracting a small texture."""
+    """Cached, because parsing options takes as long as extracting a small texture."""
     return _touchtrial.Method(_json(keys), seed)
 
 
 def _json(options: Dict[str, Any]) -> str:
-    """As the study file's reader takes it: NumPy's numbers too, but no NaN."""
+    """JSON text for the study file's reader; accepts NumPy numbers, but no NaN."""
     pairs = options.get("components")
     if isinstance(pairs, tuple):
         options["components"] = [{"frequency": f, "direction": d} for f, d in pairs]
@@ -318,7 +318,7 @@ def _json(options: Dict[str, Any]) -> str:
 
 
 def _plain(value: Any) -> Any:
-    """NumPy's numbers as Python's."""
+    """Converts NumPy numbers to Python's."""
     if isinstance(value, np.generic):
         return value.item()
     raise TypeError(f"an option is {_shown(value)}, must be a number, a text or an object of them")
@@ -348,7 +348,7 @@ def extract(
     precision: str = "float",
     planes: Optional[Iterable[str]] = None,
 ) -> Extraction:
-    """The texture of a picture, to the bit as `touchtrial extract --dump` writes it.
+    """The texture of a picture, identical to that of `touchtrial extract --dump`.
 
     image: a path, or samples (H, W) or (H, W, channels) of uint8 or uint16.
     method: adaptive, fixed, tv-gabor, gaussian, median, edge or luminance. The options after it are
@@ -411,7 +411,7 @@ def force_fields(
     control: Optional[str] = None,
     seed: Optional[int] = None,
 ) -> List[Field]:
-    """The force fields of several textures, with gains in common, as a study's stimuli have them.
+    """The force fields of several textures with common gains, like a study's stimuli.
 
     sources: each a picture (as of `extract`; its texture is extracted in double precision, as
     studies do), an Extraction, or a texture, which is an array (H, W) of floating-point grey levels.
@@ -441,7 +441,7 @@ def force_field(
     rendering: Optional[Dict[str, Any]] = None,
     **options: Any,
 ) -> Field:
-    """The force field of one texture: `force_fields` of it alone."""
+    """The force field of one texture: `force_fields` with a single source."""
     return force_fields([source], rendering=rendering, **options)[0]
 
 
@@ -451,7 +451,7 @@ def render(
     dt_s: Optional[float] = None,
     velocities_mm_s: Optional[npt.ArrayLike] = None,
 ) -> Array:
-    """(N, 3) newtons: the force on a stylus along a path, by the model that the servo calls.
+    """(N, 3) newtons: the force on a stylus along a path, by the servo's rendering model.
 
     path_mm: (N, 3), x and y from the plane's top-left corner, z out of the plane; depth is -z.
     dt_s: the time between two positions, from which velocities follow by backward differences (the
@@ -496,10 +496,10 @@ def read(db: Path, key: Optional[Path] = None, *, passphrase: Optional[str] = No
     try:
         return Study(_touchtrial.read(place, b"" if key is None else _path("key", key), passphrase))
     except Error as error:
-        what, asks, _ = str(error).partition("; name a file")
-        if not asks:
+        what, option, _ = str(error).partition("--passphrase-file")
+        if not option:
             raise
-        raise Error(what + "; give it as passphrase=") from None
+        raise Error(what.rpartition("; ")[0] + "; give it as passphrase=") from None
 
 
 def simulate(

@@ -11,7 +11,7 @@ _Path = Union[str, bytes, "os.PathLike[str]"]
 __version__: str
 
 class Error(Exception):
-    """What a user can cause or meet: one line that says what, where, and the remedy."""
+    """An error that a user can cause: one line with the cause, the place and the remedy."""
 
 class Method:
     """An extraction method and its options."""
@@ -20,7 +20,7 @@ class Method:
         """method: JSON, as in a study file's "methods"."""
 
 class Field:
-    """A texture on the virtual plane, with the gains that make newtons of grey levels."""
+    """A texture on the virtual plane, with the gains from grey levels to newtons."""
 
     @property
     def heights(self) -> npt.NDArray[np.float32]:
@@ -37,7 +37,7 @@ class Field:
         """Millimetres per pixel."""
     @property
     def rendering(self) -> Dict[str, Any]:
-        """The rendering options, every key of them."""
+        """All rendering options."""
     @property
     def gains(self) -> Dict[str, float]:
         """tangential_n and normal_n (paper) or height_mm (surface) per grey level; the others are
@@ -61,7 +61,7 @@ class Study:
     def report(self) -> str:
         """The text that `touchtrial report --json` prints."""
     def tables(self) -> Dict[str, Dict[str, npt.NDArray[Any]]]:
-        """Columns by table and name, as `export --format csv` has them."""
+        """Columns by table and name, as in `export --format csv`."""
     def trace(self, session: int, trial: int) -> Tuple[float, npt.NDArray[np.float64]]:
         """The rate in Hz, and (N, 6) positions in mm and forces in N."""
 
@@ -73,7 +73,7 @@ def extract(
     in_double: bool,
     planes: Optional[Sequence[str]],
 ) -> Dict[str, Any]:
-    """The planes of an extraction by name, each an array that owns its memory or None."""
+    """The planes of an extraction by name; each is an array that owns its memory, or None."""
 
 def _seconds_of_extraction(image: Any, all_planes: bool) -> float:
     """Times the C++ call, for the benchmark."""
@@ -82,7 +82,7 @@ def evaluate(images: Sequence[Any], sweep: bool) -> str:
     """The text that `touchtrial evaluate --json` prints."""
 
 def force_fields(sources: Sequence[Any], method: Method, rendering: str) -> List[Field]:
-    """Fields of images or textures, with gains in common."""
+    """Fields of images or textures with common gains."""
 
 def render(
     field: Field,
@@ -90,7 +90,7 @@ def render(
     dt_s: Optional[float] = None,
     velocities_mm_s: Optional[npt.ArrayLike] = None,
 ) -> npt.NDArray[np.float64]:
-    """The force on a stylus along a path, (N, 3) newtons, by the model that the servo calls."""
+    """The force on a stylus along a path, (N, 3) newtons, by the servo's rendering model."""
 
 def read(database: _Path, key: _Path, passphrase: Optional[str]) -> Study:
     """Opens an unblinded study."""

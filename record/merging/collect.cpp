@@ -49,7 +49,7 @@ Station read_station(std::unique_ptr<StationFile> file) {
 /// The session that an event of a file chain opens, or the event's kind, as text.
 std::string about(const record::Event& event) {
   if (event.kind == record::EventKind::session_opened) {
-    const record::SessionOpenedBody body = record::session_opened_from_json(event.body);
+    const record::SessionOpenedBody body = record::from_json<record::SessionOpenedBody>(event.body);
     return fmt::format(" (session {}, participant {})", body.session, body.participant);
   }
   return fmt::format(" ({})", record::name_of(event.kind));

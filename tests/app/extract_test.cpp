@@ -86,7 +86,7 @@ TEST_CASE("extract prints the component that auto chose, or why there is none") 
   const std::string automatic = "--method tv-gabor --components auto";
   CHECK_THAT(folder.extract(automatic).output, holds_text("component: 0."));
   folder.write_noise(2, 2);
-  check_refused(folder.extract(automatic), 1, {"noise.png: components: auto needs an image"});
+  check_refused(folder.extract(automatic), 1, {"noise.png"});
 }
 
 TEST_CASE("extract applies the mapping to the picture, and never to the forces") {
@@ -158,7 +158,7 @@ TEST_CASE("extract refuses bad arguments with exit 2 and one line") {
     INFO(options);
     check_refused(folder.extract(options), 2, {});
   }
-  check_refused(folder.extract("--method fixed --order 1"), 2, {"--order: must be in [0, 1)"});
+  check_refused(folder.extract("--method fixed --order 1"), 2, {"--order [0, 1)"});
   for (const std::string line : {"extract", "no-such-command", ""}) {
     check_refused(folder.type(line), 2, {});
   }
@@ -202,13 +202,13 @@ TEST_CASE("every command has help of 80 columns, in two ways") {
 
 TEST_CASE("a bad argument points to the help of its own command, or to the word that was meant") {
   const ProgramFolder folder;
-  check_refused(folder.type("extract"), 2, {"see touchtrial extract --help"});
-  check_refused(folder.type("stimuli import --crops x"), 2, {"stimuli import --help"});
-  check_refused(folder.type("--no-such-option"), 2, {"see touchtrial --help"});
-  check_refused(folder.type("simulat"), 2, {"did you mean simulate"});
+  check_refused(folder.type("extract"), 2, {"--help"});
+  check_refused(folder.type("stimuli import --crops x"), 2, {"stimuli", "import", "--help"});
+  check_refused(folder.type("--no-such-option"), 2, {"--help"});
+  check_refused(folder.type("simulat"), 2, {"simulat", "simulate"});
   check_refused(folder.type("exclude a.db --participant P07 --reasn asleep"), 2,
-                {"--reasn: is not an option; did you mean --reason?"});
-  check_refused(folder.type("stimuli sheet a.json --outptu=b.png"), 2, {"mean --output?"});
+                {"--reasn", "--reason"});
+  check_refused(folder.type("stimuli sheet a.json --outptu=b.png"), 2, {"--outptu --output"});
   CHECK_THAT(folder.type("close a.db --quite-another").errors,
              !holds_text("did you mean") && holds_text("--quite-another"));
 }

@@ -24,12 +24,11 @@ TEST_CASE("power prints the same numbers with any number of threads") {
   CHECK(one.output == two.output);
   const json report = json::parse(one.output);
   CHECK(report.at("simulated") == true);
-  CHECK(report.at("simulated_on") == "ideal device (no such device is sold)");
+  CHECK(mentions(report.at("simulated_on"), "ideal"));
   CHECK(report.at("sizes").size() == 2);
   CHECK(report.at("sizes").at(0).at("type_one_error").at("runs") == 120);
   CHECK_THAT(power(study, "--participants 3,5").output,
-             Catch::Matchers::StartsWith("simulated on: ideal device (no such device is sold)\n"
-                                         "SIMULATED: power given the assumed sensitivity"));
+             Catch::Matchers::StartsWith("simulated on: ideal ") && holds_text("\nSIMULATED: "));
 }
 
 TEST_CASE("power refuses invalid arguments in one line") {

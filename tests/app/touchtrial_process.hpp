@@ -1,6 +1,8 @@
 /// \file Runs the built program as a user would.
 #pragma once
 
+#include "support/mentions.hpp"
+
 #include <chrono>
 #include <filesystem>
 #include <string>
@@ -37,7 +39,8 @@ struct ProgramResult {
 /// \return the same result
 ProgramResult succeeded(const ProgramResult& result);
 
-/// Checks for this exit code, no output, and one line of errors that holds every part.
+/// Checks for this exit code, no output, and one line of errors that mentions every part
+/// (support/mentions.hpp).
 void check_refused(const ProgramResult& result, int exit_code,
                    const std::vector<std::string>& parts);
 

@@ -56,7 +56,7 @@ AttackedStudy::AttackedStudy(int answered)
   store().sign_with(key().signer());
   store().unblind(seconds(1), "planned", /*interim=*/true);
   store().sign_with(station_.signer());
-  store().exclude(1, seconds(2), "after outcomes were seen: did not follow the instructions");
+  store().exclude(1, seconds(2), "after outcomes were seen: fell asleep");
   add({.participant = "P02", .enrolment = 2, .answers = confusing(0, 1)});
   add({.participant = "P03", .enrolment = 3, .answers = confusing(1, 2)});
   if (answered == 0) return;

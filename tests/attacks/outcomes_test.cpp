@@ -86,7 +86,7 @@ std::vector<int> sessions_not_named(const record::StudyStore& store) {
     const bool is_named =
         std::ranges::any_of(store.events(row.session), [](const record::Event& event) {
           return event.kind == record::EventKind::closed &&
-                 record::closed_from_json(event.body).one_key;
+                 record::from_json<record::ClosedBody>(event.body).one_key;
         });
     if (!is_named) sessions.push_back(row.session);
   }
@@ -162,7 +162,7 @@ void open(const record::StudyStore& store, const study::StudyKey& key, Numbers& 
          as_recorded(store.events(session), key_of_session(store, key, session))) {
       if (event.kind != record::EventKind::trace_stored) continue;
       sealed.add("saturated", session,
-                 record::trace_body_from_json(event.body).saturated ? 1.0 : 0.0);
+                 record::from_json<record::TraceBody>(event.body).saturated ? 1.0 : 0.0);
     }
   }
 }

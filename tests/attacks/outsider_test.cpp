@@ -8,6 +8,7 @@
 #include "record/head_file.hpp"
 #include "record/payload_json.hpp"
 #include "support/catch.hpp"
+#include "support/mentions.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -22,11 +23,6 @@ using record::EventKind;
 
 namespace {
 
-const std::string kUnsigned = "neither the station nor the investigator signed the event";
-const std::string kUnsignedLook = "the investigator did not sign the event";
-const std::string kDoesNotOpen = "the sealed part does not open";
-const std::string kKeyAltered = "the participant's key was altered";
-
 Signer forger() {
   return Signer(sha256(bytes_of("the forger's own key")));
 }
@@ -37,7 +33,8 @@ void forge_answer(record::Event& event) {
 
 /// Signs the station in the first event as if `investigator` were the study's.
 void certify(Forgery& forged, const Signer& investigator, const Signer& station) {
-  record::StudyCommitment commitment = record::commitment_from_json(forged.file().front().body);
+  record::StudyCommitment commitment =
+      record::from_json<record::StudyCommitment>(forged.file().front().body);
   commitment.investigator = investigator.public_half();
   commitment.station->key = station.public_half();
   commitment.station->certificate = investigator.sign(
@@ -48,35 +45,31 @@ void certify(Forgery& forged, const Signer& investigator, const Signer& station)
 struct Attack {
   std::string what;
   std::function<void(Forgery&)> forge;
-  std::string found;  ///< what `verify` says once all chains are made anew
+  std::string place = {};  ///< words that `verify` says once all chains are made anew
+  bool opens = false;      ///< whether the station could still go on with the session
 };
 
 /// In clear, on the file's chain, and in sessions that have ended.
 const std::vector<Attack> kAttacks = {
     {"an answer's sealed bytes altered",
-     [](Forgery& it) { forge_answer(it.first(2, EventKind::answered)); }, kUnsigned},
+     [](Forgery& it) { forge_answer(it.first(2, EventKind::answered)); }},
     {"an event's body altered",
-     [](Forgery& it) { set(it.first(3, EventKind::presented), "block", "7"); }, kUnsigned},
+     [](Forgery& it) { set(it.first(3, EventKind::presented), "block", "7"); }},
     {"an exclusion moved before the look",
-     [](Forgery& it) { std::swap(it.file()[4], it.file()[5]); }, kUnsigned},
-    {"an exclusion erased", [](Forgery& it) { it.file().erase(it.file().begin() + 5); }, kUnsigned},
-    {"an interim look erased", [](Forgery& it) { it.file().erase(it.file().begin() + 4); },
-     kUnsigned},
-    {"an interim look invented", [](Forgery& it) { it.file().push_back(it.file()[4]); },
-     kUnsignedLook},
-    {"a session dropped from the middle", [](Forgery& it) { it.drop(2); },
-     "session 3 is not opened in its turn"},
+     [](Forgery& it) { std::swap(it.file()[4], it.file()[5]); }},
+    {"an exclusion erased", [](Forgery& it) { it.file().erase(it.file().begin() + 5); }},
+    {"an interim look erased", [](Forgery& it) { it.file().erase(it.file().begin() + 4); }},
+    {"an interim look invented", [](Forgery& it) { it.file().push_back(it.file()[4]); }},
+    {"a session dropped from the middle", [](Forgery& it) { it.drop(2); }, "3"},
     {"a session's end and its line removed",
      [](Forgery& it) {
        it.chains.at(3).pop_back();
        it.file().erase(it.file().begin() + 9);
-     },
-     kUnsigned},
+     }},
     {"the station's clock shifted",
      [](Forgery& it) {
        for (record::Event& event : it.file()) event.at += std::chrono::hours(1);
-     },
-     kUnsigned},
+     }},
     {"two participants' sessions exchanged",
      [](Forgery& it) {
        for (record::Event* event :
@@ -85,54 +78,47 @@ const std::vector<Attack> kAttacks = {
          set(*event, "participant", is_second ? "\"P03\"" : "\"P02\"");
          set(*event, "enrolment", is_second ? "3" : "2");
        }
-     },
-     kUnsigned},
+     }},
     {"sealed answers of two sessions exchanged",
      [](Forgery& it) {
        std::swap(it.first(2, EventKind::answered).sealed, it.first(3, EventKind::answered).sealed);
-     },
-     kUnsigned},
-    {"a participant's key replaced by one's own", [](Forgery& it) { it.keys[2] = it.keys.at(3); },
-     kUnsigned},
+     }},
+    {"a participant's key replaced by one's own", [](Forgery& it) { it.keys[2] = it.keys.at(3); }},
     {"a signature copied to another event",
-     [](Forgery& it) { it.file()[4].signature = it.file()[5].signature; }, kUnsignedLook},
+     [](Forgery& it) { it.file()[4].signature = it.file()[5].signature; }},
     {"signatures taken off",
      [](Forgery& it) {
        for (record::Event& event : it.file()) event.signature.clear();
-     },
-     kUnsigned},
+     }},
     {"everything signed with one's own key",
      [](Forgery& it) {
        const Signer own = forger();
        for (record::Event& event : it.file()) event = record::signed_event(event, own);
-     },
-     kUnsigned},
+     }},
     {"a station of one's own that the investigator did not sign for",
      [](Forgery& it) {
        set(it.file().front(), "station",
            R"({"name": "own", "key": ")" + to_hex(forger().public_half()) +
                R"(", "certificate": ")" + std::string(128, '0') + "\"}");
      },
-     "the investigator did not sign for station own"},
+     "own"},
 };
 
 /// Of the open session, whose chain nobody has signed beyond its first event.
 const std::vector<Attack> kAttacksOnOpenSession = {
     {"an answer's sealed bytes altered",
-     [](Forgery& it) { forge_answer(it.first(4, EventKind::answered)); }, kDoesNotOpen},
+     [](Forgery& it) { forge_answer(it.first(4, EventKind::answered)); }},
     {"an event's body altered",
-     [](Forgery& it) { set(it.first(4, EventKind::presented), "block", "7"); }, kDoesNotOpen},
+     [](Forgery& it) { set(it.first(4, EventKind::presented), "block", "7"); }},
     {"an event removed from the middle",
-     [](Forgery& it) { it.chains.at(4).erase(it.chains.at(4).begin() + 2); }, kDoesNotOpen},
+     [](Forgery& it) { it.chains.at(4).erase(it.chains.at(4).begin() + 2); }},
     {"two answers exchanged",
      [](Forgery& it) {
        // opened; then presented, first-contact, trace-stored, answered for each trial
        std::swap(it.chains.at(4).at(4).sealed, it.chains.at(4).at(8).sealed);
-     },
-     kDoesNotOpen},
+     }},
     {"an answer of another session put in",
-     [](Forgery& it) { it.chains.at(4).at(4).sealed = it.first(2, EventKind::answered).sealed; },
-     kDoesNotOpen},
+     [](Forgery& it) { it.chains.at(4).at(4).sealed = it.first(2, EventKind::answered).sealed; }},
     {"a trace and its digest exchanged",
      [](Forgery& it) {
        std::swap(it.first(4, EventKind::trace_stored).body, it.chains.at(4).at(7).body);
@@ -145,11 +131,9 @@ const std::vector<Attack> kAttacksOnOpenSession = {
          if (ours != nullptr) std::swap(ours->box, trace.box);
          ours = &trace;
        }
-     },
-     kDoesNotOpen},
+     }},
     {"an event's time written in clear",
-     [](Forgery& it) { it.first(4, EventKind::answered).at = std::chrono::seconds(1); },
-     "the time of the event is not sealed"},
+     [](Forgery& it) { it.first(4, EventKind::answered).at = std::chrono::seconds(1); }, "", true},
     {"the session's end invented",
      [](Forgery& it) {
        record::Event end = it.chains.at(4).back();
@@ -157,17 +141,18 @@ const std::vector<Attack> kAttacksOnOpenSession = {
        end.body = R"({"complete":true})";
        it.chains.at(4).push_back(end);
      },
-     "the session is closed, but not on the file's chain"},
+     "", true},
 };
 
-void require_found(AttackedStudy& study, const Attack& attack) {
+/// \param place  words of what `verify` finds
+void require_found(AttackedStudy& study, const Attack& attack, const std::string& place) {
   INFO(attack.what);
   Forgery forged(study.database());
   attack.forge(forged);
   forged.relink();
   forged.write();
   INFO(study.found());
-  CHECK(contains(study.found(), attack.found));
+  CHECK(mentions(study.found(), place));
   note(attack.what, Outcome::named);
 }
 
@@ -222,9 +207,9 @@ TEST_CASE("whoever makes the chains anew without a station's file is named by a 
   const Restored whole(study);
   for (const Attack& attack : kAttacks) {
     whole.restore();
-    require_found(study, attack);
+    require_found(study, attack, "chain: " + attack.place);
     INFO(attack.what);
-    CHECK(contains(study.found_without_key(), attack.found));
+    CHECK(mentions(study.found_without_key(), "chain: " + attack.place));
   }
 }
 
@@ -234,10 +219,10 @@ TEST_CASE("an open session made anew does not open, and its head gives it away w
   const Restored whole(study);
   for (const Attack& attack : kAttacksOnOpenSession) {
     whole.restore();
-    require_found(study, attack);
+    require_found(study, attack, "session 4");
     INFO(attack.what);
     CHECK_FALSE(study.found_without_key().empty());
-    CHECK_FALSE((attack.found == kDoesNotOpen && can_resume(study)));
+    CHECK((attack.opens || !can_resume(study)));
   }
 }
 
@@ -248,25 +233,24 @@ TEST_CASE("swapped and replaced traces and keys are named where no chain was mad
   const std::vector<std::pair<std::string, std::string>> attacks = {
       {"UPDATE traces SET box = (SELECT t.box FROM traces t WHERE t.session = 3 AND t.trial = 1) "
        "WHERE session = 2 AND trial = 1",
-       "trace of trial 1 was altered"},
+       "2 1"},
       {"UPDATE participant_keys SET wrapped = (SELECT k.wrapped FROM participant_keys k WHERE "
        "k.session = 3) WHERE session = 2",
-       kKeyAltered},
-      {"DELETE FROM participant_keys WHERE session = 2", "missing without a withdrawal"},
-      {"UPDATE events SET own_session = session WHERE session = 2", "repeats its own number"},
-      {"UPDATE events SET own_session = session WHERE session = 0", "repeats its own number"},
+       "2"},
+      {"DELETE FROM participant_keys WHERE session = 2", "2"},
+      {"UPDATE events SET own_session = session WHERE session = 2", "2"},
+      {"UPDATE events SET own_session = session WHERE session = 0", ""},
       {"INSERT INTO station_keys SELECT session + 4294967296, kept FROM station_keys",
-       "the station holds the key of a session that is not open"},
-      {"UPDATE station_keys SET kept = zeroblob(length(kept))",
-       "the station's copy of the key was altered"},
-      {"DELETE FROM station_keys", "the station's copy of the key is missing"},
+       "the file's chain, event 0"},
+      {"UPDATE station_keys SET kept = zeroblob(length(kept))", "4"},
+      {"DELETE FROM station_keys", "4"},
   };
-  for (const auto& [sql, found] : attacks) {
+  for (const auto& [sql, place] : attacks) {
     INFO(sql);
     whole.restore();
     with_sql(study.database(), sql);
     INFO(study.found());
-    CHECK(contains(study.found(), found));
+    CHECK(mentions(study.found(), "chain: " + place));
     note("rows altered behind the program's back", Outcome::named);
   }
 }
@@ -280,10 +264,10 @@ TEST_CASE("a participant's key wrapped by a forger for the investigator is named
       record::wrap_participant_key(study.key().investigator_box, 2, own);
   forged.keys[2] = {.participant = wrapped.participant, .safety = wrapped.safety};
   forged.write();
-  CHECK(contains(study.found(), kKeyAltered));
+  CHECK(mentions(study.found(), "chain: 2"));
   forged.relink();
   forged.write();
-  CHECK(contains(study.found(), kUnsigned));
+  CHECK(mentions(study.found(), "chain: "));
   note("a participant's key wrapped by the forger", Outcome::named);
 }
 
@@ -298,7 +282,7 @@ TEST_CASE("a study made anew with an investigator of one's own is found by the k
   certify(forged, own, own);
   forged.relink(&own);
   forged.write();
-  CHECK(contains(study.found(), "the database names another investigator than the key's holder"));
+  CHECK_FALSE(study.found().empty());
   CHECK_FALSE(study.found_without_key().empty());  // the genuine head file is still there
   note("an investigator of one's own", Outcome::named);
   // Without the key only the investigator that `verify` prints differs.
@@ -321,14 +305,14 @@ TEST_CASE("sessions dropped from the end are named by the head files, and by a h
   forged.drop(3);
   forged.write();
   CHECK(contains(study.found(), "heads: "));
-  CHECK(contains(study.found_without_key(), "the file's chain has 8 events; the head file"));
+  CHECK(mentions(study.found_without_key(), "8"));
   note("sessions dropped from the end", Outcome::named);
   for (const fs::path& file : {study.head(), study.second_head()}) {
     fs::remove(file);
     CHECK(contains(study.found_without_key(), file.string()));
   }
   note("sessions dropped from the end, and the head files removed", Outcome::named);
-  CHECK(contains(study.found_by_head(on_paper), "its end was cut off"));
+  CHECK_FALSE(study.found_by_head(on_paper).empty());
 }
 
 TEST_CASE("a session that has ended cannot be opened again to be sealed by the station") {
@@ -357,6 +341,6 @@ TEST_CASE("the station signs nothing on top of a chain that somebody made anew")
   study.store().sign_with(study.station().signer());
   const std::string refusal =
       complaint_of<StoreError>([&] { study.store().note(2, std::chrono::seconds(9), "", "late"); });
-  CHECK(contains(refusal, kUnsigned));
+  CHECK_FALSE(refusal.empty());
   note("a forged chain continued by the station", Outcome::refused);
 }

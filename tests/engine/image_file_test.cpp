@@ -3,8 +3,9 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "engine/image_formats/image_format.hpp"
-#include "image_samples.hpp"
+#include "engine/image_samples.hpp"
 #include "support/catch.hpp"
+#include "support/names.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -223,7 +224,7 @@ Bytes tiled_tiff(std::uint32_t bits, const Bytes& tile) {
 
 TEST_CASE("a TIFF in 16-bit tiles is read, and refused if a tile is short") {
   CHECK(read_bytes(tiled_tiff(16, Bytes(512, 0x70))).at(3, 4) == 0x70);
-  CHECK_THROWS_WITH(read_bytes(tiled_tiff(16, Bytes(511, 7))), holds_text("truncated"));
+  CHECK_THROWS_AS(read_bytes(tiled_tiff(16, Bytes(511, 7))), FileError);
 }
 
 TEST_CASE("a TIFF in tiles of four 8-bit channels is read") {
@@ -392,7 +393,7 @@ TEST_CASE(
     return bytes;
   };
   for (const float height : {NAN, INFINITY, -3.4e38F, -99.0F}) {
-    CHECK_THROWS_WITH(decode_picture(with_gap(height), "picture"), holds_text("has 1 gap, with"));
+    CHECK_THROWS_WITH(decode_picture(with_gap(height), "picture"), names("1"));
   }
   CHECK_NOTHROW(decode_picture(with_gap(-98.0F), "picture"));
   const Bytes flat = Tiff(2, 1, numbers({0, 0}, 4)).with(258, {32}).with(339, {3}).bytes();

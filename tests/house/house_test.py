@@ -5,6 +5,7 @@ import tempfile
 import unittest
 
 from house import House
+import pinned_words
 
 ARCHITECTURE = """
 | folder | holds | may use |
@@ -187,6 +188,20 @@ class HouseTest(unittest.TestCase):
             ["core/bare.hpp does not begin by saying what it is for", "core/bare.hpp does not guard itself",
              "core/branches.cpp cannot be read: a bracket has no partner",
              "core/branches.cpp does not open namespace touchtrial"])
+
+    def test_messages_repeated_in_tests(self):
+        messages = pinned_words.Messages({"core/a.cpp": 'f("the disk is full;"\n  " free some space");  // "of no use at all"\n'
+                                                        'g("three words only"); h("SELECT a FROM b");'})
+        self.assertEqual(len(messages.places), 1)
+        for literal, is_repeated in (('"the disk is full"', True), ('"the disk "\n"is full"', True),
+                                     ('R"(is full; free some)"', True), ('"the disk is 3 full"', True),
+                                     ('"the disk is empty"', False), ('// "the disk is full"', False),
+                                     ('TEST_CASE("the disk is full")', False), ('"disk is full: free"', True),
+                                     ('"The Disk Is Full"', False), ('"free/some/space/now"', False)):
+            found = list(pinned_words.pinning_literals(messages, {"tests/a.cpp": literal}, titles=set()))
+            self.assertEqual(len(found), int(is_repeated), literal)
+        self.assertEqual(list(pinned_words.pinning_literals(messages, {"tests/a.cpp": '"the disk is full"'},
+                                                            titles={("the", "disk", "is", "full")})), [])
 
 
 if __name__ == "__main__":

@@ -28,18 +28,19 @@ void record_course(SessionRecorder& recorder, const Course& course) {
   nanoseconds now{0};
   const auto later = [&](nanoseconds least) { return now += least + course.away; };
   recorder.opened(now, opening(1), R"({"schedule":1})");
-  recorder.remarked(later(seconds(1)), EventKind::instructed, "");
-  recorder.practised(later(seconds(1)), {.round = 1,
-                                         .presentation = 1,
-                                         .answer = Chosen{course.practised_well ? 0 : 1},
-                                         .correct = course.practised_well});
-  recorder.remarked(later(seconds(1)), EventKind::noted, course.note);
-  recorder.deviated(later(seconds(1)), {"other", course.note});
+  recorder.add(later(seconds(1)), EventKind::instructed, TextBody{.text = ""});
+  recorder.add(later(seconds(1)), EventKind::practised,
+               PracticeBody{.round = 1,
+                            .presentation = 1,
+                            .answer = Chosen{course.practised_well ? 0 : 1},
+                            .correct = course.practised_well});
+  recorder.add(later(seconds(1)), EventKind::noted, RemarkBody{.text = course.note});
+  recorder.add(later(seconds(1)), EventKind::deviated, DeviationBody{"other", course.note});
   int trial = 0;
   for (const int position : course.positions) {
     recorder.presented(later(seconds(1)), ++trial, 0);
     recorder.first_contact(later(milliseconds(1)), trial);
-    recorder.explored_again(later(seconds(1)), trial);
+    recorder.add(later(seconds(1)), EventKind::explored_again, TrialBody{trial});
     TraceBody body{.trial = trial, .samples = 0, .rate_hz = 1e3, .overruns = 0, .valid = true};
     body.explorations = course.explorations;
     const TrialEvidence evidence =
@@ -51,10 +52,10 @@ void record_course(SessionRecorder& recorder, const Course& course) {
                        .confidence = course.confidence},
                       evidence);
   }
-  recorder.paused(later(seconds(1)), {.text = course.note});
-  recorder.resumed(
-      later(seconds(1)),
-      {.after = "pause", .away_s = std::chrono::duration<double>(course.away).count()});
+  recorder.add(later(seconds(1)), EventKind::paused, PauseBody{.text = course.note});
+  recorder.add(
+      later(seconds(1)), EventKind::resumed,
+      ResumedBody{.after = "pause", .away_s = std::chrono::duration<double>(course.away).count()});
   recorder.closed(later(seconds(1)), true, static_cast<int>(course.positions.size()), false,
                   course.practised_well ? 3.2 : 0.4);
 }

@@ -38,7 +38,9 @@ inline void record_session(record::StudyStore& store, Acknowledged& acknowledged
   record::SessionRecorder recorder(2, participant_key(2), sink);
   const record::Trace trace = stroking(400, 0.05);
   attempt([&] { recorder.opened(nanoseconds(0), opening(2), R"({"schedule":"2"})"); });
-  attempt([&] { recorder.remarked(seconds(1), record::EventKind::instructed, "read aloud"); });
+  attempt([&] {
+    recorder.add(seconds(1), record::EventKind::instructed, record::TextBody{.text = "read aloud"});
+  });
   for (int trial = 1; trial <= 3; ++trial) {
     const nanoseconds start = seconds(20 * trial);
     attempt([&] { recorder.presented(start, trial, 0); });
@@ -107,7 +109,8 @@ inline void finish_session(record::StudyStore& store) {
   const auto sink = store.continue_session(2, [] { return kUtc; });
   record::SessionRecorder recorder(2, participant_key(2), *sink);
   recorder.continue_after(store.last_event(2).value());
-  recorder.resumed(seconds(100), {.after = "program-ended", .away_s = 1.0, .program_version = ""});
+  recorder.add(seconds(100), record::EventKind::resumed,
+               record::ResumedBody{.after = "program-ended", .away_s = 1.0, .program_version = ""});
   recorder.closed(seconds(101), false);
 }
 

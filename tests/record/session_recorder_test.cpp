@@ -62,7 +62,7 @@ TEST_CASE("schedule, measures and the end are secret, and only the right key ope
   }
   REQUIRE(unsealed(session.events.front(), participant_key(4)) == R"({"schedule":"4"})");
   const Event& end = session.events.back();
-  REQUIRE(chain_end_from_json(*unsealed(end, participant_key(4))) ==
+  REQUIRE(from_json<ChainEnd>(*unsealed(end, participant_key(4))) ==
           ChainEnd{.length = end.sequence, .head = end.previous});
   REQUIRE(measures_from_json(*unsealed(session.events[5], participant_key(4))) ==
           TrialMeasures{
@@ -82,18 +82,20 @@ TEST_CASE("an opened event has the time and the body with which it was recorded"
     REQUIRE(opened.event.sequence == stored.sequence);
   };
   const nanoseconds at(1'234'567'891);
-  recorder.practised(at, {.round = 2, .presentation = 3, .answer = Chosen{1}, .correct = true});
+  recorder.add(at, EventKind::practised,
+               PracticeBody{.round = 2, .presentation = 3, .answer = Chosen{1}, .correct = true});
   recorded(R"({"correct":true,"position":1,"presentation":3,"round":2})",
            R"({"presentation":3,"round":2})");
   recorder.presented(at, 7, 2);
   recorded(R"({"block":2,"trial":7})", R"({"block":2,"trial":7})");
   recorder.answered(at, {.trial = 7, .answer = Chosen{4, 0}, .confidence = 5});
   recorded(R"({"confidence":5,"first_position":0,"position":4,"trial":7})", R"({"trial":7})");
-  recorder.remarked(at, EventKind::noted, "sneezed");
+  recorder.add(at, EventKind::noted, RemarkBody{.text = "sneezed"});
   recorded(R"({"text":"sneezed"})", "{}");
-  recorder.deviated(at, {"late", "ten minutes"});
+  recorder.add(at, EventKind::deviated, DeviationBody{"late", "ten minutes"});
   recorded(R"({"code":"late","text":"ten minutes"})", R"({"code":"late"})");
-  recorder.resumed(at, {.after = "pause", .away_s = 12.5, .program_version = "1"});
+  recorder.add(at, EventKind::resumed,
+               ResumedBody{.after = "pause", .away_s = 12.5, .program_version = "1"});
   recorded(R"({"after":"pause","away_s":12.5,"program_version":"1"})",
            R"({"after":"pause","program_version":"1"})");
   TraceBody body{.trial = 7, .samples = 0, .rate_hz = 1e3, .overruns = 2, .valid = true};
@@ -108,7 +110,7 @@ TEST_CASE("an opened event has the time and the body with which it was recorded"
       R"("speed_ok":true,"trace":")" +
       to_hex(evidence.body.trace) + R"(","trial":7,"valid":true})";
   REQUIRE(stored.body == in_clear);
-  const TraceBody whole = trace_body_from_json(opened(stored).body);
+  const TraceBody whole = from_json<TraceBody>(opened(stored).body);
   REQUIRE(whole.samples == 1001);
   REQUIRE(whole.saturated);
   REQUIRE(whole.explorations == std::vector<std::int64_t>{900, 101});
@@ -134,8 +136,9 @@ TEST_CASE("the size of an interruption does not depend on a flight record of up 
     InterruptionDetail detail{"overspeed", "none", ticks, ""};
     for (std::int64_t i = 0; i < ticks; ++i) detail.flight += row;
     recorder.interrupted(seconds(1), 3, "device fault", detail);
-    REQUIRE(interruption_from_json(*unsealed(events.events.back(), participant_key(1))) == detail);
-    const TrialBody clear = trial_from_json(events.events.back().body);
+    REQUIRE(from_json<InterruptionDetail>(*unsealed(events.events.back(), participant_key(1))) ==
+            detail);
+    const auto clear = from_json<InterruptedBody>(events.events.back().body);
     REQUIRE(clear.reason == "device fault");
     REQUIRE(clear.safety_fault == "overspeed");
     REQUIRE(clear.device_fault == "none");
@@ -236,19 +239,22 @@ TEST_CASE("an event that the sink refuses is not part of the chain") {
   REQUIRE(sink.events.front().previous == Digest{});
 }
 
-TEST_CASE("only remarks are recorded as remarks") {
+TEST_CASE("events are recorded with the body of their kind alone") {
   BufferedEvents events;
   SessionRecorder recorder(1, participant_key(1), events);
   recorder.opened(seconds(1), opening(1), "{}");
-  for (const EventKind kind : {EventKind::calibrated, EventKind::instructed, EventKind::ticked,
-                               EventKind::break_taken, EventKind::stopped, EventKind::noted}) {
-    recorder.remarked(seconds(1), kind, "text");
+  for (const EventKind kind :
+       {EventKind::calibrated, EventKind::instructed, EventKind::ticked, EventKind::break_taken}) {
+    recorder.add(seconds(1), kind, TextBody{.text = "text"});
     REQUIRE(events.events.back().kind == kind);
     REQUIRE(opened(events.events.back()).body == R"({"text":"text"})");
   }
-  REQUIRE_THROWS_AS(recorder.remarked(seconds(1), EventKind::answered, ""), StoreError);
-  REQUIRE_THROWS_AS(recorder.remarked(seconds(1), EventKind::practised, ""), StoreError);
-  REQUIRE_THROWS_AS(recorder.remarked(seconds(1), EventKind::study_closed, ""), StoreError);
+  REQUIRE_THROWS_AS(recorder.add(seconds(1), EventKind::answered, TextBody{.text = ""}),
+                    StoreError);
+  REQUIRE_THROWS_AS(recorder.add(seconds(1), EventKind::practised, TextBody{.text = ""}),
+                    StoreError);
+  REQUIRE_THROWS_AS(recorder.add(seconds(1), EventKind::study_closed, TextBody{.text = ""}),
+                    StoreError);
 }
 
 TEST_CASE("a wrapped participant key opens with its study and session alone") {
@@ -266,10 +272,11 @@ TEST_CASE("the safety key opens only reasons of stops and deviations") {
   BufferedEvents session = session_of(3);
   SessionRecorder recorder(3, participant_key(3), session);
   recorder.continue_after(session.events.back());
-  recorder.deviated(seconds(200), {.code = "no-curtain", .text = "in the wash"});
-  recorder.stopped(seconds(201), {.code = "", .text = "a cramp"});
-  recorder.remarked(seconds(202), EventKind::noted, "tall");
-  recorder.paused(seconds(203), {.text = "called his wife"});
+  recorder.add(seconds(200), EventKind::deviated,
+               DeviationBody{.code = "no-curtain", .text = "in the wash"});
+  recorder.add(seconds(201), EventKind::stopped, StopBody{.code = "", .text = "a cramp"});
+  recorder.add(seconds(202), EventKind::noted, RemarkBody{.text = "tall"});
+  recorder.add(seconds(203), EventKind::paused, PauseBody{.text = "called his wife"});
   const SecretKey safety = safety_key(participant_key(3));
   std::vector<std::string> bodies;
   for (const Event& event : session.events) {
@@ -308,11 +315,11 @@ TEST_CASE("the largest force of a trace and of a session are sealed") {
   recorder.trace_stored(seconds(1), body, {}, trace);
   const Event stored = events.events.back();
   REQUIRE_FALSE(contains(stored.body, "largest_force"));
-  REQUIRE(trace_body_from_json(opened(stored).body).largest_force_n == 5.0);
+  REQUIRE(from_json<TraceBody>(opened(stored).body).largest_force_n == 5.0);
   recorder.closed(seconds(2), true, 1, false, 3.149);
   const Event end = events.events.back();
   REQUIRE(end.body == R"({"answers":1,"complete":true})");
-  REQUIRE(closed_from_json(opened(end).body).largest_force_n == 3.1);
+  REQUIRE(from_json<ClosedBody>(opened(end).body).largest_force_n == 3.1);
   const auto left = opened_safety_event(end, safety_key(participant_key(1)));
-  REQUIRE(closed_from_json(left.value().event.body).largest_force_n == 3.1);
+  REQUIRE(from_json<ClosedBody>(left.value().event.body).largest_force_n == 3.1);
 }

@@ -5,6 +5,7 @@
 #include "core/random.hpp"
 #include "record/session_recorder.hpp"
 #include "record/study_store.hpp"
+#include "support/mentions.hpp"
 #include "support/temp_folder.hpp"
 
 #include <chrono>
@@ -119,7 +120,7 @@ inline record::Trace stroking(std::size_t samples, double texture_rms_n, std::ui
 inline void record_trials(record::SessionRecorder& recorder, int session, int trials,
                           const record::Trace& trace, const record::SessionOpening& how) {
   recorder.opened(nanoseconds(0), how, R"({"schedule":")" + std::to_string(session) + "\"}");
-  recorder.remarked(seconds(1), record::EventKind::instructed, "read aloud");
+  recorder.add(seconds(1), record::EventKind::instructed, record::TextBody{.text = "read aloud"});
   for (int trial = 1; trial <= trials; ++trial) {
     const nanoseconds start = seconds(20 * trial);
     recorder.presented(start, trial, (trial - 1) / 2);
@@ -182,10 +183,16 @@ inline bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// Whether `work` is refused with `part` in the message.
+/// "session/sequence" of a fault.
+inline std::string place_of(const record::ChainFault& fault) {
+  return std::to_string(fault.session) + "/" + std::to_string(fault.sequence);
+}
+
+/// Whether `work` is refused, and the message mentions these words (support/mentions.hpp).
 template <typename Work>
-bool refuses(Work&& work, const std::string& part) {
-  return contains(refusal_of(work), part);
+bool refuses(Work&& work, const std::string& words = "") {
+  const std::string line = refusal_of(work);
+  return !line.empty() && mentions(line, words);
 }
 
 /// An event as it was recorded.

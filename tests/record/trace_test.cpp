@@ -146,6 +146,6 @@ TEST_CASE("a trace that claims absurdly many samples is refused before memory is
   Bytes bytes = encode_trace(Trace{});
   for (std::size_t i = 12; i < 16; ++i) bytes[i] = 0xff;  // the number of samples
   const std::string refusal = fixture::refusal_of([&] { return decode_trace(bytes); });
-  REQUIRE(fixture::contains(refusal, "more than 10,000,000 samples"));
+  REQUIRE(fixture::contains(refusal, "10,000,000"));
   REQUIRE_THROWS_AS(decode_trace(bytes_of("no trace at all")), StoreError);
 }

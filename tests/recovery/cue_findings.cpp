@@ -113,7 +113,7 @@ void add_told_apart(const Population& people, int participants, int repetitions,
       described(people, participants, "two observers as far from them, one farther");
   const Average share = average_of(repetitions, "told apart" + who, [&](RandomStream& random) {
     const auto match = study_with(people, participants, observers, random).match;
-    return match && match->told_apart ? 1.0 : 0.0;
+    return match && match->is_distinct ? 1.0 : 0.0;
   });
   findings.push_back({"type-I error", "observers told apart, jackknife", who, 0.05, share.mean,
                       share.standard_error, 0.02, 0.07, "an approximation"});

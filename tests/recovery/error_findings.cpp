@@ -46,7 +46,7 @@ void add_chance(int participants, double least, int repetitions, std::vector<Fin
   const Average share = average_of(repetitions, "chance" + who, [&](RandomStream& random) {
     const auto blocks = blocks_of(study_of(guessing, participants, random));
     return rejected(
-        analysis::chance_test(guessing.classes, blocks, analysis::DealtOrder::permuted)->p);
+        analysis::chance_test(guessing.classes, blocks, analysis::OrderRule::permuted)->p);
   });
   findings.push_back(error("above chance, exact over balanced orders", who, share, least, kLevel,
                            "an exact test of whole numbers stays below its level"));
@@ -177,7 +177,7 @@ double any_swap(const Plane<double>& p, RandomStream& random) {
     const analysis::ConfusionMatrix own = answers_with(p, 5, random);
     p_values.push_back(analysis::label_swap_p(own, analysis::best_label_matching(own)));
   }
-  return rejected(std::ranges::min(analysis::discovery_adjusted(p_values)));
+  return rejected(std::ranges::min(analysis::benjamini_hochberg_adjusted(p_values)));
 }
 
 void add_swaps(int repetitions, std::vector<Finding>& findings) {

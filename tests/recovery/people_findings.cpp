@@ -23,7 +23,7 @@ const planning::NoiseAnswers& noise_answers() {
   static const planning::NoiseAnswers answers = [] {
     planning::NoiseAnswers all{-4.0, 0.25, kClasses, {}};
     for (int i = 0; i <= 28; ++i) {
-      all.answers.push_back({felt_at(all.least_log_noise + i * all.step)});
+      all.answers.push_back({felt_at(all.min_log_noise + i * all.step)});
     }
     return all;
   }();
@@ -67,7 +67,7 @@ void add_spread(double spread, int repetitions, std::vector<Finding>& findings) 
                       spread > 0.0 ? "an approximation" : "at the end of the possible spreads"});
   if (spread == 0.0) {
     const Average told = over_studies(
-        [](const planning::PeopleSpread& one) { return one.alike_p <= 0.05 ? 1.0 : 0.0; });
+        [](const planning::PeopleSpread& one) { return one.equal_p <= 0.05 ? 1.0 : 0.0; });
     findings.push_back({"type-I error", "people differ in their noise, likelihood ratio", who, 0.05,
                         told.mean, told.standard_error, 0.02, 0.06, "an approximation"});
     return;
@@ -84,7 +84,7 @@ void add_halves(int repetitions, std::vector<Finding>& findings) {
     std::vector<planning::CountedPerson> people;
     for (int i = 0; i < 20; ++i) people.push_back(answers_at(i % 2 == 0 ? -2.0 : 3.0, random));
     const auto one = planning::people_spread(noise_answers(), people, {.lapse = 0.4}).value();
-    return one.alike_p <= 0.05 && one.lapse < 0.15 ? 1.0 : 0.0;
+    return one.equal_p <= 0.05 && one.lapse < 0.15 ? 1.0 : 0.0;
   });
   findings.push_back({"recovered", "half guess, half are right: found to differ, without lapses",
                       "20 participants, 25 trials", 1.0, found.mean, found.standard_error, 0.95,

@@ -182,7 +182,7 @@ void add_prevalence(double share, double least, double most, const std::string& 
             block.answered.push_back(choice.answered);
           }
           const auto test = analysis::chance_test(one.classes, std::span(&block, 1),
-                                                  analysis::DealtOrder::permuted);
+                                                  analysis::OrderRule::permuted);
           ++passed.n;
           if (test->p <= kLevel) ++passed.correct;
           level += test->attainable / kParticipants;

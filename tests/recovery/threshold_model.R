@@ -85,8 +85,9 @@ run <- function(number, population) {
        lapse = as.numeric(sub(".*: ([0-9.]+)\\.$", "\\1", model$said[1])), refused = length(model$said) - 2)
 }
 
-# A study whose model has no result is told of and counted; it must not take those of its process with it.
+# A study whose model has no result, or none within half an hour, is reported and counted.
 run_or_nothing <- function(number, population) {
+  setTimeLimit(cpu = 1800, transient = TRUE)
   tryCatch(run(number, population), error = function(e) {
     message("study ", number, ": ", conditionMessage(e))
     NULL

@@ -1,5 +1,5 @@
-/// \file The JSON Schemas of config/schema and the tables of settings in docs, made from the
-/// descriptions that the readers follow.
+/// \file The JSON Schemas of config/schema and the tables of settings and events in docs, made from
+/// the descriptions that the readers follow.
 ///
 ///     settings_files check ROOT   says which of them are not as the descriptions make them
 ///     settings_files write ROOT   writes them
@@ -8,9 +8,11 @@
 #include "core/describe.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "device/acceptance/certificate.hpp"
 #include "device/device_settings.hpp"
 #include "device/model/device_model.hpp"
 #include "device/settings_schemas.hpp"
+#include "event_tables.hpp"
 #include "protocols/registration/registration.hpp"
 #include "protocols/simulation/subject_model.hpp"
 #include "protocols/simulation/subject_schema.hpp"
@@ -33,6 +35,7 @@ struct Kind {
   std::string_view name;  ///< of its schema
   std::string (*schema)();
   void (*read)(const std::string& text);
+  bool is_typed = true;  ///< people type such files, and their editors need the schema
 };
 
 constexpr Kind kKinds[] = {
@@ -47,7 +50,10 @@ constexpr Kind kKinds[] = {
        static_cast<void>(device::parse_device_settings(text, "/lab", "file"));
      }},
     {"device-model", device::device_model_schema,
-     [](const std::string& text) { static_cast<void>(device::parse_device_model(text, "file")); }}};
+     [](const std::string& text) { static_cast<void>(device::parse_device_model(text, "file")); }},
+    {"certificate", device::certificate_schema,
+     [](const std::string& text) { static_cast<void>(device::parse_certificate(text, "file")); },
+     /*is_typed=*/false}};
 
 const Kind& kind_of(std::string_view name) {
   const Kind* const kind = std::ranges::find(kKinds, name, &Kind::name);
@@ -56,24 +62,30 @@ const Kind& kind_of(std::string_view name) {
   return *kind;
 }
 
+/// \param what  as in the line before the table
+std::string table_of(std::string what) {
+  constexpr std::string_view kInner = " with inner keys";
+  if (what.starts_with("events ")) return table_of_events(what.ends_with("file"));
+  const bool nested = what.ends_with(kInner);
+  if (nested) what.resize(what.size() - kInner.size());
+  const std::size_t space = what.find(' ');
+  const std::string pointer = space == what.npos ? "" : what.substr(space + 1);
+  return table_of_settings(kind_of(what.substr(0, space)).schema(), pointer, nested);
+}
+
 /// The page with its tables made anew. A table stands between the lines
-/// `<!-- settings: KIND /pointer -->` or `<!-- settings: KIND /pointer with inner keys -->` and
-/// `<!-- end of settings -->`.
+/// `<!-- settings: KIND /pointer -->`, `<!-- settings: KIND /pointer with inner keys -->` or
+/// `<!-- settings: events of the file -->` (`of a session`) and `<!-- end of settings -->`.
 std::string with_tables(const std::string& page) {
   constexpr std::string_view kBegins = "<!-- settings: ";
   constexpr std::string_view kEnds = "<!-- end of settings -->\n";
-  constexpr std::string_view kInner = " with inner keys";
   std::string text;
   std::size_t at = 0;
   for (std::size_t mark = page.find(kBegins); mark != page.npos; mark = page.find(kBegins, at)) {
     const std::size_t line_ends = page.find('\n', mark) + 1;
-    std::string what = page.substr(mark + kBegins.size(), line_ends - mark - kBegins.size() - 5);
-    const bool nested = what.ends_with(kInner);
-    if (nested) what.resize(what.size() - kInner.size());
-    const std::size_t space = what.find(' ');
-    const std::string pointer = space == what.npos ? "" : what.substr(space + 1);
-    text += page.substr(at, line_ends - at) + "\n" +
-            table_of_settings(kind_of(what.substr(0, space)).schema(), pointer, nested) + "\n";
+    const std::string what =
+        page.substr(mark + kBegins.size(), line_ends - mark - kBegins.size() - 5);
+    text += page.substr(at, line_ends - at) + "\n" + table_of(what) + "\n";
     at = page.find(kEnds, line_ends);
     if (at == page.npos) throw UsageError("a table of settings has no end: " + what);
   }
@@ -92,6 +104,7 @@ bool settle(const fs::path& file, const std::string& wanted, bool writes) {
 bool settle_all(const fs::path& root, bool writes) {
   bool is_right = true;
   for (const Kind& kind : kKinds) {
+    if (!kind.is_typed) continue;
     const std::string name = std::string(kind.name) + ".schema.json";
     is_right &= settle(root / "config" / "schema" / name, plain_schema(kind.schema()), writes);
   }

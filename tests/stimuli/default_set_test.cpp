@@ -4,6 +4,7 @@
 #include "core/files.hpp"
 #include "engine/image_file.hpp"
 #include "support/catch.hpp"
+#include "support/names.hpp"
 #include "support/temp_folder.hpp"
 
 #include <set>
@@ -154,7 +155,7 @@ TEST_CASE("a text that is not a manifest is refused with file and place") {
   CHECK_THROWS_AS(read_stimulus_manifest(folder.path() / "none.json"), FileError);
   CHECK_THAT(refusal("{"), holds_text("manifest.json"));
   CHECK_THAT(refusal("[]"), holds_text("manifest.json"));
-  CHECK_THAT(refusal(R"({"format": "other"})"), holds_text("not a manifest"));
+  CHECK_THAT(refusal(R"({"format": "other"})"), names("manifest.json"));
   const std::string start =
       R"({"format": "touchtrial-stimuli", "generator_version": 1, "licence": "CC0-1.0", "stimuli": )";
   CHECK_THAT(refusal(start + "[{}]}"), holds_text("/stimuli/0"));

@@ -40,16 +40,16 @@ study::Course course_of_blocks(OnInterruption policy) {
   return {std::make_unique<GrowingBlocks>(), policy};
 }
 
-/// Chooses a plane for each place of two blocks, and notes which trials were interrupted.
+/// Chooses a plane for each place of two blocks, and records which trials were interrupted.
 class SameAgain final : public study::Order {
  public:
-  explicit SameAgain(std::vector<int>& spoilt) : Order(without_planes(), {}), spoilt_(spoilt) {}
+  explicit SameAgain(std::vector<int>& trials) : Order(without_planes(), {}), trials_(trials) {}
   Trial at(const Trial& scheduled) const override {
     Trial trial = scheduled;
     trial.planes.resize(1);
     return trial;
   }
-  void interrupted(const Trial& shown) override { spoilt_.push_back(shown.place.trial); }
+  void interrupted(const Trial& shown) override { trials_.push_back(shown.place.trial); }
 
  private:
   static study::Schedule without_planes() {
@@ -58,7 +58,7 @@ class SameAgain final : public study::Order {
     return schedule;
   }
 
-  std::vector<int>& spoilt_;
+  std::vector<int>& trials_;
 };
 
 /// Finishes the course.
@@ -79,23 +79,23 @@ TEST_CASE("a course presents its schedule in order, and is over after it") {
 TEST_CASE("an interrupted presentation is repeated at the end, or left out, as the policy says") {
   study::Course repeated = course_of_blocks(OnInterruption::repeat);
   repeated.finish({});
-  repeated.spoil();
+  repeated.interrupt();
   CHECK(rest_of(repeated) == std::vector<int>{3, 4, 2});
   study::Course left_out = course_of_blocks(OnInterruption::leave_out);
   left_out.finish({});
-  left_out.spoil();
+  left_out.interrupt();
   CHECK(rest_of(left_out) == std::vector<int>{3, 4});
 }
 
 TEST_CASE("of an order that chooses, an interrupted place is repeated at the end of its block") {
-  std::vector<int> spoilt;
-  study::Course course(std::make_unique<SameAgain>(spoilt), OnInterruption::repeat);
+  std::vector<int> trials;
+  study::Course course(std::make_unique<SameAgain>(trials), OnInterruption::repeat);
   CHECK(course.is_adaptive());
-  course.spoil();
+  course.interrupt();
   course.finish({});
   CHECK(course.current()->place.trial == 1);
   CHECK(course.current()->planes.size() == 1);
-  CHECK(spoilt == std::vector<int>{1});
+  CHECK(trials == std::vector<int>{1});
   CHECK(rest_of(course) == std::vector<int>{1, 3, 4});
 }
 
@@ -103,7 +103,7 @@ TEST_CASE("an interrupted block is restarted under new numbers before all else")
   const auto restarted = [] {
     study::Course course = course_of_blocks(OnInterruption::restart_block);
     course.finish({});
-    course.spoil();
+    course.interrupt();
     REQUIRE(course.block_to_restart() == 0);
     const study::BlockRestart again = course.redrawn_block(0);
     CHECK(again.first_trial() == 5);
@@ -119,7 +119,7 @@ TEST_CASE("an interrupted block is restarted under new numbers before all else")
   CHECK_FALSE(course.is_void(5));
   CHECK(course.has(6));
   CHECK_FALSE(course.has(7));
-  course.spoil();
+  course.interrupt();
   course.restart(course.redrawn_block(0));
   CHECK(rest_of(course) == std::vector<int>{7, 8, 9, 3, 4});
   CHECK(course.is_void(6));
@@ -127,8 +127,8 @@ TEST_CASE("an interrupted block is restarted under new numbers before all else")
 }
 
 TEST_CASE("blocks of an order that chooses cannot be restarted") {
-  std::vector<int> spoilt;
-  CHECK_THROWS_AS(study::Course(std::make_unique<SameAgain>(spoilt), OnInterruption::restart_block),
+  std::vector<int> trials;
+  CHECK_THROWS_AS(study::Course(std::make_unique<SameAgain>(trials), OnInterruption::restart_block),
                   std::invalid_argument);
 }
 

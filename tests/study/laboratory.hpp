@@ -6,6 +6,7 @@
 #include "engine/image_file.hpp"
 #include "study/prepare.hpp"
 #include "study/study_examples.hpp"
+#include "support/names.hpp"
 #include "support/temp_folder.hpp"
 
 #include <algorithm>
@@ -57,10 +58,9 @@ inline int reused(const study::PrepareReport& report) {
       std::ranges::count(report.stimuli, true, &study::PreparedStimulus::reused));
 }
 
-inline bool warns(const study::PrepareReport& report, const std::string& part) {
-  return std::ranges::any_of(report.warnings, [&](const std::string& warning) {
-    return warning.find(part) != std::string::npos;
-  });
+inline bool warns(const study::PrepareReport& report, const std::string& places) {
+  return std::ranges::any_of(report.warnings,
+                             [&](const std::string& warning) { return names(warning, places); });
 }
 
 }  // namespace touchtrial

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "support/catch.hpp"
+#include "support/names.hpp"
 
 #include <string>
 
@@ -19,12 +20,13 @@ template <typename ErrorType, typename Call>
   return {};
 }
 
-/// Whether the call throws an error of the type with `part` in its message.
+/// Whether the call throws an error of the type whose message names `places` (support/names.hpp);
+/// without places any such error will do.
 template <typename ErrorType, typename Call>
-[[nodiscard]] bool refuses(const Call& call, const std::string& part) {
+[[nodiscard]] bool refuses(const Call& call, const std::string& places = {}) {
   const std::string message = message_of<ErrorType>(call);
   UNSCOPED_INFO(message);
-  return message.find(part) != std::string::npos;
+  return places.empty() || names(message, places);
 }
 
 }  // namespace touchtrial

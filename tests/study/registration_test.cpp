@@ -4,6 +4,7 @@
 #include "study/study_key.hpp"
 #include "study/study_sections.hpp"
 #include "support/catch.hpp"
+#include "support/names.hpp"
 
 #include <string_view>
 #include <vector>
@@ -51,14 +52,14 @@ TEST_CASE("a crossover needs two methods, one after the other") {
   CHECK(refusal(crossover, comparison_of(3)).empty());
   json mixed = comparison_of(3);
   mixed["trials"] = {{"blocks", "mixed"}};
-  CHECK_THAT(refusal(crossover, mixed), holds_text("/registration/test: adjusts for periods"));
+  CHECK_THAT(refusal(crossover, mixed), names("/registration/test"));
   CHECK_THAT(
       refusal(
           {{"estimand", "difference"}, {"test", "crossover"}, {"methods", {"edge", "adaptive"}}},
           controls()),
-      holds_text("the study presents 3"));
+      names("/registration/test 3"));
   CHECK_THAT(refusal({{"estimand", "mean-accuracy"}, {"test", "crossover"}}),
-             holds_text("/registration/test: is about differences"));
+             names("/registration/test"));
 }
 
 TEST_CASE("a margin is one-sided, decided by a t test, and in place of a smallest effect") {
@@ -75,44 +76,42 @@ TEST_CASE("a margin is one-sided, decided by a t test, and in place of a smalles
   CHECK(analysis.test == study::RegisteredTest::crossover);
   study["trials"] = {{"blocks", "mixed"}};
   CHECK(parsed(study).registration.analysis->test == study::RegisteredTest::t);
-  CHECK(study::fields_of(parsed(study).registration)[3].second ==
-        "as good if worse by less than 7 points; decided by the 90 % t interval, and only if both "
-        "methods are above chance");
-  CHECK_THAT(with({{"smallest_effect", 0.1}}), holds_text("register one question"));
-  CHECK_THAT(with({{"sides", "two"}}), holds_text("/registration/sides: must be \"one\""));
-  CHECK_THAT(with({{"test", "sign-flip"}}), holds_text("flips signs about 0"));
-  CHECK_THAT(with({{"alpha", 0.5}}), holds_text("less than 0.5"));
+  CHECK_THAT(study::fields_of(parsed(study).registration)[3].second, names("7 90 %"));
+  CHECK_THAT(with({{"smallest_effect", 0.1}}), names("/registration/margin smallest_effect"));
+  CHECK_THAT(with({{"sides", "two"}}), names("/registration/sides one"));
+  CHECK_THAT(with({{"test", "sign-flip"}}), names("/registration/test"));
+  CHECK_THAT(with({{"alpha", 0.5}}), names("/registration/alpha 0.5"));
   CHECK_THAT(with({{"margin", 0.0}}), holds_text("/registration/margin"));
   CHECK_THAT(with({{"margin", 1.01}}), holds_text("/registration/margin"));
   CHECK_THAT(refusal({{"estimand", "mean-accuracy"}, {"margin", 0.07}}),
-             holds_text("/registration/margin: belongs to a difference"));
-  CHECK_THAT(refusal({{"margin", 0.07}}), holds_text("is given without \"estimand\""));
+             names("/registration/margin"));
+  CHECK_THAT(refusal({{"margin", 0.07}}), names("/registration/margin estimand"));
 }
 
 TEST_CASE("a registration must be one of this study") {
-  CHECK_THAT(refusal({{"alpha", 0.05}}), holds_text("/registration/alpha: is given without"));
-  CHECK_THAT(refusal({{"estimand", "means"}}), holds_text("possible: "));
-  CHECK_THAT(refusal({{"estimand", "difference"}}), holds_text("the study presents one"));
+  CHECK_THAT(refusal({{"alpha", 0.05}}), names("/registration/alpha"));
+  CHECK_THAT(refusal({{"estimand", "means"}}),
+             names("/registration/estimand mean-accuracy difference"));
+  CHECK_THAT(refusal({{"estimand", "difference"}}), names("/registration/estimand"));
   CHECK_THAT(refusal({{"estimand", "mean-accuracy"}}, comparison_of(3)),
-             holds_text("use \"difference\""));
+             names("/registration/estimand difference"));
   CHECK_THAT(refusal({{"estimand", "mean-accuracy"}, {"test", "sign-flip"}}),
-             holds_text("/registration/test: is about differences"));
+             names("/registration/test"));
   CHECK_THAT(refusal({{"estimand", "mean-accuracy"}, {"smallest_effect", 0.2}}),
-             holds_text("is 0.2, not above chance, which is 0.2"));
+             names("/registration/smallest_effect 0.2"));
   CHECK_THAT(refusal({{"estimand", "mean-accuracy"}, {"methods", {"adaptive"}}}),
-             holds_text("belongs to a difference"));
+             names("/registration/methods"));
 }
 
 TEST_CASE("a registered difference names two methods that are presented") {
   const json pair = {{"estimand", "difference"}, {"methods", {"edge", "adaptive"}}};
   CHECK(refusal(pair, controls()).empty());
-  CHECK_THAT(refusal({{"estimand", "difference"}}, controls()),
-             holds_text("presents 3 methods; name the two"));
+  CHECK_THAT(refusal({{"estimand", "difference"}}, controls()), names("/registration/estimand 3"));
   const auto with = [](const json& methods) {
     return refusal({{"estimand", "difference"}, {"methods", methods}}, controls());
   };
-  CHECK_THAT(with({"edge"}), holds_text("has one method"));
-  CHECK_THAT(with({"edge", "edge"}), holds_text("the same method twice"));
+  CHECK_THAT(with({"edge"}), names("/registration/methods"));
+  CHECK_THAT(with({"edge", "edge"}), names("/registration/methods/1"));
   CHECK_THAT(with({"edge", "gaussian"}), holds_text("/registration/methods/1: \"gaussian\""));
 }
 
@@ -126,32 +125,26 @@ TEST_CASE("a rule about deviations names codes that can occur") {
     CHECK(with({{"deviations", {code}}}).empty());
   }
   const std::string refused = with({{"deviations", {"no-curtain", "no-curtan"}}});
-  CHECK_THAT(refused, holds_text("/registration/exclusion_rules/deviations/1: is no code that the "
-                                 "program records, which are answers-lost, clock-set-back, "));
-  CHECK_THAT(refused, holds_text("wrong-clock and no-day-sheet-1, ..; a code that "
-                                 "experimenters enter belongs in \"own_deviations\""));
+  CHECK_THAT(refused, names("/registration/exclusion_rules/deviations/1 "));
+  CHECK_THAT(refused, names("no-day-sheet-1 own_deviations"));
   CHECK(with({{"own_deviations", {"no-curtan"}}}).empty());
   const json two = {"Door shut", "Phone off"};
   CHECK(with({{"deviations", {"no-day-sheet-2"}}}, two).empty());
   CHECK_THAT(with({{"deviations", {"no-day-sheet-3"}}}, two),
-             holds_text("/registration/exclusion_rules/deviations/0: is about item 3 of "
-                        "\"day_sheet\", which has 2"));
+             names("/registration/exclusion_rules/deviations/0 3 day_sheet 2"));
   for (const char* code : {"no-day-sheet-", "no-day-sheet-0", "no-day-sheet-02"}) {
-    CHECK_THAT(with({{"deviations", {code}}}, two), holds_text("is no code"));
+    CHECK_THAT(with({{"deviations", {code}}}, two),
+               names("/registration/exclusion_rules/deviations/0"));
   }
 }
 
 TEST_CASE("a question, or a rule, that the protocol cannot keep is refused") {
   CHECK_THAT(refusal({{"estimand", "mean-threshold"}}),
-             holds_text("/registration/estimand: \"mean-threshold\" is no question that the "
-                        "protocol classification answers; register one that it does: "
-                        "mean-accuracy, difference"));
+             names("/registration/estimand mean-threshold"));
   CHECK_THAT(refusal({{"estimand", "mean-accuracy"}, {"margin_db", 3}}),
-             holds_text("/registration/margin_db: is about thresholds"));
-  CHECK_THAT(
-      refusal({{"estimand", "mean-accuracy"}, {"exclusion_rules", {{"missed_catch", 1}}}}),
-      holds_text("/registration/exclusion_rules/missed_catch: is about catch trials with a right "
-                 "answer, of which the study has none"));
+             names("/registration/margin_db"));
+  CHECK_THAT(refusal({{"estimand", "mean-accuracy"}, {"exclusion_rules", {{"missed_catch", 1}}}}),
+             names("/registration/exclusion_rules/missed_catch"));
 }
 
 TEST_CASE("codes of the program and of the study are read as they were written") {
@@ -181,10 +174,10 @@ TEST_CASE("registered looks come before the planned end, in order") {
   };
   CHECK(with({8, 14}).empty());
   CHECK_THAT(refusal({{"estimand", "mean-accuracy"}, {"looks", {8}}}),
-             holds_text("/registration/looks: is given without \"participants\""));
+             names("/registration/looks participants"));
   CHECK_THAT(with({1, 8}), holds_text("/registration/looks/0"));
-  CHECK_THAT(with({8, 20}), holds_text("look at 20 participants, but 20 are planned"));
-  CHECK_THAT(with({8, 8}), holds_text("/registration/looks/1: is not more than the look before"));
+  CHECK_THAT(with({8, 20}), names("/registration/looks 20"));
+  CHECK_THAT(with({8, 8}), names("/registration/looks/1"));
 }
 
 TEST_CASE("a registration without the fields is written as it always was") {

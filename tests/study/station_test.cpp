@@ -7,6 +7,7 @@
 #include "study/refusal.hpp"
 #include "study/study_examples.hpp"
 #include "study/study_key.hpp"
+#include "support/names.hpp"
 #include "support/temp_folder.hpp"
 
 #include <algorithm>
@@ -102,7 +103,7 @@ TEST_CASE("a station takes its smallest number that nobody has") {
   CHECK_THAT(message_of<StudyError>([&] {
                return study::next_enrolment_of(stations[0], {1, 2, 3});
              }),
-             holds_text("all enrolment numbers of station s1 are taken") && holds_text("--extend"));
+             names("s1 --extend"));
 }
 
 TEST_CASE("names of stations are simple, and each is one station's") {
@@ -183,7 +184,7 @@ TEST_CASE("a station's file has its own secret alone, and draws as the investiga
   CHECK_THROWS_AS(key.draw_of(11, Draws::people), UsageError);
   CHECK(own.station.secret != study::station_key(key, "s1").station.secret);
   CHECK_THAT(message_of<UsageError>([&] { return study::station_key(key, "s3"); }),
-             holds_text("has no station \"s3\"; it has s1, s2"));
+             names("s3 s1 s2"));
   const Bytes statement = station_statement(key.study_id, "s2", own.signer().public_half());
   CHECK(is_signed_by(key.investigator_signature, statement, own.certificate));
   CHECK_FALSE(is_signed_by(key.investigator_signature,
@@ -236,8 +237,7 @@ TEST_CASE(
   document.erase("check");
   document["check"] = to_hex(sha256(bytes_of(document.dump())));
   replace_file(path, document.dump(2) + "\n", FileMode::owner_only);
-  CHECK_THAT(message_of<FileError>([&] { return load_station_key(path); }),
-             holds_text("altered or damaged"));
+  CHECK_THAT(message_of<FileError>([&] { return load_station_key(path); }), names(path.string()));
 }
 
 TEST_CASE("a file of secrets that others may read is refused") {
@@ -247,8 +247,7 @@ TEST_CASE("a file of secrets that others may read is refused") {
   study::save_study_key(path, key);
   for (const mode_t mode : {0640U, 0604U, 0620U}) {
     REQUIRE(::chmod(path.c_str(), mode) == 0);
-    CHECK_THAT(message_of<FileError>([&] { return load_study_key(path); }),
-               holds_text("chmod 600"));
+    CHECK_THAT(message_of<FileError>([&] { return load_study_key(path); }), names("chmod 600"));
   }
   REQUIRE(::chmod(path.c_str(), 0400) == 0);
   CHECK_NOTHROW(load_study_key(path));

@@ -78,9 +78,9 @@ namespace touchtrial {
   return "";
 }
 
-/// Whether a study is refused with `part` in the message.
-[[nodiscard]] inline bool refused(const nlohmann::json& study, const std::string& part) {
-  return refuses<StudyError>([&] { return parsed(study); }, part);
+/// Whether a study is refused at `places`.
+[[nodiscard]] inline bool refused(const nlohmann::json& study, const std::string& places) {
+  return refuses<StudyError>([&] { return parsed(study); }, places);
 }
 
 /// A participant's draw that follows from the study's seed, for tests of schedules alone.

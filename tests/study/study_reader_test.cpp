@@ -6,6 +6,7 @@
 #include "study/study_options.hpp"
 #include "study/study_sections.hpp"
 #include "support/catch.hpp"
+#include "support/names.hpp"
 #include "support/temp_folder.hpp"
 
 #include <string>
@@ -27,10 +28,8 @@ std::string refusal_of_text(const std::string& text) {
   return "";
 }
 
-bool contains(const std::string& text, const std::string& part) {
-  INFO(text << " -- should contain -- " << part);
-  CHECK(text.find(part) != std::string::npos);
-  return text.find(part) != std::string::npos;
+void check_names(const std::string& message, const std::string& places) {
+  CHECK_THAT(message, names(places));
 }
 
 }  // namespace
@@ -117,46 +116,36 @@ TEST_CASE("what a study cannot be is refused at its place, with what helps") {
     json study;
     const char* place;
     json value;  ///< null: the place is erased
-    const char* words;
+    const char* places;
   };
   const std::vector<Refused> all = {
-      {minimal_study(), "/rendering/pich_mm", 0.2,
-       "/rendering/pich_mm: is not a known key; did you mean \"pitch_mm\"?"},
-      {minimal_study(), "/methods/0/Radius", 2,
-       "/methods/0/Radius: is not a known key; did you mean \"radius\"?"},
-      {minimal_study(), "/classes/1/colour~1depth~0", 1,
-       "/classes/1/colour~1depth~0: is not a known key; known here: label, images"},
-      {minimal_study(), "/trials/order", "shufled",
-       "/trials/order: \"shufled\" is not known to this version; did you mean \"shuffled\"? "},
-      {minimal_study(), "/protocol", {}, "/protocol: is missing; add it"},
-      {minimal_study(), "/classes/0/images", {}, "/classes/0/images: is missing; add it"},
-      {minimal_study(), "/methods/0/lambda", 0.01,
-       "/methods/0/lambda: belongs to the method tv-gabor, not to adaptive; remove it"},
+      {minimal_study(), "/rendering/pich_mm", 0.2, "/rendering/pich_mm pitch_mm"},
+      {minimal_study(), "/methods/0/Radius", 2, "/methods/0/Radius radius"},
+      {minimal_study(), "/classes/1/colour~1depth~0", 1, "/classes/1/colour~1depth~0"},
+      {minimal_study(), "/trials/order", "shufled", "/trials/order shufled shuffled "},
+      {minimal_study(), "/protocol", {}, "/protocol"},
+      {minimal_study(), "/classes/0/images", {}, "/classes/0/images"},
+      {minimal_study(), "/methods/0/lambda", 0.01, "/methods/0/lambda"},
       {minimal_study(), "/methods/0", R"({"name": "tv-gabor", "radius": 2})"_json,
-       "belongs to the methods adaptive, fixed and median, not to tv-gabor"},
+       "/methods/0/radius"},
       {minimal_study(), "/rendering", R"({"model": "surface", "gains": {"normal_n": 0.01}})"_json,
-       "/rendering/gains/normal_n: is not a known key"},
+       "/rendering/gains/normal_n"},
       {minimal_study(), "/rendering", R"({"model": "paper", "gains": {"height_mm": 0.01}})"_json,
-       "/rendering/gains/height_mm: is not a known key"},
+       "/rendering/gains/height_mm"},
       {minimal_study(), "/rendering", R"({"model": "surface", "gains": {}})"_json,
        "/rendering/gains/height_mm: "},
-      {minimal_study(), "/rendering/friction", 0.3,
-       "/rendering/friction: must be 0: the rendering model paper"},
-      {minimal_study(), "/blinding", "single",
-       "/blinding: \"single\" is not known to this version"},
-      {minimal_study(), "/protocol", "comparison",
-       "/methods: has 1 entry; the protocol comparison needs at least 2"},
-      {pair, "/methods/1", R"({"name": "adaptive", "radius": 3})"_json,
-       "/methods/1: \"adaptive\" is there twice; "},
+      {minimal_study(), "/rendering/friction", 0.3, "/rendering/friction 0"},
+      {minimal_study(), "/blinding", "single", "/blinding single"},
+      {minimal_study(), "/protocol", "comparison", "/methods 1 2"},
+      {pair, "/methods/1", R"({"name": "adaptive", "radius": 3})"_json, "/methods/1 adaptive "},
       {pair, "/methods/1", R"({"name": "adaptive", "label": "Adaptive"})"_json,
-       "/methods/1: \"Adaptive\" and \"adaptive\" look alike"},
+       "/methods/1 Adaptive adaptive"},
       {minimal_study(), "/classes/0/images", R"(["a.png", "b.png", "a.png"])"_json,
-       "/classes/0/images/2: \"a.png\" is there twice"},
-      {minimal_study(), "/classes/0/images", {""}, "/classes/0/images/0: is empty"},
-      {study_of(64), "/trials/repeats", 1000,
-       "/trials/repeats: makes 64000 trials for a participant"},
-      {comparison_of(6, 1000), "/seed", 1, "/classes: has 6000 images for 2 methods"}};
-  for (auto [study, place, value, words] : all) {
+       "/classes/0/images/2 a.png"},
+      {minimal_study(), "/classes/0/images", {""}, "/classes/0/images/0"},
+      {study_of(64), "/trials/repeats", 1000, "/trials/repeats 64000"},
+      {comparison_of(6, 1000), "/seed", 1, "/classes 6000 2"}};
+  for (auto [study, place, value, places] : all) {
     const json::json_pointer at(place);
     if (value.is_null()) {
       study[at.parent_pointer()].erase(at.back());
@@ -164,22 +153,22 @@ TEST_CASE("what a study cannot be is refused at its place, with what helps") {
       study[at] = value;
     }
     INFO(place << " = " << value.dump());
-    CHECK_THAT(refusal_of(study), holds_text("study.json: ") && holds_text(words));
+    CHECK_THAT(refusal_of(study), names("study.json") && names(places));
   }
 }
 
 TEST_CASE("malformed or absurdly nested JSON is refused with line and column, unharmed") {
   const std::vector<std::pair<std::string, const char*>> texts = {
-      {"{\n  \"study\": tru\n}", "study.json: line 2, column 15: "},
-      {"", "study.json: line 1, column 1: "},
-      {"{\"a\": 1,}", "study.json: line 1, column 9: "},
-      {"{} no", "line 1, column 5: "},
-      {"{\"a\": \"\xff\"}", "ill-formed UTF-8"},
-      {"[]", "study.json: /: must be an object, not a list"},
-      {std::string(1'000'000, '['), "is nested too deeply"}};
-  for (const auto& [text, words] : texts) {
+      {"{\n  \"study\": tru\n}", "study.json 2 15"},
+      {"", "study.json 1"},
+      {"{\"a\": 1,}", "study.json 1 9"},
+      {"{} no", "1 5"},
+      {"{\"a\": \"\xff\"}", "study.json UTF-8"},
+      {"[]", "study.json /"},
+      {std::string(1'000'000, '['), "study.json"}};
+  for (const auto& [text, places] : texts) {
     INFO(text.substr(0, 40));
-    CHECK_THAT(refusal_of_text(text), holds_text(words));
+    CHECK_THAT(refusal_of_text(text), names(places));
   }
 }
 
@@ -234,9 +223,9 @@ TEST_CASE("a method and its control, or two settings of one method, are told apa
   CHECK_FALSE(again["methods"][0].contains("control"));
   CHECK(parsed(again).methods == study.methods);
   document["methods"][2]["label"] = "adaptive";
-  contains(refusal_of(document), "/methods/2: \"adaptive\" is there twice");
+  check_names(refusal_of(document), "/methods/2 adaptive");
   document["methods"][2]["label"] = "a b";
-  contains(refusal_of(document), "/methods/2/label: \"a b\" must have 1 to 64 of the characters");
+  check_names(refusal_of(document), "/methods/2/label 1 64");
 }
 
 TEST_CASE("a study with the surface model has its own gains and friction") {
@@ -260,7 +249,7 @@ TEST_CASE("a touchdown ramp is read as it was written, and refused beside the su
   const std::string plain = study::written_rendering(engine::RenderingOptions{});
   CHECK(json::parse(plain).at("touchdown_ramp_n") == 0.0);
   document["rendering"] = {{"model", "surface"}, {"touchdown_ramp_n", 0.25}};
-  contains(refusal_of(document), "/rendering/touchdown_ramp_n: must be 0");
+  check_names(refusal_of(document), "/rendering/touchdown_ramp_n 0");
 }
 
 TEST_CASE("a study sets its validity rule and the touch before an answer") {
@@ -268,10 +257,10 @@ TEST_CASE("a study sets its validity rule and the touch before an answer") {
   document["trials"]["validity"] = {{"exploring_s", 2}, {"path_mm", 100}};
   document["trials"]["answer_after"] = {{"contact_s", 0}, {"path_mm", 0}};
   const study::TrialOptions trials = parsed(document).trials;
-  CHECK(trials.validity.least_exploring_s == 2.0);
-  CHECK(trials.validity.least_contact_s == 5.0);
-  CHECK(trials.validity.least_path_mm == 100.0);
-  CHECK(trials.answer_after == study::LeastTouch{0.0, 0.0});
+  CHECK(trials.validity.min_exploring_s == 2.0);
+  CHECK(trials.validity.min_contact_s == 5.0);
+  CHECK(trials.validity.min_path_mm == 100.0);
+  CHECK(trials.answer_after == study::MinTouch{0.0, 0.0});
   document["trials"] = study::to_json(trials);
   CHECK(parsed(document).trials == trials);
 }
@@ -282,33 +271,32 @@ TEST_CASE("labels that tables could not tell apart or print are refused") {
     document["classes"][1]["label"] = label;
     return refusal_of(document);
   };
-  contains(with_label("rough"), "/classes/1/label: \"rough\" is the label of another class");
-  contains(with_label("Rough"), "/classes/1/label: \"Rough\" and \"rough\" look alike");
-  contains(with_label(""), "/classes/1/label: is empty; give another label");
+  check_names(with_label("rough"), "/classes/1/label rough");
+  check_names(with_label("Rough"), "/classes/1/label Rough rough");
+  check_names(with_label(""), "/classes/1/label");
 }
 
 TEST_CASE("a name that would not do as a file name is refused") {
   json document = minimal_study();
   for (const char* name : {"", "a b", "../x", "a/b", "\xc3\xa9"}) {
     document["study"] = name;
-    contains(refusal_of(document), "must have 1 to 64 of the characters 0-9 A-Z a-z _ -");
+    check_names(refusal_of(document), "/study 1 64 0-9 _");
   }
   document["study"] = std::string(65, 'a');
-  contains(refusal_of(document), "/study: ");
+  check_names(refusal_of(document), "/study");
 }
 
 TEST_CASE("the order de-bruijn needs as many repeats as classes, no lead-in and blocks by method") {
   json document = comparison_of(4);
   document["trials"] = {{"order", "de-bruijn"}, {"repeats", 5}};
-  contains(refusal_of(document),
-           "/trials/repeats: is 5; the order de-bruijn needs as many repeats as classes: 4");
+  check_names(refusal_of(document), "/trials/repeats 5 4");
   document["trials"]["repeats"] = 4;
   CHECK(refusal_of(document).empty());
   document["trials"]["lead_in"] = 1;
-  contains(refusal_of(document), "/trials/lead_in: must be 0");
+  check_names(refusal_of(document), "/trials/lead_in 0");
   document["trials"]["lead_in"] = 0;
   document["trials"]["blocks"] = "mixed";
-  contains(refusal_of(document), "/trials/blocks: must be \"by-method\"");
+  check_names(refusal_of(document), "/trials/blocks by-method");
 }
 
 TEST_CASE("whole numbers may be written with a decimal point, others may not be rounded") {
@@ -316,8 +304,7 @@ TEST_CASE("whole numbers may be written with a decimal point, others may not be 
   document["trials"]["repeats"] = 5.0;
   CHECK(parsed(document).trials.repeats == 5);
   document["trials"]["repeats"] = 5.5;
-  contains(refusal_of(document),
-           "/trials/repeats: must be a whole number, not a number with decimals");
+  check_names(refusal_of(document), "/trials/repeats");
 }
 
 TEST_CASE("numbers that no whole number type or double holds are refused") {
@@ -329,19 +316,18 @@ TEST_CASE("numbers that no whole number type or double holds are refused") {
   CHECK(with_seed("9007199254740992").empty());
   for (const char* seed : {"9007199254740993", "18446744073709551615", "18446744073709551616", "-1",
                            "-9223372036854775809", "1e300"}) {
-    contains(with_seed(seed), "study.json: /seed: is ");
+    check_names(with_seed(seed), "study.json /seed ");
   }
-  contains(with_seed("1e999"), "study.json: /seed: is a number too large to hold");
-  contains(with_seed("NaN"), "line 1, column ");
+  check_names(with_seed("1e999"), "study.json /seed");
+  check_names(with_seed("NaN"), "study.json 1");
 }
 
 TEST_CASE("a key that occurs twice is refused wherever it is") {
   std::string text = minimal_study().dump();
   text.pop_back();
-  CHECK(refusal_of_text(text + ",\"study\":\"other\"}") ==
-        "study.json: /study: is there twice; keep one of the two");
-  CHECK(refusal_of_text(R"({"classes":[{},{"label":"a","label":"b"}]})") ==
-        "study.json: /classes/1/label: is there twice; keep one of the two");
+  check_names(refusal_of_text(text + ",\"study\":\"other\"}"), "study.json /study");
+  check_names(refusal_of_text(R"({"classes":[{},{"label":"a","label":"b"}]})"),
+              "study.json /classes/1/label");
 }
 
 TEST_CASE("hostile keys and values stay on one line of bounded length") {

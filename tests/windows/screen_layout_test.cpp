@@ -374,11 +374,11 @@ TEST_CASE("while one of several planes is on, the screen says which and how far 
 }
 
 TEST_CASE("after a comfort stop the space bar has no effect, and Enter continues if allowed") {
-  const bool may_go_on = GENERATE(true, false);
-  Drawn stopped(session::NoticeStep{session::NoticeStep::What::stopped, 3, may_go_on});
+  const bool can_resume = GENERATE(true, false);
+  Drawn stopped(session::NoticeStep{session::NoticeStep::What::stopped, 3, can_resume});
   static_cast<void>(stopped.draw());
   CHECK_FALSE(stopped.press(app::Key::space));
-  CHECK(stopped.press(app::Key::enter).has_value() == may_go_on);
+  CHECK(stopped.press(app::Key::enter).has_value() == can_resume);
 }
 
 TEST_CASE("a frame that is as large as a bank card gives the scale of the screen") {

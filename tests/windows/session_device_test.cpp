@@ -12,7 +12,7 @@ device::DeviceInfo felt() {
 }
 
 device::SchedulingObtained ordinary() {
-  return {.reason = "SCHED_FIFO was refused (Operation not permitted)"};
+  return {.reason = "SCHED_FIFO (Operation not permitted)"};
 }
 
 TEST_CASE("a session with force and without real time is refused with the two lines that mend it") {
@@ -29,7 +29,7 @@ TEST_CASE("a late session that is wanted all the same is recorded by a code of t
   CHECK(late->kind == session::ExperimenterRequest::Kind::deviation);
   CHECK(late->code == "no-real-time");
   CHECK(study::is_deviation_code(late->code));
-  CHECK_THAT(late->text, holds_text("SCHED_FIFO was refused"));
+  CHECK_THAT(late->text, holds_text("SCHED_FIFO (Operation"));
 }
 
 TEST_CASE("a punctual servo, a mouse and a simulated hand need no permission") {

@@ -25,10 +25,10 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-/// Shared by the recordings that are written at the same time.
+/// State shared by recordings that are written concurrently.
 struct SharedReading {
   SessionKeys keys;
-  std::mutex store;  ///< held by the one thread that reads the store
+  std::mutex store;  ///< guards the store
 };
 
 record::Trace opened_trace(const DatasetSource& study, const record::TrialRow& row,
@@ -40,7 +40,7 @@ record::Trace opened_trace(const DatasetSource& study, const record::TrialRow& r
   return open_trace(box, row, shared.keys);
 }
 
-/// What the events of a trial say of its recording.
+/// Facts about a trial's recording from its events.
 struct TraceEvents {
   record::TraceBody body;
   std::vector<nanoseconds> timed_out{};  ///< of all presentations, since the session's opening
@@ -54,10 +54,10 @@ std::map<record::TrialId, TraceEvents> trace_events(const record::StudyStore& st
     if (own == keys.end() || !own->second.participant) return;
     const record::Event event = whole_event(stored, *own->second.participant).event;
     if (event.kind == record::EventKind::timed_out) {
-      const int trial = record::trial_from_json(event.body).trial;
+      const int trial = record::from_json<record::TrialBody>(event.body).trial;
       all[{stored.session, trial}].timed_out.push_back(event.at);
     } else {
-      record::TraceBody body = record::trace_body_from_json(event.body);
+      record::TraceBody body = record::from_json<record::TraceBody>(event.body);
       all[{stored.session, body.trial}].body = std::move(body);
     }
   };
@@ -72,8 +72,8 @@ nanoseconds lasting(std::int64_t samples, double rate_hz) {
   return nanoseconds(std::llround(static_cast<double>(samples) * kNanosecondsPerS / rate_hz));
 }
 
-/// Appends a number of steps of 10^-kDecimals, and the character after it. This is several times
-/// faster than general formatting of doubles, and never gives -0.000.
+/// Appends a number, given in steps of 10^-kDecimals, and the character after it. This is several
+/// times faster than general formatting of doubles, and never writes -0.000.
 template <int kDecimals>
 void put_fixed(std::string& text, std::int64_t steps, char after) {
   constexpr std::int64_t kSteps = [] {
@@ -105,7 +105,7 @@ void put_sample(std::string& text, const record::TraceSample& sample) {
   put_fixed<4>(text, std::llround(force.z * 1e4), '\n');
 }
 
-/// The textures that trials presented, as their rows in *_beh.tsv have them.
+/// The textures that a trial presented, as in its row of *_beh.tsv.
 DataCell texture_of(const DatasetSource& study, const TrialOutcome& trial) {
   static const std::string kNobody;
   const std::span<const TrialColumn> columns = trial_columns();
@@ -113,8 +113,8 @@ DataCell texture_of(const DatasetSource& study, const TrialOutcome& trial) {
   return column->value({kNobody, trial.row, false, study.outcomes, &trial});
 }
 
-/// The explorations of a run and what happened in it, by their times since its first sample; times
-/// that are not known come last.
+/// The explorations and incidents of a run, ordered by time since its first sample; unknown times
+/// come last.
 DataTable motion_events(const Recording& recording, const TraceEvents& events,
                         const record::TrialRow& row, const DataCell& texture) {
   DataTable table{motion_event_columns(), {}};
@@ -143,7 +143,7 @@ DataTable motion_events(const Recording& recording, const TraceEvents& events,
   return table;
 }
 
-/// Date and time as BIDS has them, on days that are not the session's (BidsSession::days).
+/// Date and time in the form of BIDS, with the date shifted (BidsSession::days).
 std::string shifted_time(const BidsSession& session, nanoseconds since_opening) {
   const std::chrono::sys_days day =
       std::chrono::sys_days(std::chrono::year(1920) / 1 / 1) + session.days;
@@ -188,7 +188,7 @@ class MotionFiles {
   [[nodiscard]] std::vector<ExportFile> take() { return std::move(files_); }
 
  private:
-  /// \return when its first sample was taken
+  /// \return the time of its first sample
   nanoseconds add_run(const BidsSession& session, const TrialOutcome& trial) {
     const record::TrialRow& row = trial.row;
     const TraceEvents& own = events_.at({row.session, row.trial});
@@ -249,9 +249,9 @@ DataTable motion_channels() {
   return {{"name", "component", "type", "tracked_point", "units", "placement", "reference_frame",
            "description"},
           {{"latency", none, "LATENCY", none, "s", none, none, "Time since the run's first sample"},
-           place("x", "Stylus along the texture, from its left edge"),
-           place("y", "Stylus along the texture, from its top edge"),
-           place("z", "Stylus above the plane; negative: pressed into it"),
+           place("x", "Position of the stylus along the texture, from its left edge"),
+           place("y", "Position of the stylus along the texture, from its top edge"),
+           place("z", "Height of the stylus above the plane; negative: pressed into it"),
            force("force_x", "x", "Force sent to the device along x"),
            force("force_y", "y", "Force sent to the device along y"),
            force("force_z", "z", "Force sent to the device out of the plane")}};

@@ -5,7 +5,7 @@
 #include "analysis/exports/bids/bids_people.hpp"
 #include "analysis/exports/data_table.hpp"
 #include "analysis/exports/export_folder.hpp"
-#include "record/payload.hpp"
+#include "record/session_bodies.hpp"
 #include "record/trace.hpp"
 
 #include <chrono>
@@ -20,7 +20,7 @@ struct Recording {
   double rate_hz = 1000.0;
   std::chrono::nanoseconds first_sample{};  ///< since the session's opening
   std::vector<std::int64_t> samples;        ///< of each exploration
-  /// When each began, since the first sample; empty: not recorded.
+  /// The start of each, since the first sample; empty: not recorded.
   std::vector<std::optional<std::chrono::nanoseconds>> began;
 };
 

@@ -17,7 +17,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// What a participant told, and the consent form that was signed last.
+/// A participant's demographics, and the last consent form signed.
 struct BidsPerson : Demographics {
   std::optional<std::string> consent_version{};
 };
@@ -88,7 +88,7 @@ void append_cells(std::vector<DataCell>& row, std::vector<DataCell> cells) {
 }
 
 /// The last session of each participant.
-std::vector<const BidsSession*> standing_sessions(const std::vector<BidsSession>& sessions) {
+std::vector<const BidsSession*> last_sessions(const std::vector<BidsSession>& sessions) {
   std::vector<const BidsSession*> standing;
   for (const BidsSession& session : sessions) {
     const auto same = std::find_if(standing.begin(), standing.end(), [&](const BidsSession* other) {
@@ -116,8 +116,9 @@ void add_group(DataTable& table, const std::vector<const BidsSession*>& standing
 }
 
 /// The last answer that a participant gave to each question, over all sessions.
-BidsPerson said_by(const std::string& subject, const std::vector<BidsSession>& sessions,
-                   const std::map<int, Demographics>& by_session) {
+BidsPerson answers_of_participant(const std::string& subject,
+                                  const std::vector<BidsSession>& sessions,
+                                  const std::map<int, Demographics>& by_session) {
   BidsPerson said;
   for (const BidsSession& session : sessions) {
     const auto found = by_session.find(session.row.session);
@@ -129,8 +130,8 @@ BidsPerson said_by(const std::string& subject, const std::vector<BidsSession>& s
   return said;
 }
 
-/// A name of small letters, digits and underscores, as BIDS wants of columns.
-/// \param taken  names that it must not equal
+/// A name of lower-case letters, digits and underscores, as BIDS requires for columns.
+/// \param taken  names that are in use
 std::string snake_case(const std::string& name, const std::vector<std::string>& taken) {
   std::string snake;
   for (const char c : name) {
@@ -215,22 +216,22 @@ DataTable bids_participants(const DatasetSource& source, const std::vector<BidsS
     by_session = demographics_of(source.outcomes->answers, source.outcomes->design);
   }
   DataTable table{{"participant_id", "participant"}, {}};
-  // A column of *_sessions.tsv may not be one of participants.tsv.
+  // A column must not be in both *_sessions.tsv and participants.tsv.
   const bool has_sessions = !sessions.empty() && !sessions.front().label.empty();
   if (!has_sessions) append_columns(table, session_columns());
   std::vector<BidsPerson> people;
-  for (const BidsSession* session : standing_sessions(sessions)) {
+  for (const BidsSession* session : last_sessions(sessions)) {
     std::vector<DataCell>& row = table.rows.emplace_back();
     row = {session->subject, session->row.participant};
     if (!has_sessions) append_cells(row, session_cells(*session));
-    people.push_back(said_by(session->subject, sessions, by_session));
+    people.push_back(answers_of_participant(session->subject, sessions, by_session));
     for (const record::PersonalRecord& one : consents) {
       if (one.participant != session->row.participant) continue;
       people.back().consent_version = one.consent_version;
     }
   }
   if (has_sessions) {
-    add_group(table, standing_sessions(sessions), collection);
+    add_group(table, last_sessions(sessions), collection);
   } else {
     add_visit_and_group(table, collection);
   }

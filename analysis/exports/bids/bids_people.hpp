@@ -19,7 +19,7 @@ struct BidsSession {
   int interruptions = 0;
   int pauses = 0;
   std::string subject;  ///< for example "sub-P01"
-  std::string label;    ///< for example "ses-1"; empty if nobody has more than one session
+  std::string label;    ///< for example "ses-1"; empty if no participant has more than one session
   /// Between the participant's first session and this one; 0 if days are not recorded, as of
   /// simulated participants.
   std::chrono::days days{};
@@ -29,31 +29,30 @@ struct BidsSession {
   [[nodiscard]] std::string stem() const;
 };
 
-/// All sessions except those of participants who withdrew and those that an interim look does not
-/// show.
+/// All sessions except those of participants who withdrew and those hidden at an interim look.
 [[nodiscard]] std::vector<BidsSession> bids_sessions(const record::StudyStore& store);
 
-/// Participants' answers to one questionnaire in one session each, as phenotype/<name>.tsv, in
-/// which BIDS wants one row a participant.
+/// Answers to one questionnaire as phenotype/<name>.tsv, with one session per participant because
+/// BIDS requires one row for each.
 struct BidsQuestionnaire {
-  std::string tool;  ///< the questionnaire, of letters, digits and underscores
-  std::string name;  ///< the same, and if there are sessions, which
+  std::string tool;  ///< the questionnaire's name in letters, digits and underscores
+  std::string name;  ///< the same, with the session's label if there is one
   DataTable table;   ///< participant_id, and one column a question
-  /// The questions of the columns after these; null: nobody knows the wording.
+  /// The questions of the columns after the first; null: the wording is unknown.
   std::vector<const study::Question*> questions;
 };
 
-/// The questionnaires that somebody answered.
+/// The questionnaires with at least one answer.
 /// \param study  unblinded
-/// \param typed  left_out: without answers in words, and without ages
+/// \param typed  left_out: without free-text answers and ages
 [[nodiscard]] std::vector<BidsQuestionnaire> bids_questionnaires(
     const DatasetSource& study, const std::vector<BidsSession>& sessions, Typed typed);
 
 /// participants.tsv: one row for each participant, with the data of the participant's last session.
-/// Age (in bands), sex and handedness come from sealed questionnaires after unblinding; a column is
-/// missing if nobody has a value. Of the personal data it has the last version of the consent form.
-/// In studies with visits or groups it has those of the collection (add_visit_and_group). If there
-/// are labelled sessions, what belongs to a session (not the group) is in *_sessions.tsv alone.
+/// Age (in bands), sex and handedness come from sealed questionnaires after unblinding; a column
+/// without values is left out. The personal data are reduced to the last version of the consent
+/// form. Studies with visits or groups have their columns (add_visit_and_group). If sessions have
+/// labels, session data, except the group, are only in *_sessions.tsv.
 [[nodiscard]] DataTable bids_participants(const DatasetSource& source,
                                           const std::vector<BidsSession>& sessions,
                                           const Collection& collection,

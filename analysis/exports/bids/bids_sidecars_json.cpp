@@ -22,7 +22,7 @@ void put_if_given(Json& object, const char* key, const std::string& value) {
   if (!value.empty()) object[key] = value;
 }
 
-/// The program that exports, not the one that recorded, which the README names.
+/// The exporting program; the README names the recording one.
 Json generated_by() {
   return Json::array({{{"Name", "Touchtrial"},
                        {"Version", program_version()},
@@ -50,18 +50,17 @@ std::string task_description(const DatasetSource& study) {
   if (prescription.intervals > 0) {
     return fmt::format(
         "Each trial presents {} planes through a force-feedback device, one after the other and "
-        "without anything to see of them; the participant explores each and then gives one of {} "
+        "invisibly; the participant explores each and then gives one of {} "
         "answers about them. {}Protocol: {}.",
         prescription.intervals, commitment.positions,
         prescription.adaptive ? "A procedure chooses the level of each trial. " : "",
         commitment.protocol);
   }
   return fmt::format(
-      "Each trial presents a texture through a force-feedback device, without anything to see of "
-      "it; the participant explores it and then {}. Protocol: {}.",
-      commitment.positions > 0
-          ? fmt::format("says which of {} textures it was", commitment.positions)
-          : "rates it",
+      "Each trial presents an invisible texture through a force-feedback device; the participant "
+      "explores it and then {}. Protocol: {}.",
+      commitment.positions > 0 ? fmt::format("names one of {} textures", commitment.positions)
+                               : "rates it",
       commitment.protocol);
 }
 
@@ -70,7 +69,7 @@ std::string instructions(const study::Study& study) {
   const auto own = study.session.instructions.find(study.session.language);
   if (own == study.session.instructions.end()) {
     const std::string draft = study::draft_notice(study.session.language);
-    return "Touchtrial's own, in the language \"" + study.session.language + "\"" +
+    return "Touchtrial's default instructions, in the language \"" + study.session.language + "\"" +
            (study.session.texts.contains(study.session.language) ? ", some replaced" : "") +
            (draft.empty() ? "" : "; " + draft);
   }
@@ -84,13 +83,13 @@ Json columns_object(const std::vector<std::string>& columns, bool simulated) {
   return object;
 }
 
-/// What presented the stimuli. Source: BIDS 1.11, "Task events".
+/// The software that presented the stimuli. Source: BIDS 1.11, "Task events".
 void put_presentation(Json& object, const DatasetSource& study) {
   object["StimulusPresentation"] = {{"SoftwareName", "Touchtrial"},
                                     {"SoftwareVersion", study.store.commitment().program_version}};
 }
 
-/// What describes the task in the sidecars of every datatype.
+/// The description of the task, for the sidecars of every datatype.
 Json task_object(const DatasetSource& study, const DatasetOptions& options) {
   const record::StudyCommitment& commitment = study.store.commitment();
   Json object{{"TaskName", commitment.study}, {"TaskDescription", task_description(study)}};
@@ -99,7 +98,7 @@ Json task_object(const DatasetSource& study, const DatasetOptions& options) {
   return object;
 }
 
-/// How many channels of each type a recording has.
+/// The number of channels of each type in a recording.
 std::map<std::string_view, int> channel_counts() {
   static const DataTable kChannels = motion_channels();
   const auto type = std::ranges::find(kChannels.columns, "type") - kChannels.columns.begin();
@@ -158,8 +157,8 @@ std::string task_json(const DatasetSource& study, const DatasetOptions& options,
   return json_text(object);
 }
 
-// Every recording has all fields, and no others than those of the specification: the validator that
-// npm serves looks at each file alone and refuses any other field.
+// Every recording has all fields of the specification and no others, because the npm validator
+// checks each file separately and rejects other fields.
 std::string motion_json(const DatasetSource& study, const DatasetOptions& options,
                         const BidsSession& session, const record::TraceBody& body) {
   Json object = task_object(study, options);
@@ -193,7 +192,7 @@ std::string channels_json() {
         {"Levels",
          {{"plane",
            {{"Description",
-             "The plane that is felt: the origin is the top left corner of the texture, x goes to "
+             "The felt plane: the origin is the top left corner of the texture, x goes to "
              "its right edge, y to its bottom edge, and z out of the plane, towards the "
              "hand"}}}}}}}};
   return json_text(object);

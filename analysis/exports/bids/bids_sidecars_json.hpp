@@ -4,7 +4,7 @@
 
 #include "analysis/exports/bids/bids_people.hpp"
 #include "analysis/exports/dataset.hpp"
-#include "record/payload.hpp"
+#include "record/session_bodies.hpp"
 
 #include <string>
 #include <vector>
@@ -35,7 +35,7 @@ inline constexpr const char* kBidsVersion = "1.11.1";
 [[nodiscard]] std::string questionnaire_json(const BidsQuestionnaire& questionnaire,
                                              const std::string& language, bool simulated);
 
-/// *_motion.json of one run: the task, the rate, and the device as the database has it.
+/// *_motion.json of one run: the task, the rate, and the recorded device.
 /// \param study  unblinded
 /// \param body  of the trial's `trace-stored`, opened
 [[nodiscard]] std::string motion_json(const DatasetSource& study, const DatasetOptions& options,

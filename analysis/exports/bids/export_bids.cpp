@@ -37,16 +37,17 @@ std::string bids_readme(const DatasetSource& study, const DatasetOptions& option
     text +=
         "*_motion.tsv hold the stylus' position and the force sent while a plane could be felt: a "
         "run is a trial, *_channels.tsv names the columns, and the *_events.tsv beside them count "
-        "from the run's first sample. *_scans.tsv tell when that was, on days that are not the "
-        "sessions'.\n";
+        "from the run's first sample. *_scans.tsv give the time of that sample, with shifted "
+        "dates.\n";
   }
   if (study.outcomes != nullptr) {
     text +=
         "beh/*_events.tsv list what happened besides trials, such as interruptions and pauses; "
         "phenotype/ has answers to questions";
-    text += options.typed == Typed::shown ? ".\n" : ", without those in words.\n";
+    text += options.typed == Typed::shown ? ".\n" : ", without free text.\n";
   }
-  if (options.stimuli) text += "stimuli/ holds the images that the textures were taken from.\n";
+  if (options.stimuli)
+    text += "stimuli/ holds the images from which the textures were extracted.\n";
   if (!options.database.empty()) {
     text += "sourcedata/ holds the study's database; its key is not part of the dataset.\n";
   }
@@ -70,8 +71,7 @@ Files stimulus_files(const study::Study& study) {
       const std::filesystem::path image = study.folder / study.classes[i].images[k];
       if (!is_there(image)) {
         throw FileError(one_line(image.string()) +
-                        ": the study's image is not there; put it back, or leave out "
-                        "--with-stimuli");
+                        ": the study's image is missing; restore it, or leave out --with-stimuli");
       }
       files.push_back(
           {"stimuli/" + stimulus_name(study, i, k), [image](const std::filesystem::path& path) {
@@ -100,7 +100,8 @@ DataCell stimulus_file(const TrialView& trial) {
   return stimulus_name(trial.study->design, shown.class_index, shown.exemplar);
 }
 
-/// What each row may show: trials with their outcomes, or before unblinding the rows in clear.
+/// The data that rows may show: trials with their outcomes, or before unblinding the unencrypted
+/// rows.
 std::vector<TrialView> views_of(const DatasetSource& study,
                                 const std::vector<record::TrialRow>& in_clear) {
   static const std::string kNobody;
@@ -170,8 +171,8 @@ void append(Files& files, Files more) {
 void require_unblinded(const DatasetSource& study, const DatasetOptions& options) {
   if (study.outcomes != nullptr || !(options.traces || options.stimuli)) return;
   throw UsageError(
-      "traces and stimuli tell what was presented, and are exported after unblinding; leave out "
-      "--traces and --with-stimuli");
+      "traces and stimuli reveal what was presented, so they are exported only after unblinding; "
+      "leave out --traces and --with-stimuli");
 }
 
 void add_people(Files& files, const DatasetSource& study, const DatasetOptions& options,
@@ -220,9 +221,11 @@ std::vector<DataCell> mark_cells(const InstrumentMark& mark,
   return row;
 }
 
-/// Answers to questions below phenotype/, and what happened in a session besides its trials.
-void add_what_was_said(Files& files, const DatasetSource& study, const DatasetOptions& options,
-                       const std::vector<BidsSession>& sessions, const std::string& task) {
+/// Adds questionnaires below phenotype/, and the incidents of sessions.
+void add_questionnaires_and_incidents(Files& files, const DatasetSource& study,
+                                      const DatasetOptions& options,
+                                      const std::vector<BidsSession>& sessions,
+                                      const std::string& task) {
   if (study.outcomes == nullptr || sessions.empty()) return;
   const bool simulated = study.store.commitment().simulated;
   const std::string& language = study.outcomes->design.session.language;
@@ -259,7 +262,8 @@ void add_what_was_said(Files& files, const DatasetSource& study, const DatasetOp
                   tsv_text(table)));
     has_events = true;
   }
-  // One file describes the events of all datatypes: one level may not have two that apply to a run.
+  // One file describes the events of all datatypes, because BIDS allows only one per level for a
+  // run.
   std::vector<std::string> described;
   if (has_events) described = columns;
   if (options.traces) {
@@ -280,24 +284,25 @@ void add_report(Files& files, const DatasetSource& study, Typed typed) {
                             report_in_dataset(study, typed)));
 }
 
-/// Reports how many files are written. One thread reports at a time.
+/// Reports the number of written files, from one thread at a time.
 class Progress {
  public:
-  Progress(std::function<void(int, int)> tell, int of) : tell_(std::move(tell)), of_(of) {}
+  Progress(std::function<void(int, int)> report_progress, int of)
+      : report_progress_(std::move(report_progress)), of_(of) {}
 
   void one_more() {
     const std::lock_guard lock(mutex_);
-    tell_(++done_, of_);
+    report_progress_(++done_, of_);
   }
 
  private:
   std::mutex mutex_;
-  std::function<void(int, int)> tell_;
+  std::function<void(int, int)> report_progress_;
   int of_;
   int done_ = 0;
 };
 
-void tell_progress(Files& files, const DatasetOptions& options) {
+void make_progress(Files& files, const DatasetOptions& options) {
   if (!options.progress) return;
   const auto progress =
       std::make_shared<Progress>(options.progress, static_cast<int>(files.size()));
@@ -322,7 +327,7 @@ std::vector<std::filesystem::path> export_bids(const DatasetSource& study,
               text_file("README", bids_readme(study, options))};
   add_people(files, study, options, sessions);
   add_trials(files, study, options, sessions, task);
-  add_what_was_said(files, study, options, sessions, task);
+  add_questionnaires_and_incidents(files, study, options, sessions, task);
   if (options.stimuli) append(files, stimulus_files(study.key->study));
   if (options.traces) append(files, motion_files(study, options, sessions, task));
   add_report(files, study, options.typed);
@@ -332,7 +337,7 @@ std::vector<std::filesystem::path> export_bids(const DatasetSource& study,
                        record::copy_database(from, path);
                      }});
   }
-  tell_progress(files, options);
+  make_progress(files, options);
   return write_export(folder, {commitment.study, commitment.study_id, "bids"}, files);
 }
 

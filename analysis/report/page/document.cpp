@@ -1,6 +1,7 @@
 #include "analysis/report/page/document.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <string_view>
 
 namespace touchtrial::analysis {
@@ -43,12 +44,6 @@ std::vector<const Block*> all_blocks(const Section& section) {
     for (const Block& block : *some) blocks.push_back(&block);
   }
   return blocks;
-}
-
-bool has_tables_or_warnings(const Section& section) {
-  return std::ranges::any_of(all_blocks(section), [](const Block* block) {
-    return std::holds_alternative<Table>(*block) || std::holds_alternative<Warnings>(*block);
-  });
 }
 
 std::size_t references_in_print(const Document& document) {
@@ -96,6 +91,20 @@ std::string stamped(const std::string& caption, const std::string& stamp) {
     at = end + std::string_view(kBetweenWords).size();
   }
   return missing.empty() ? caption : caption + " [" + missing + "]";
+}
+
+Document tables_alone(const Document& document) {
+  Document alone = document;
+  alone.header.entries.clear();
+  for (Section& section : alone.sections) {
+    std::ranges::move(section.more, std::back_inserter(section.blocks));
+    section.more.clear();
+    std::erase_if(section.blocks, [](const Block& block) {
+      return !std::holds_alternative<Table>(block) && !std::holds_alternative<Warnings>(block);
+    });
+  }
+  std::erase_if(alone.sections, [](const Section& section) { return section.blocks.empty(); });
+  return alone;
 }
 
 std::vector<const Table*> tables_of(const Document& document) {

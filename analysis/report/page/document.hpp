@@ -103,9 +103,6 @@ struct Section {
 /// A section's blocks, then those that are folded.
 [[nodiscard]] std::vector<const Block*> all_blocks(const Section& section);
 
-/// Tells whether the files of tables include anything from a section.
-[[nodiscard]] bool has_tables_or_warnings(const Section& section);
-
 struct Document {
   std::string title;
   std::string stamp;  ///< for example "SIMULATED"; may be empty; stands on every table
@@ -134,6 +131,9 @@ struct Document {
 /// The caption, followed by the words of the document's stamp that it does not contain yet.
 [[nodiscard]] std::string stamped(const std::string& caption, const std::string& stamp);
 
+/// The tables and warnings of a document, in the sections that have some; without its header.
+[[nodiscard]] Document tables_alone(const Document& document);
+
 /// Every table of a document, in order.
 [[nodiscard]] std::vector<const Table*> tables_of(const Document& document);
 
@@ -143,11 +143,8 @@ struct Document {
 
 /// One table in GitHub's Markdown, with its notes and references.
 [[nodiscard]] std::string table_markdown(const Table& table, const std::string& stamp);
-/// Every table of the document under its section's title, in GitHub's Markdown, with the references
-/// at the end.
-[[nodiscard]] std::string tables_markdown(const Document& document);
 
-/// The whole document in GitHub's Markdown, with the references at the end.
+/// A document in GitHub's Markdown, with the references at the end.
 /// \param pictures  the folder of the pictures' files, relative to the Markdown file: "images"; a
 ///   picture that could not be drawn is described instead
 [[nodiscard]] std::string document_markdown(const Document& document, const std::string& pictures);
@@ -155,7 +152,8 @@ struct Document {
 /// One table as LaTeX for \input: a float, or a longtable if it has many rows. The preamble needs
 /// booktabs and longtable, and for pdfLaTeX also T1 fonts and UTF-8 input.
 [[nodiscard]] std::string table_latex(const Table& table, const std::string& stamp);
-/// Every table of the document in sections, as LaTeX for \input, with the references at the end.
+/// The tables and warnings of the document in sections, as LaTeX for \input, with the references at
+/// the end.
 [[nodiscard]] std::string tables_latex(const Document& document);
 
 /// The document as text for a terminal: the sections that are not for the page alone, then the

@@ -10,13 +10,14 @@
 
 namespace touchtrial::analysis {
 
-[[nodiscard]] Section warnings_section(const std::vector<std::string>& warnings);
+/// How data collection proceeds.
+[[nodiscard]] std::vector<Section> quality_sections(const QualityReport& report);
 
 /// Adds the answer to the registered question, and the estimate under every choice of sessions and
 /// trials, which is folded if no choice changes it. Nothing if the study has no question.
 void add_verdict(const StudyHead& head, Section& section);
 /// Adds to every table and every sentence with a p that it is not adjusted for unregistered looks.
-void say_unadjusted(const std::vector<Look>& looks, std::vector<Section>& sections);
+void note_unadjusted(const std::vector<Look>& looks, std::vector<Section>& sections);
 
 /// The flow of participants, dates and conditions, and deviations from the protocol; nothing about
 /// outcomes.
@@ -34,8 +35,5 @@ void say_unadjusted(const std::vector<Look>& looks, std::vector<Section>& sectio
 /// The timing of the servo over the trials that ran in real time.
 /// \return nothing if there is no such trial
 [[nodiscard]] std::optional<Table> servo_table(const Collection& collection);
-
-/// The part of the header about the state of the study and the evidence for the report.
-[[nodiscard]] Definitions evidence_header(const Provenance& provenance);
 
 }  // namespace touchtrial::analysis

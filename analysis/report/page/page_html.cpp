@@ -275,12 +275,18 @@ std::string references_html(const Writer& writer) {
       "<section aria-labelledby=\"references\">\n<h2 id=\"references\">References</h2>\n"
       "<ol class=\"references\">\n";
   const std::size_t in_print = references_in_print(writer.document);
-  for (std::size_t i = 0; i < writer.references.size(); ++i) {
-    html += fmt::format("<li id=\"reference-{}\"{}>{}</li>\n", i + 1,
-                        i < in_print ? "" : " class=\"further\"",
+  const std::size_t count = writer.references.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i == in_print) {
+      html += fmt::format(
+          "</ol>\n<details class=\"more\">\n<summary>Cited in folded parts: {}</summary>\n"
+          "<ol class=\"references\" start=\"{}\">\n",
+          count - i, i + 1);
+    }
+    html += fmt::format("<li id=\"reference-{}\">{}</li>\n", i + 1,
                         html_text(std::string(citation_of(writer.references[i]))));
   }
-  return html + "</ol>\n</section>\n";
+  return html + (in_print < count ? "</ol>\n</details>\n</section>\n" : "</ol>\n</section>\n");
 }
 
 std::string navigation(const Writer& writer) {

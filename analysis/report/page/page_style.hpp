@@ -125,13 +125,13 @@ footer { border-top: 1px solid var(--line); margin-top: 3rem; padding-top: .8rem
     margin: .2rem 1.5rem .6rem 0; }
   main > section:first-child > :is(.table, .more) { clear: both; }
 }
-@page { size: A4; margin: 16mm 15mm; }
+@page { size: A4; margin: 14mm 15mm; }
 @media print {
   :root { color-scheme: light; --ink: #000; --soft: #444; --ground: #fff; --panel: #f6f6f4;
     --line: #ccc; --rule: #000; --link: #000; --warn-ink: #000; --warn-ground: #fff;
     --warn-line: #777; --stamp-ink: #8a1c14; --stamp-ground: #fff; --stamp-line: #b3261e;
     --strong: #e8e8e8; }
-  body { font-size: 9.5pt; line-height: 1.4; }
+  body { font-size: 9pt; line-height: 1.32; }
   header, main, footer { max-width: none; padding: 0; }
   nav, figure details, .more, .further { display: none; }
   h1 { font-size: 18pt; }
@@ -139,7 +139,7 @@ footer { border-top: 1px solid var(--line); margin-top: 3rem; padding-top: .8rem
   h3 { font-size: 11pt; margin: 5mm 0 2mm; }
   h2, h3 { break-after: avoid; }
   .banner, .warnings { font-size: 9pt; padding: 1.5mm 3mm; margin: 0 0 3mm; }
-  .references { font-size: 8pt; }
+  .references { font-size: 7pt; line-height: 1.25; columns: 2; }
   p, .warnings li { orphans: 3; widows: 3; max-width: none; }
   a { text-decoration: none; }
   .scroll { overflow: visible; }

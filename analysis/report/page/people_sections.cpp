@@ -286,15 +286,6 @@ Cited bands_sentence(const Characteristic& of) {
   return {text + "."};
 }
 
-/// "12.1 (11.6, 12.9)"
-std::string quartiles_figure(const Quartiles& of, int decimals, double unit) {
-  const auto figure = [&](std::optional<double> value) {
-    return plain_figure(value ? std::optional(unit * *value) : value, decimals);
-  };
-  if (!of.median) return kNoFigure;
-  return fmt::format("{} ({}, {})", figure(of.median), figure(of.lower), figure(of.upper));
-}
-
 struct Explored {
   const char* what;
   Quartiles Explorations::*of;
@@ -407,7 +398,7 @@ std::string device_summary(const Collection& collection) {
 }
 
 Section said_section(const StudyHead& head) {
-  Section section{"said", "What participants said", {}};
+  Section section{"said", "Answers to questions", {}};
   if (head.said.empty()) return section;
   Table questions{"questions",
                   "Answers to the questions after the session",

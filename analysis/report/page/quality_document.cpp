@@ -12,9 +12,8 @@ namespace touchtrial::analysis {
 namespace {
 
 Table sessions_table(const SessionCounts& counts) {
-  Table table{"session-counts",
-              "Sessions, each counted once",
-              {{"how they stand", Align::left}, {"sessions"}}};
+  Table table{
+      "session-counts", "Sessions, each counted once", {{"state", Align::left}, {"sessions"}}};
   const auto add = [&](const char* name, int n) {
     table.rows.push_back({name, std::to_string(n)});
   };
@@ -84,27 +83,9 @@ Table hands_table(const Collection& collection) {
       "it. "
       "Force: a mean push below {} N or above {} N. Speed: a mean below {} or above {} mm/s. "
       "Somebody who does not press or does not move shows here; what was presented does not.",
-      rule.least_contact_s, rule.least_path_mm, rule.least_median_n, rule.largest_median_n,
-      study::kSlowestMmS, study::kFastestMmS)}};
+      rule.min_contact_s, rule.min_path_mm, rule.min_median_n, rule.max_median_n,
+      study::kMinStrokeMmS, study::kMaxStrokeMmS)}};
   return table;
-}
-
-std::vector<std::string> banners_of(const QualityReport& report) {
-  std::vector<std::string> banners;
-  if (report.simulated) {
-    const std::string device = simulated_on(simulated_devices(report.collection));
-    if (!device.empty()) banners.push_back(device);
-    banners.emplace_back("SIMULATED: this study's participants are simulated.");
-  }
-  if (report.pilot) banners.emplace_back("PILOT: not to be pooled with the study's data.");
-  if (!report.state.unblinded) {
-    banners.emplace_back(
-        "BLIND: outcomes are shown once the study has been unblinded. Nothing here reveals them.");
-  }
-  if (report.visual) {
-    banners.emplace_back("Seen on a screen, not felt: never to be pooled with what was felt.");
-  }
-  return banners;
 }
 
 Section servo_section(const QualityReport& report) {
@@ -125,34 +106,19 @@ Section servo_section(const QualityReport& report) {
 
 }  // namespace
 
-Document quality_document(const QualityReport& report, const Provenance& provenance) {
-  Document document;
-  document.title = "Quality of the study " + report.study;
-  document.stamp = report.simulated ? "SIMULATED" : "";
-  if (report.pilot) document.stamp += document.stamp.empty() ? "PILOT" : ", PILOT";
-  document.banners = banners_of(report);
-  if (provenance.unverified) {
-    document.stamp += std::string(document.stamp.empty() ? "" : ", ") + study::kUnverifiedDevice;
-    document.banners.push_back(unverified_banner());
+std::vector<Section> quality_sections(const QualityReport& report) {
+  std::vector<Section> sections = {
+      {"counts",
+       "Sessions and trials",
+       {sessions_table(report.sessions), trials_table(report.quality)}},
+      participants_section(report.collection),
+      {"answers", "Answers by session", {answers_table(report.collection)}},
+      {"hands", "Hands by session", {hands_table(report.collection)}},
+      servo_section(report)};
+  if (!report.notes.empty()) {
+    sections.push_back({"to-bear-in-mind", "What to bear in mind", {Warnings{report.notes}}});
   }
-  if (provenance.lacks) document.banners.push_back(provenance.vouched);
-  document.header = evidence_header(provenance);
-  document.header.entries.insert(document.header.entries.begin(),
-                                 {{"protocol", report.protocol},
-                                  {"participants", std::to_string(report.participants)},
-                                  {"trials", std::to_string(report.trials)}});
-  document.sections = {{"counts",
-                        "Sessions and trials",
-                        {sessions_table(report.sessions), trials_table(report.quality)}},
-                       participants_section(report.collection),
-                       {"answers", "Answers by session", {answers_table(report.collection)}},
-                       {"hands", "Hands by session", {hands_table(report.collection)}},
-                       servo_section(report)};
-  if (!report.notes.empty()) document.sections.push_back(warnings_section(report.notes));
-  document.colophon = fmt::format("{}touchtrial {}, {}, event {} of the file's chain",
-                                  simulated_line(report.simulated), provenance.program_version,
-                                  provenance.database, provenance.head.length);
-  return document;
+  return sections;
 }
 
 }  // namespace touchtrial::analysis

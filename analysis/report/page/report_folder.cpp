@@ -86,7 +86,7 @@ ReportFiles report_files(const Document& document, const std::string& results) {
   ReportFiles files;
   files["results.json"] = results;
   files["report.html"] = page_html(document);
-  files["tables/tables.md"] = tables_markdown(document);
+  files["tables/tables.md"] = document_markdown(tables_alone(document), "");
   files["tables/tables.tex"] = tables_latex(document);
   if (std::string methods = methods_markdown(document); !methods.empty()) {
     files[kMethods] = std::move(methods);

@@ -37,7 +37,9 @@ bool is_interim(const Provenance& provenance) {
   return (state.unblinded && !state.closed) || state.question;
 }
 
-std::vector<std::string> banners_of(const StudyHead& report, const Provenance& provenance) {
+/// What readers must know first.
+template <typename Report>
+std::vector<std::string> banners_of(const Report& report, const Provenance& provenance) {
   std::vector<std::string> banners;
   if (report.simulated) {
     const std::string device = simulated_on(simulated_devices(report.collection));
@@ -51,6 +53,10 @@ std::vector<std::string> banners_of(const StudyHead& report, const Provenance& p
   }
   if (provenance.unverified) banners.push_back(unverified_banner());
   if (provenance.lacks) banners.push_back(provenance.vouched);
+  return banners;
+}
+
+void add_interim_banner(const Provenance& provenance, std::vector<std::string>& banners) {
   if (provenance.state.question) {
     banners.emplace_back(
         "INTERIM LOOK at the registered question: it alone is shown, and it alone may decide "
@@ -60,26 +66,41 @@ std::vector<std::string> banners_of(const StudyHead& report, const Provenance& p
         "INTERIM LOOK: the study is still open. What it shows must not decide when the study "
         "ends.");
   }
-  return banners;
 }
 
-Definitions header_of(const StudyHead& report, const Provenance& provenance,
-                      const Pictures& pictures) {
-  Definitions header;
-  header.entries = {{"protocol", report.protocol},
-                    {"participants", std::to_string(report.participants)},
-                    {"trials", std::to_string(report.trials)},
-                    {"textures", listed(report.classes, " and ")}};
-  const Definitions evidence = evidence_header(provenance);
-  header.entries.insert(header.entries.end(), evidence.entries.begin(), evidence.entries.end());
-  if (std::ranges::any_of(pictures, &std::string::empty, &Picture::svg)) {
-    header.entries.emplace_back(
-        "figures",
-        "Figures were not drawn: gnuplot could not be used, for the reason that `touchtrial "
-        "report` "
-        "said. Make the report again where it can; here each is described in words.");
+/// A document without sections.
+template <typename Report>
+Document begun_document(const char* title, const Report& report, const Provenance& provenance) {
+  Document document;
+  document.title = title + report.study;
+  document.stamp =
+      joined(report.simulated ? "SIMULATED" : "", further_stamp(report.pilot, provenance));
+  document.banners = banners_of(report, provenance);
+  document.header.entries = {{"protocol", report.protocol},
+                             {"participants", std::to_string(report.participants)},
+                             {"trials", std::to_string(report.trials)}};
+  document.colophon =
+      fmt::format("{}touchtrial {}, {}, event {} of the file's chain, {}",
+                  simulated_line(report.simulated), provenance.program_version, provenance.database,
+                  provenance.head.length, to_hex(provenance.head.hash));
+  return document;
+}
+
+/// Adds the state of the study and the evidence for the report.
+void add_evidence(const Provenance& provenance, Definitions& header) {
+  auto& entries = header.entries;
+  entries.insert(
+      entries.end(),
+      {{"state", state_words(provenance.state)},
+       {"database", provenance.database},
+       {"seal of the study", provenance.seal},
+       {"head of the file's chain",
+        fmt::format("{} (event {})", to_hex(provenance.head.hash), provenance.head.length)},
+       {"program", "touchtrial " + provenance.program_version}});
+  if (!provenance.vouched.empty()) {
+    entries.emplace_back("its end is vouched for", provenance.vouched);
   }
-  return header;
+  if (!provenance.texts.empty()) entries.emplace_back("what participants read", provenance.texts);
 }
 
 /// Puts a picture below the sentences of a section or subheading.
@@ -151,7 +172,7 @@ void add_warnings(const std::vector<std::string>& warnings, Section& section, st
                           Warnings{{warnings.begin(), end}, "What to bear in mind:"});
   }
   if (end != warnings.end()) {
-    section.more.insert(section.more.begin(), Warnings{{end, warnings.end()}, "And also:"});
+    section.more.insert(section.more.begin(), Warnings{{end, warnings.end()}, "Further points:"});
   }
 }
 
@@ -190,24 +211,7 @@ Provenance provenance_of(const record::StudyStore& store, const std::string& dat
 
 std::string unverified_banner() {
   return std::string(study::kUnverifiedDevice) +
-         ": sessions ran on a device without a valid acceptance. Nobody knows what was felt.";
-}
-
-Definitions evidence_header(const Provenance& provenance) {
-  Definitions header{
-      {{"state", state_words(provenance.state)},
-       {"database", provenance.database},
-       {"seal of the study", provenance.seal},
-       {"head of the file's chain",
-        fmt::format("{} (event {})", to_hex(provenance.head.hash), provenance.head.length)},
-       {"program", "touchtrial " + provenance.program_version}}};
-  if (!provenance.vouched.empty()) {
-    header.entries.emplace_back("its end is vouched for", provenance.vouched);
-  }
-  if (!provenance.texts.empty()) {
-    header.entries.emplace_back("what participants read", provenance.texts);
-  }
-  return header;
+         ": sessions ran on a device without a valid acceptance. What was felt is not known.";
 }
 
 std::string further_stamp(bool pilot, const Provenance& provenance) {
@@ -215,33 +219,43 @@ std::string further_stamp(bool pilot, const Provenance& provenance) {
                 provenance.unverified ? study::kUnverifiedDevice : "");
 }
 
-Section warnings_section(const std::vector<std::string>& warnings) {
-  Section section{"to-bear-in-mind", "What to bear in mind", {}};
-  if (!warnings.empty()) section.blocks.emplace_back(Warnings{warnings});
-  return section;
-}
-
 Document framed_document(const StudyHead& head, Section headline, std::vector<Section> results,
                          const Provenance& provenance, const Pictures& pictures) {
-  Document document;
-  document.title = "Report of the study " + head.study;
-  document.stamp = joined(head.simulated ? "SIMULATED" : "", further_stamp(head.pilot, provenance));
-  document.banners = banners_of(head, provenance);
-  document.header = header_of(head, provenance, pictures);
+  Document document = begun_document("Report of the study ", head, provenance);
+  add_interim_banner(provenance, document.banners);
+  document.header.entries.emplace_back("textures", listed(head.classes, " and "));
+  add_evidence(provenance, document.header);
+  if (std::ranges::any_of(pictures, &std::string::empty, &Picture::svg)) {
+    document.header.entries.emplace_back(
+        "figures",
+        "Figures were not drawn: gnuplot could not be used, for the reason that `touchtrial "
+        "report` said. Make the report again where it can; here each is described in words.");
+  }
   std::vector<Section> sections = {result_section(head, std::move(headline))};
   std::ranges::move(results, std::back_inserter(sections));
   sections.push_back(participants_section(head.collection, &head));
   sections.push_back(said_section(head));
   // Methods come here, the last before what is folded, the references and the header.
-  say_unadjusted(head.looks, sections);
+  note_unadjusted(head.looks, sections);
   for (const Picture& picture : with_leading(pictures, sections)) place(picture, sections);
   for (Section& section : sections) {
     if (!all_blocks(section).empty()) document.sections.push_back(std::move(section));
   }
-  document.colophon =
-      fmt::format("{}touchtrial {}, {}, event {} of the file's chain, {}",
-                  simulated_line(head.simulated), provenance.program_version, provenance.database,
-                  provenance.head.length, to_hex(provenance.head.hash));
+  return document;
+}
+
+Document quality_document(const QualityReport& report, const Provenance& provenance) {
+  Document document = begun_document("Quality of the study ", report, provenance);
+  if (!report.state.unblinded) {
+    document.banners.emplace_back(
+        "BLIND: outcomes are shown once the study has been unblinded. Nothing here reveals them.");
+  }
+  if (report.visual) {
+    document.banners.emplace_back(
+        "Seen on a screen, not felt: never to be pooled with what was felt.");
+  }
+  add_evidence(provenance, document.header);
+  document.sections = quality_sections(report);
   return document;
 }
 

@@ -147,19 +147,18 @@ std::string table_latex(const Table& table, const std::string& stamp) {
 }
 
 std::string tables_latex(const Document& document) {
-  const std::vector<Source> references = references_of(document);
+  const Document alone = tables_alone(document);
+  const std::vector<Source> references = references_of(alone);
   std::string text = header_of(kPackages);
-  for (const std::string& banner : document.banners) {
+  for (const std::string& banner : alone.banners) {
     text += "\\noindent\\textbf{" + latex_escaped(banner) + "}\\par\\medskip\n";
   }
-  for (const Section& section : document.sections) {
-    if (!has_tables_or_warnings(section)) continue;
+  for (const Section& section : alone.sections) {
     text += "\\section*{" + latex_escaped(section.title) + "}\n";
-    for (const Block* block : all_blocks(section)) {
-      if (const auto* warnings = std::get_if<Warnings>(block)) text += warnings_latex(*warnings);
-      const auto* table = std::get_if<Table>(block);
-      if (table != nullptr)
-        text += one_table(*table, document.stamp, references, References::elsewhere);
+    for (const Block& block : section.blocks) {
+      const auto* table = std::get_if<Table>(&block);
+      text += table != nullptr ? one_table(*table, alone.stamp, references, References::elsewhere)
+                               : warnings_latex(std::get<Warnings>(block));
     }
     text += "\\clearpage\n";
   }

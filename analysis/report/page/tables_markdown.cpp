@@ -132,22 +132,4 @@ std::string table_markdown(const Table& table, const std::string& stamp) {
   return references.empty() ? text : text + '\n' + references_text(references);
 }
 
-std::string tables_markdown(const Document& document) {
-  const std::vector<Source> references = references_of(document);
-  std::string text = "# " + markdown_escaped(stamped(document.title, document.stamp)) + "\n\n";
-  for (const std::string& banner : document.banners)
-    text += "**" + markdown_escaped(banner) + "**\n\n";
-  for (const Section& section : document.sections) {
-    if (!has_tables_or_warnings(section)) continue;
-    text += "## " + markdown_escaped(section.title) + "\n\n";
-    for (const Block* block : all_blocks(section)) {
-      if (const auto* warnings = std::get_if<Warnings>(block)) text += warnings_text(*warnings);
-      const auto* table = std::get_if<Table>(block);
-      if (table != nullptr) text += table_text(*table, document.stamp, references) + '\n';
-    }
-  }
-  if (!references.empty()) text += "## References\n\n" + references_text(references);
-  return text;
-}
-
 }  // namespace touchtrial::analysis

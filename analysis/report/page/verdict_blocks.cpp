@@ -189,7 +189,7 @@ Cited note_of(const StratifiedMean& stations) {
   std::string text =
       "Fixed strata: for these stations, from the spread between participants of one station.";
   if (!stations.random) {
-    return {text + fmt::format(" With fewer than {} stations nothing can be said of others.",
+    return {text + fmt::format(" With fewer than {} stations nothing follows for other stations.",
                                kMinRandomStrata),
             {Source::student}};
   }
@@ -288,7 +288,7 @@ bool is_of_p(const Column& column) {
          title.ends_with(" p") || title.ends_with("-p");
 }
 
-bool tells_p(const std::string& text) {
+bool mentions_p(const std::string& text) {
   return text.find("p = ") != std::string::npos || text.find("p < ") != std::string::npos;
 }
 
@@ -307,21 +307,21 @@ void add_verdict(const StudyHead& head, Section& section) {
   if (primary.pairs.size() > 1) section.blocks.emplace_back(pairs_table(primary));
 }
 
-void say_unadjusted(const std::vector<Look>& looks, std::vector<Section>& sections) {
+void note_unadjusted(const std::vector<Look>& looks, std::vector<Section>& sections) {
   const std::string words = unadjusted_words(looks);
   if (words.empty()) return;
-  const auto say_in = [&](Block& block) {
+  const auto add_in = [&](Block& block) {
     if (auto* table = std::get_if<Table>(&block)) {
       const bool has_p = std::ranges::any_of(table->columns, is_of_p) ||
-                         std::ranges::any_of(table->notes, tells_p, &Cited::text);
+                         std::ranges::any_of(table->notes, mentions_p, &Cited::text);
       if (has_p) table->notes.push_back({words});
     } else if (auto* sentence = std::get_if<Cited>(&block)) {
-      if (tells_p(sentence->text)) sentence->text += " The " + words;
+      if (mentions_p(sentence->text)) sentence->text += " The " + words;
     }
   };
   for (Section& section : sections) {
-    std::ranges::for_each(section.blocks, say_in);
-    std::ranges::for_each(section.more, say_in);
+    std::ranges::for_each(section.blocks, add_in);
+    std::ranges::for_each(section.more, add_in);
   }
 }
 

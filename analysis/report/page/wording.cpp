@@ -34,6 +34,14 @@ std::string signed_plain_figure(std::optional<double> figure, int decimals) {
   return typeset(signed_figure(figure, decimals));
 }
 
+std::string quartiles_figure(const Quartiles& of, int decimals, double unit) {
+  const auto figure = [&](std::optional<double> value) {
+    return plain_figure(value ? std::optional(unit * *value) : value, decimals);
+  };
+  if (!of.median) return kNoFigure;
+  return fmt::format("{} ({}, {})", figure(of.median), figure(of.lower), figure(of.upper));
+}
+
 std::string share_figure(std::optional<double> share) {
   return share ? plain_figure(100.0 * *share, 1) + "%" : kNoFigure;
 }

@@ -2,6 +2,7 @@
 /// decimal point in every locale, and "–" for a number that does not exist or is not finite.
 #pragma once
 
+#include "analysis/statistics/descriptive.hpp"
 #include "analysis/statistics/mean_test.hpp"
 #include "analysis/statistics/proportion.hpp"
 
@@ -26,6 +27,9 @@ inline constexpr double kUsualLevel = 0.05;
 [[nodiscard]] std::string plain_range(const std::optional<Interval>& interval, int decimals);
 /// A number with its sign; "0.0" without a sign if it rounds to zero.
 [[nodiscard]] std::string signed_plain_figure(std::optional<double> figure, int decimals);
+/// The median and quartiles: "12.1 (11.6, 12.9)".
+/// \param unit  by which each is multiplied
+[[nodiscard]] std::string quartiles_figure(const Quartiles& of, int decimals, double unit = 1.0);
 /// A p value: "0.023", "< 0.001".
 [[nodiscard]] std::string p_figure(std::optional<double> p);
 /// A p value in a sentence: "p = 0.023", "p < 0.001".

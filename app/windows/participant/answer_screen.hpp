@@ -93,7 +93,7 @@ class QuestionScreen final : public Screen {
   [[nodiscard]] bool is_answered() const;
   /// Whether the typed text is not a number that the question accepts.
   [[nodiscard]] bool is_misfit() const;
-  [[nodiscard]] bool may_go_on() const {
+  [[nodiscard]] bool can_resume() const {
     return (is_answered() || !question().required) && !is_misfit();
   }
   [[nodiscard]] std::string range_text() const;

@@ -446,7 +446,7 @@ struct ParticipantWindow::State {
 
   [[nodiscard]] bool touches_enough() const noexcept {
     constexpr double kRounding = 1e-9;
-    const study::LeastTouch& least = options.least_touch;
+    const study::MinTouch& least = options.least_touch;
     return at_plane_s >= least.contact_s - kRounding && along_plane_mm >= least.path_mm - kRounding;
   }
 

@@ -40,7 +40,7 @@ struct ParticipantWindowOptions {
   /// Textures are made by several methods: the participant is asked which picture fits best.
   bool has_several_methods = false;
   /// The touch required before Enter ends an exploration, over all explorations of a presentation.
-  study::LeastTouch least_touch{0.0, 0.0};
+  study::MinTouch least_touch{0.0, 0.0};
   study::Ask ask{};                 ///< of the study's trials
   double stiffness_n_per_mm = 0.0;  ///< of the planes' wall; only needed where planes have a clock
   /// How long the next of a trial's planes is announced.

@@ -166,7 +166,7 @@ void add_interruptions(ScreenList& list, const study::TrialOptions& plan, int of
     list.add("break", session::BreakStep{plan.break_every > 0 ? plan.break_every : of / 2, of});
   }
   list.add("stopped",
-           session::NoticeStep{.what = session::NoticeStep::What::stopped, .may_go_on = false});
+           session::NoticeStep{.what = session::NoticeStep::What::stopped, .can_resume = false});
   list.add("pause", session::PauseStep{});
 }
 

@@ -111,7 +111,7 @@ void QuestionScreen::paint(Canvas& canvas) {
   std::vector<FooterButton> buttons;
   if (page_ > 0) buttons.push_back({kBackTarget, words.back, false});
   const bool skips = !question().required && !is_answered();
-  buttons.push_back({kNextTarget, skips ? words.skip : words.next, !skips, may_go_on()});
+  buttons.push_back({kNextTarget, skips ? words.skip : words.next, !skips, can_resume()});
   draw_footer(canvas, buttons);
 }
 
@@ -184,7 +184,7 @@ std::optional<session::StepReply> QuestionScreen::activate(int id, Time /*at*/) 
     caret_ = typed().size();
     return std::nullopt;
   }
-  if (!may_go_on()) return std::nullopt;
+  if (!can_resume()) return std::nullopt;
   if (page_ + 1 < questionnaire_.questions.size()) {
     ++page_;
     caret_ = typed().size();

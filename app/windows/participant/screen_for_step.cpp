@@ -177,9 +177,9 @@ class Maker {
     return std::make_shared<NoteScreen>(
         NoteScreen::Content{{},
                             words_.stopped_title,
-                            step.may_go_on ? words_.stopped_text_alone : words_.stopped_text,
+                            step.can_resume ? words_.stopped_text_alone : words_.stopped_text,
                             "",
-                            step.may_go_on ? words_.go_on : "",
+                            step.can_resume ? words_.go_on : "",
                             false});
   }
   Made operator()(const session::PauseStep& /*step*/) const {
@@ -244,7 +244,7 @@ bool same(const session::BreakStep& a, const session::BreakStep& b) {
   return a.done == b.done;
 }
 bool same(const session::NoticeStep& a, const session::NoticeStep& b) {
-  return a.what == b.what && a.presentations == b.presentations && a.may_go_on == b.may_go_on;
+  return a.what == b.what && a.presentations == b.presentations && a.can_resume == b.can_resume;
 }
 bool same(const session::PauseStep& /*a*/, const session::PauseStep& /*b*/) {
   return true;

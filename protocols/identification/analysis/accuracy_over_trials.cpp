@@ -6,7 +6,7 @@
 namespace touchtrial::analysis::identification {
 namespace {
 
-constexpr double kLeastWidth = 2.0;
+constexpr double kMinWidth = 2.0;
 constexpr double kTrialsOfWidth = 10.0;
 constexpr std::size_t kMaxPlaces = 60;
 
@@ -38,7 +38,7 @@ AccuracyOverTrials accuracy_over_trials(std::span<const choices::Person> people)
 AccuracyOverTrials accuracy_over_trials(std::span<const std::vector<bool>> right) {
   std::size_t most = 0;
   for (const std::vector<bool>& own : right) most = std::max(most, own.size());
-  AccuracyOverTrials course{std::max(kLeastWidth, static_cast<double>(most) / kTrialsOfWidth), {}};
+  AccuracyOverTrials course{std::max(kMinWidth, static_cast<double>(most) / kTrialsOfWidth), {}};
   const std::size_t places = std::min(most, kMaxPlaces);
   for (std::size_t i = 0; i < places; ++i) {
     const double place = places < 2

@@ -1,4 +1,4 @@
-/// \file How accuracy runs over a participant's trials: a smooth for each participant, and their
+/// \file Accuracy as a function of trial number: a smoothed curve for each participant, and their
 /// mean.
 #pragma once
 
@@ -12,7 +12,7 @@ namespace touchtrial::analysis::identification {
 
 struct AccuracyAtPlace {
   double place = 0.0;  ///< among a participant's trials, from 1
-  MeanEstimate mean;   ///< over the participants with so many trials
+  MeanEstimate mean;   ///< over the participants with at least this many trials
 };
 
 struct AccuracyOverTrials {
@@ -21,7 +21,7 @@ struct AccuracyOverTrials {
 };
 
 /// Each participant's right answers are smoothed by a Gaussian kernel, whose width is a tenth of
-/// the largest number of trials and two trials at least. Trials without an answer are wrong.
+/// the largest number of trials, but at least two trials. Trials without an answer are wrong.
 /// \param right  of each participant, in the order of trials
 [[nodiscard]] AccuracyOverTrials accuracy_over_trials(std::span<const std::vector<bool>> right);
 /// \param people  with their trials in any order

@@ -1,9 +1,9 @@
 #include "protocols/identification/analysis/identification_analysis.hpp"
 
-#include "analysis/exports/data_table.hpp"
 #include "protocols/identification/analysis/cues/cue_report.hpp"
 #include "protocols/identification/analysis/cues/exploration_path.hpp"
 #include "protocols/identification/analysis/figures/figures.hpp"
+#include "protocols/identification/analysis/measures.hpp"
 #include "protocols/identification/analysis/methods.hpp"
 #include "protocols/identification/analysis/mixed_model.hpp"
 #include "protocols/identification/analysis/page/sections.hpp"
@@ -14,26 +14,16 @@
 namespace touchtrial::analysis::identification {
 namespace {
 
-/// The most traces that a report reads without being asked, because reading more takes seconds.
+/// The maximum number of traces that a report reads by default; reading more takes seconds.
 constexpr int kTracesUnasked = 2500;
 
-/// Counts of one method's counted trials. Each row is a presented class; the columns are the
-/// answers, followed by trials without a response.
+/// The answers to each class, in the trials of one method that count.
 DataTable confusion_table(const Outcomes& outcomes, int method) {
   const ConfusionMatrix confusion = confusion_of(outcomes, method);
-  DataTable table{{"presented"}, {}};
-  table.columns.insert(table.columns.end(), outcomes.classes.begin(), outcomes.classes.end());
-  table.columns.emplace_back("no_response");
-  table.columns.emplace_back("simulated");
-  for (int i = 0; i < confusion.classes(); ++i) {
-    std::vector<DataCell> row{outcomes.classes[i]};
-    for (int j = 0; j < confusion.classes(); ++j)
-      row.emplace_back(std::int64_t{confusion.count(i, j)});
-    row.emplace_back(std::int64_t{confusion.no_response(i)});
-    row.push_back(flag(outcomes.simulated));
-    table.rows.push_back(std::move(row));
-  }
-  return table;
+  MeasureList<int> measures = confusion_measures(outcomes.classes, confusion);
+  measures.push_back(
+      member_of<int>("", [&outcomes](int) { return outcomes.simulated; }).in_csv({"simulated"}));
+  return data_table_of(class_indices(confusion), measures);
 }
 
 class IdentificationResults final : public Results {

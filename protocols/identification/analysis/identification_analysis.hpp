@@ -1,4 +1,4 @@
-/// \file The analysis of how well participants told the classes apart: confusions, accuracies,
+/// \file The analysis of how well participants distinguished the classes: confusions, accuracies,
 /// comparisons of methods, and ideal observers.
 #pragma once
 

@@ -32,7 +32,7 @@ choices::OwnTrials in_order_of_presentation(const Outcomes& outcomes) {
   return trials;
 }
 
-/// The presentation before a trial, if it is in the same block and is not a catch trial.
+/// The previous presentation, if it is in the same block and is not a catch trial.
 const TrialOutcome* before(const TrialOutcome* previous, const TrialOutcome& trial) {
   const bool told = previous != nullptr && previous->row.session == trial.row.session &&
                     previous->row.block == trial.row.block &&
@@ -69,7 +69,7 @@ std::vector<DataCell> row_of(const Outcomes& outcomes, const TrialOutcome& trial
           flag(outcomes.simulated)};
 }
 
-/// From this many images on, the script takes them as a sample of others.
+/// From this many images on, the script models them as random effects.
 constexpr std::size_t kMinRandomImages = 10;
 
 std::size_t images_of(const Outcomes& outcomes) {

@@ -11,8 +11,9 @@
 
 namespace touchtrial::analysis::identification {
 
-/// The model that the script fits first, as an lme4 formula. Participants differ in everything that
-/// is compared; images are fixed effects if they are fewer than ten, and random ones otherwise.
+/// The model that the script fits first, as an lme4 formula. Participants have random effects of
+/// everything that is compared. Images are fixed effects if there are fewer than ten, and random
+/// effects otherwise.
 [[nodiscard]] std::string mixed_model_formula(const Outcomes& outcomes);
 
 /// The part of the script that is the same for every study: mixed_model_functions.R, built in.
@@ -23,8 +24,7 @@ namespace touchtrial::analysis::identification {
 
 /// Writes mixed_model.csv, mixed_model.R and mixed_model.md.
 /// \return the files, in the order written
-/// \throws FileError if the folder or a file cannot be written, or the folder holds files of
-/// something else
+/// \throws FileError if the folder or a file cannot be written, or the folder holds other files
 std::vector<std::filesystem::path> export_mixed_model(const record::StudyStore& store,
                                                       const Outcomes& outcomes,
                                                       const std::filesystem::path& folder);

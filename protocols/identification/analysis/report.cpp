@@ -359,7 +359,7 @@ void adjust_swaps(std::vector<MethodReport>& methods) {
   for (const MethodReport& method : methods) {
     for (const ParticipantAccuracy& one : method.per_participant) p_values.push_back(one.swap_p);
   }
-  const std::vector<double> adjusted = discovery_adjusted(p_values);
+  const std::vector<double> adjusted = benjamini_hochberg_adjusted(p_values);
   auto next = adjusted.begin();
   for (MethodReport& method : methods) {
     for (ParticipantAccuracy& one : method.per_participant) one.swap_adjusted = *next++;

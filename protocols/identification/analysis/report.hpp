@@ -60,7 +60,7 @@ struct ParticipantAccuracy {
   LabelMatching matching{};             ///< accuracy under the best exchange of labels
   std::optional<double> consistency{};  ///< raw information transfer, bits; never a headline
   double swap_p = 1.0;                  ///< label_swap_p of the matching
-  double swap_adjusted = 1.0;           ///< discovery_adjusted over all participants and methods
+  double swap_adjusted = 1.0;  ///< benjamini_hochberg_adjusted over all participants and methods
 };
 
 /// The numbers of one method. Trials without a response are wrong everywhere except in information

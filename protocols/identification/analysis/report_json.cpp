@@ -29,6 +29,7 @@ Json pair_json(const MethodPair& pair, const StudyReport& report) {
        "cumming2001"});
 }
 
+/// The difference of the two methods of a study with no more.
 Json comparison_json(const MethodComparison& comparison) {
   return {{"difference", figure_json(comparison.difference)},
           {"interval", interval_json(comparison.known_interval())},
@@ -74,78 +75,10 @@ Json marginals_json(const ConfusionMatrix& confusion) {
           {"answered", array_json(classes, [&](int i) { return confusion.answered(i); })}};
 }
 
-Json classes_json(const MethodReport& method, const std::vector<std::string>& classes) {
-  Json all = Json::array();
-  for (std::size_t i = 0; i < classes.size(); ++i) {
-    const ClassAccuracy& one = method.accuracy[i];
-    Json entry{{"class", classes[i]}};
-    put_proportion(entry, one.accuracy);
-    entry["wilson"] = interval_json(known(one.wilson, one.accuracy));
-    entry["clopper_pearson"] = interval_json(known(one.clopper_pearson, one.accuracy));
-    entry["jeffreys"] = interval_json(known(one.jeffreys, one.accuracy));
-    put_mean(entry, one.mean);
-    all.push_back(std::move(entry));
-  }
-  return all;
-}
-
-Json matching_json(const LabelMatching& matching, const std::vector<std::string>& classes) {
-  Json object;
-  put_proportion(object, matching.accuracy);
-  object["answer_of"] = array_json(matching.answer_of, [&](int answer) { return classes[answer]; });
-  return object;
-}
-
-Json participants_json(const MethodReport& method, const std::vector<std::string>& classes) {
-  return array_json(method.per_participant, [&](const ParticipantAccuracy& one) {
-    Json entry{{"participant", one.participant}};
-    put_proportion(entry, one.accuracy);
-    entry["best_matching"] = matching_json(one.matching, classes);
-    entry["consistency_bits"] = figure_json(one.consistency);
-    entry["swap_p"] = figure_json(one.swap_p);
-    entry["swap_p_adjusted"] = figure_json(one.swap_adjusted);
-    return entry;
-  });
-}
-
-Json spread_json(const std::optional<Spread>& spread) {
-  if (!spread) return nullptr;
-  return {{"estimate", figure_json(spread->estimate)},
-          {"interval", interval_json(spread->interval)}};
-}
-
-Json overall_json(const MethodReport& method) {
-  Json overall;
-  put_proportion(overall, method.overall);
-  put_mean(overall, method.mean);
-  overall["sd"] = figure_json(method.mean.sd);
-  overall["bootstrap"] = interval_json(method.bootstrap);
-  put_method(overall,
-             "mean: of participants' own accuracies, each of which weighs the same however many "
-             "trials it has, with Student's t interval; bootstrap: expanded percentiles of the "
-             "same mean in 9,999 draws of whole participants; sd: of the accuracies as they are; "
-             "spread: of participants' own probabilities of a right answer, by Paule and Mandel, "
-             "with the Q-profile interval; 95 %",
-             {"student1908", "davison1997", "hesterberg2015", "paule1982", "viechtbauer2007"});
-  overall["spread"] = spread_json(method.spread);
-  return overall;
-}
-
-std::string how(const ChanceTest& test) {
-  if (test.exact) return "one-sided, exact, over the orders that the study could have had";
-  return fmt::format("one-sided, Monte Carlo over {} orders made by the study's rule, (b+1)/(m+1)",
-                     test.deals);
-}
-
-Json chance_json(const std::optional<ChanceTest>& test) {
-  if (!test) return nullptr;
-  return with_method({{"correct", test->correct},
-                      {"trials", test->trials},
-                      {"expected", figure_json(test->expected)},
-                      {"p", figure_json(test->p)},
-                      {"exact", test->exact},
-                      {"deals", test->deals}},
-                     "that at least one participant can: " + how(*test), {"phipson2010"});
+Json classes_json(const StudyReport& report, const MethodReport& method) {
+  std::vector<std::size_t> classes(report.classes.size());
+  std::iota(classes.begin(), classes.end(), 0U);
+  return objects_of(classes, accuracy_measures(report, method));
 }
 
 Json d_prime_json(const MethodReport& method) {
@@ -192,11 +125,6 @@ Json choice_json(const ChoiceModel& model) {
       {"luce1963", "townsend1982"});
 }
 
-void put_mean_of_some(Json& object, const MeanEstimate& mean) {
-  object["participants"] = mean.participants;
-  put_mean(object, mean);
-}
-
 Json hits_json(const UnbiasedHits& hits) {
   Json object;
   put_mean(object, hits.rate);
@@ -209,16 +137,6 @@ Json dependence_json(const SerialDependence& dependence) {
           {"same", dependence.same},
           {"expected", figure_json(dependence.expected)},
           {"p", figure_json(dependence.p)}};
-}
-
-Json groups_json(const Breakdown& breakdown) {
-  return array_json(breakdown.groups, [](const GroupAccuracy& one) {
-    Json entry{{"group", one.group}};
-    put_proportion(entry, one.accuracy);
-    entry["wilson"] = interval_json(known(one.wilson, one.accuracy));
-    if (one.mean) put_mean_of_some(entry, *one.mean);
-    return entry;
-  });
 }
 
 Json unbiased_object(const MethodReport& method, const std::vector<std::string>& classes) {
@@ -261,14 +179,10 @@ Json order_object(const std::optional<OrderEffects>& order) {
 
 Json confidence_object(const std::optional<ConfidenceReport>& confidence) {
   if (!confidence) return nullptr;
-  Json ratings = array_json(confidence->ratings, [](const RatedAccuracy& one) {
-    Json entry{{"rating", one.rating}};
-    put_proportion(entry, one.accuracy);
-    put_mean_of_some(entry, one.mean);
-    return entry;
-  });
-  Json area;
-  put_mean_of_some(area, confidence->area);
+  Json ratings = confidence->ratings.empty()
+                     ? Json::array()
+                     : objects_of(confidence->ratings, rating_measures(*confidence));
+  Json area = object_of(confidence->area, mean_measures());
   area["without"] = confidence->without_area;
   return with_method(
       {{"ratings", std::move(ratings)}, {"type_2_area", std::move(area)}},
@@ -293,32 +207,27 @@ Json reaction_array(const std::vector<ReactionTimes>& reaction,
 
 Json breakdowns_object(const std::vector<Breakdown>& breakdowns) {
   Json object = Json::object();
-  for (const Breakdown& one : breakdowns) object[name_of(one.kind)] = groups_json(one);
+  for (const Breakdown& one : breakdowns) {
+    object[name_of(one.kind)] = objects_of(one.groups, breakdown_measures(one.kind));
+  }
   return object;
 }
 
-Json robustness_array(const std::vector<SubsetAccuracy>& subsets) {
-  return array_json(subsets, [](const SubsetAccuracy& one) {
-    Json entry{{"trials", name_of(one.subset)}};
-    put_proportion(entry, one.pooled);
-    put_mean_of_some(entry, one.mean);
-    return entry;
-  });
-}
-
-Json method_object(const MethodReport& method, const std::vector<std::string>& classes) {
-  Json object{{"method", method.method},
-              {"confusion", counts_json(method.confusion)},
-              {"no_response", array_json(up_to(method.confusion.classes()),
-                                         [&](int i) { return method.confusion.no_response(i); })},
-              {"accuracy", classes_json(method, classes)},
-              {"overall", overall_json(method)},
-              {"information_transfer", information_json(method.information)},
-              {"per_participant", participants_json(method, classes)},
-              {"marginals", marginals_json(method.confusion)},
-              {"chance", chance_json(method.chance)},
-              {"d_prime", d_prime_json(method)}};
-  object["best_matching"] = matching_json(method.matching, classes);
+Json method_object(const StudyReport& report, const MethodReport& method) {
+  const std::vector<std::string>& classes = report.classes;
+  Json object{
+      {"method", method.method},
+      {"confusion", counts_json(method.confusion)},
+      {"no_response", array_json(up_to(method.confusion.classes()),
+                                 [&](int i) { return method.confusion.no_response(i); })},
+      {"accuracy", classes_json(report, method)},
+      {"overall", object_of(method, overall_measures())},
+      {"information_transfer", information_json(method.information)},
+      {"per_participant", objects_of(method.per_participant, participant_measures(report))},
+      {"marginals", marginals_json(method.confusion)},
+      {"chance", method.chance ? object_of(*method.chance, chance_measures()) : Json(nullptr)},
+      {"d_prime", d_prime_json(method)}};
+  object["best_matching"] = object_of(method.matching, matching_measures(classes));
   put_method(object["best_matching"],
              "accuracy under the exchange of labels that suits the answers best; biased upward; "
              "participants' swap_p: sign test of answers that agree with the exchange against "
@@ -328,7 +237,7 @@ Json method_object(const MethodReport& method, const std::vector<std::string>& c
   object["choice_model"] = method.choice ? choice_json(*method.choice) : Json(nullptr);
   object["reaction_time_s"] = reaction_array(method.reaction, classes);
   object["breakdowns"] = breakdowns_object(method.breakdowns);
-  object["robustness"] = robustness_array(method.robustness);
+  object["robustness"] = objects_of(method.robustness, subset_measures());
   object["unbiased_hits"] = unbiased_object(method, classes);
   object["order"] = order_object(method.order);
   object["confidence"] = confidence_object(method.confidence);
@@ -338,13 +247,7 @@ Json method_object(const MethodReport& method, const std::vector<std::string>& c
 Json places_object(const StudyReport& report) {
   if (!report.places) return nullptr;
   const choices::AnswersByPlace& places = *report.places;
-  Json object{{"places", array_json(places.places,
-                                    [](const choices::PlaceUse& one) {
-                                      Json entry{{"named", one.named}};
-                                      put_mean_of_some(entry, one.excess.mean);
-                                      entry["p"] = figure_json(one.excess.p);
-                                      return entry;
-                                    })},
+  Json object{{"places", objects_of(places.places, place_measures(places))},
               {"p", figure_json(places.p)},
               {"deals", places.deals},
               {"preferences", Json::parse(choices::preferences_json(places.own, report.classes))}};
@@ -365,9 +268,8 @@ Json places_object(const StudyReport& report) {
 std::string report_json(const StudyReport& report) {
   Json object = head_object(report);
   object["classes"] = report.classes;
-  object["methods"] = array_json(report.methods, [&](const MethodReport& method) {
-    return method_object(method, report.classes);
-  });
+  object["methods"] = array_json(
+      report.methods, [&](const MethodReport& method) { return method_object(report, method); });
   if (report.comparison) object["comparison"] = comparison_json(*report.comparison);
   object["warnings"] = report.warnings;
   object["pairs"] =

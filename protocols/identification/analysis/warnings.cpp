@@ -40,7 +40,7 @@ void warn_of_small_classes(const MethodReport& method, const std::vector<std::st
   }
   if (small.empty()) return;
   warnings.push_back(
-      fmt::format("{}: accuracy with {} rests on {} trials or fewer, which say next to nothing.",
+      fmt::format("{}: accuracy with {} rests on {} trials or fewer, too few for a conclusion.",
                   method.method, few(small), kSmallCell));
 }
 
@@ -53,8 +53,8 @@ void warn_of_unanswered_classes(const MethodReport& method, const std::vector<st
   }
   if (never.empty()) return;
   warnings.push_back(
-      fmt::format("{}: {} was never answered; accuracy with it tells of a preference as much as of "
-                  "sensitivity, and the choice model does not exist.",
+      fmt::format("{}: {} was never answered; accuracy with it reflects preference as much as "
+                  "sensitivity, and there is no choice model.",
                   method.method, few(never)));
 }
 
@@ -67,8 +67,9 @@ void warn_of_swapped_labels(const MethodReport& method, Warnings& warnings) {
   }
   if (suspects.empty()) return;
   warnings.push_back(
-      fmt::format("{}: labels may have been swapped by {}; accuracy says less than consistency "
-                  "there. A study in which nobody swaps labels raises this with a probability of "
+      fmt::format("{}: labels may have been swapped by {}; consistency is then more "
+                  "informative than accuracy. A study in which nobody swaps labels raises this "
+                  "with a probability of "
                   "0.05 at most (Benjamini, Hochberg 1995, over all participants).",
                   method.method, few(suspects)));
 }
@@ -89,10 +90,10 @@ void warn_of_ceiling(const MethodReport& method, Warnings& warnings) {
   if (all.correct == all.n) {
     warnings.push_back(
         method.method +
-        ": everything was right, so that d' has a lower bound alone and differences cannot show.");
+        ": every answer was right, so d' has only a lower bound and no difference can show.");
   } else if (all.share().value_or(0.0) >= kCeiling) {
     warnings.push_back(fmt::format(
-        "{}: {} right is close to the ceiling; d' and differences there hang on few trials.",
+        "{}: {} right is close to the ceiling; d' and differences there depend on few trials.",
         method.method, percent_of(all)));
   }
 }
@@ -100,7 +101,7 @@ void warn_of_ceiling(const MethodReport& method, Warnings& warnings) {
 void warn_of_choice_model(const MethodReport& method, Warnings& warnings) {
   if (!method.choice || method.choice->converged) return;
   warnings.push_back(method.method +
-                     ": the choice model's estimates did not settle; do not quote them.");
+                     ": the choice model did not converge; do not quote its estimates.");
 }
 
 /// Warns if the headline depends on trials that do not meet the study's own rule.
@@ -287,11 +288,11 @@ void warn_of_time_outs(const StudyReport& report, Warnings& warnings) {
 
 void warn_of_participants(const StudyReport& report, Warnings& warnings) {
   if (report.participants == 0) {
-    warnings.emplace_back("No participant's session counts: there is nothing to report yet.");
+    warnings.emplace_back("No participant's session counts: there are no results yet.");
   } else if (report.participants == 1) {
     warnings.emplace_back(
-        "One participant: intervals over participants do not exist, and those of a class say "
-        "next to nothing.");
+        "One participant: there are no intervals over participants, and those of a class are too "
+        "wide to use.");
   }
   for (const MethodReport& method : report.methods) {
     if (method.mean.participants > 1 && !method.mean.known_interval()) {
@@ -320,9 +321,10 @@ void warn_of_preferences(const StudyReport& report, Warnings& warnings) {
   if (!report.places) return;
   const std::string who = choices::preference_words(report.places->own, report.classes);
   if (!who.empty()) {
-    warnings.push_back(who +
-                       ". By its place or by itself cannot be told; their accuracy with a texture "
-                       "tells of the preference as much as of sensitivity.");
+    warnings.push_back(
+        who +
+        ". Whether they prefer the picture or its place cannot be told; their accuracy with a "
+        "texture reflects the preference as much as sensitivity.");
   }
   if (report.places->p > kUsualLevel) return;
   warnings.push_back(fmt::format(

@@ -22,8 +22,7 @@
 namespace touchtrial::planning::identification {
 namespace {
 
-/// A digest of the study's stimuli: of every field that may be felt, and of nothing else in the
-/// pack.
+/// A digest of every field that may be felt, and of nothing else in the pack.
 std::string fields_digest(const study::StudyKey& key, const engine::Pack& pack) {
   FieldHasher hasher;
   for (const study::KeyedStimulus& keyed : key.stimuli) {
@@ -35,7 +34,7 @@ std::string fields_digest(const study::StudyKey& key, const engine::Pack& pack) 
   return to_hex(hasher.finish());
 }
 
-/// Everything that the runs need.
+/// The input of the simulated studies.
 struct PowerPreparation {
   PowerPreparation(const study::Study& of, const PowerOptions& options, const PowerTools& tools)
       : study(of),
@@ -64,7 +63,7 @@ struct PowerPreparation {
   static std::optional<MethodLabels> labels(const PowerOptions& options) {
     if (options.methods.empty()) return std::nullopt;
     if (options.methods.size() == 2) return MethodLabels{options.methods[0], options.methods[1]};
-    throw UsageError("--methods: give two methods, as --methods adaptive,tv-gabor");
+    throw UsageError("--methods: give two methods, for instance --methods adaptive,tv-gabor");
   }
 
   [[nodiscard]] PowerSetting setting() const {
@@ -83,18 +82,18 @@ struct PowerPreparation {
 
   const study::Study& study;
   PrimaryTest test;
-  std::optional<StatedPeople> stated;  ///< then nobody feels, and there is no pack
+  std::optional<StatedPeople> stated;  ///< if set, nobody feels anything, and there is no pack
   simulation::SubjectModel subject;
   study::StudyKey key;
   std::optional<engine::Pack> pack;
 };
 
-PowerRuns made_runs(const PowerPreparation& prepared, const PowerPlan& plan, int jobs,
-                    const PowerTools& tools) {
+PowerRuns run_plan(const PowerPreparation& prepared, const PowerPlan& plan, int jobs,
+                   const PowerTools& tools) {
   const study::Progress bar = tools.progress("simulating");
-  const int largest = plan.participants.back();
+  const int max_participants = plan.participants.back();
   if (prepared.stated) {
-    const StatedRehearsal study(prepared.study, *prepared.stated, prepared.test, largest);
+    const StatedRehearsal study(prepared.study, *prepared.stated, prepared.test, max_participants);
     return make_runs(study, prepared.test, prepared.setting(), plan, jobs, bar);
   }
   const session::StimulusSource source(*prepared.pack, prepared.key.study.rendering);
@@ -102,7 +101,8 @@ PowerRuns made_runs(const PowerPreparation& prepared, const PowerPlan& plan, int
   const BankedFeelings feelings(fields, prepared.study, prepared.subject,
                                 {plan.explorations, plan.trainings, plan.seed, jobs},
                                 tools.progress("feeling"));
-  const RehearsedStudy study(prepared.study, prepared.subject, prepared.test, feelings, largest);
+  const RehearsedStudy study(prepared.study, prepared.subject, prepared.test, feelings,
+                             max_participants);
   return make_runs(study, prepared.test, prepared.setting(), plan, jobs, bar);
 }
 
@@ -121,7 +121,7 @@ class IdentificationPlanner final : public Planner {
     PowerPlan plan = options.plan;
     plan.level = prepared.test.alpha;
     plan.margin = prepared.test.margin.value_or(0.0);
-    const PowerReport report = make_power_report(made_runs(prepared, plan, options.jobs, tools));
+    const PowerReport report = make_power_report(run_plan(prepared, plan, options.jobs, tools));
     return options.json ? power_json(report) : power_text(report);
   }
 };

@@ -67,16 +67,16 @@ PowerRow row_of(const PowerRuns& power, const PowerCell& population, const Power
   std::vector<double> attainable;
   for (const PowerRun& run : null.runs) attainable.push_back(run.attainable);
   row.attainable = moments_of(attainable).mean;
-  // A test whose error is the same in all runs keeps it to the last digit.
+  // If the attainable error equals the level in all runs, the mean must equal it exactly.
   if (!attainable.empty() && std::ranges::count(attainable, row.level) == std::ssize(attainable)) {
     row.attainable = row.level;
   }
   return row;
 }
 
-/// The smallest size of which, and of all larger ones, `holds` is true.
+/// The smallest size for which, and for all larger ones, `holds` is true.
 template <typename Holds>
-std::optional<int> from_which_on(const std::vector<PowerRow>& rows, const Holds& holds) {
+std::optional<int> smallest_size(const std::vector<PowerRow>& rows, const Holds& holds) {
   std::optional<int> smallest;
   for (auto row = rows.rbegin(); row != rows.rend() && holds(*row); ++row) {
     smallest = row->participants;
@@ -86,8 +86,8 @@ std::optional<int> from_which_on(const std::vector<PowerRow>& rows, const Holds&
 
 TargetSize target_size(const std::vector<PowerRow>& rows, double target) {
   return {target,
-          from_which_on(rows, [&](const PowerRow& row) { return row.estimated_power() >= target; }),
-          from_which_on(rows, [&](const PowerRow& row) { return row.power.low >= target; })};
+          smallest_size(rows, [&](const PowerRow& row) { return row.estimated_power() >= target; }),
+          smallest_size(rows, [&](const PowerRow& row) { return row.power.low >= target; })};
 }
 
 std::vector<std::string> warnings_of(const PowerReport& report) {
@@ -116,8 +116,8 @@ std::vector<std::string> warnings_of(const PowerReport& report) {
   return warnings;
 }
 
-/// What the power is given.
-std::string given_words(const PowerSetting& setting) {
+/// The condition on which the power depends.
+std::string condition_words(const PowerSetting& setting) {
   if (!setting.feels()) return "given the stated accuracies";
   return "given the assumed sensitivity";
 }
@@ -178,7 +178,7 @@ std::vector<std::string> target_sentences(const PowerReport& report) {
   return sentences;
 }
 
-/// How the numbers were obtained.
+/// Describes how the numbers were obtained.
 std::vector<std::string> method_sentences(const PowerReport& report) {
   const PowerPlan& plan = report.plan;
   std::vector<std::string> sentences;
@@ -313,7 +313,7 @@ PowerReport make_power_report(const PowerRuns& power) {
 }
 
 std::string power_stamp(const PowerSetting& setting) {
-  return "SIMULATED: power " + given_words(setting);
+  return "SIMULATED: power " + condition_words(setting);
 }
 
 std::string power_text(const PowerReport& report) {

@@ -1,5 +1,5 @@
-/// \file The results of a power run, all from simulated participants: power given the assumed
-/// sensitivity. Source: docs/planning.md.
+/// \file The report of a power analysis by simulation: power given the assumed sensitivity. Source:
+/// docs/planning.md.
 #pragma once
 
 #include "analysis/statistics/proportion.hpp"
@@ -15,24 +15,24 @@ namespace touchtrial::planning::identification {
 struct WidthFigures {
   double mean = 0.0;
   double standard_error = 0.0;  ///< Monte Carlo, of the mean
-  double lower = 0.0;           ///< one tenth of the runs is narrower
+  double lower = 0.0;           ///< 10 % quantile
   double median = 0.0;
-  double upper = 0.0;  ///< one tenth of the runs is wider
+  double upper = 0.0;  ///< 90 % quantile
 };
 
 /// The results for one size.
 struct PowerRow {
   int participants = 0;
-  analysis::Proportion significant;  ///< runs with the population
+  analysis::Proportion significant;  ///< under Hypothesis::population
   analysis::Interval power{};        ///< Wilson, 95 %
   double estimate = 0.0;             ///< mean over runs
-  double estimate_sd = 0.0;          ///< from run to run
+  double estimate_sd = 0.0;          ///< between runs
   WidthFigures width;
   analysis::Proportion false_alarms;  ///< significant runs under the null
   analysis::Interval type_one{};      ///< Wilson, 95 %
   double attainable = 0.0;            ///< mean of PowerRun::attainable
-  bool has_fixed_counts = true;       ///< PowerSetting
-  double level = 0.05;                ///< PowerPlan
+  bool has_fixed_counts = true;       ///< as in PowerSetting
+  double level = 0.05;                ///< as in PowerPlan
 
   [[nodiscard]] double estimated_power() const { return significant.share().value_or(0.0); }
   [[nodiscard]] double estimated_error() const { return false_alarms.share().value_or(0.0); }
@@ -60,15 +60,15 @@ struct PowerReport {
   PowerPlan plan;
   std::vector<PowerRow> rows;  ///< by size
   std::vector<TargetSize> targets;
-  std::vector<std::string> warnings;  ///< against misreadings, one line each
+  std::vector<std::string> warnings;  ///< one line each
 };
 
 [[nodiscard]] PowerReport make_power_report(const PowerRuns& power);
 
-/// Stamp of everything that comes from a power run: what its power is given.
+/// The stamp of all output of a power analysis, with the condition on which the power depends.
 [[nodiscard]] std::string power_stamp(const PowerSetting& setting);
 
-/// Tables for a terminal. This and the JSON end with a line feed.
+/// The report as tables for a terminal. This and the JSON end with a line feed.
 [[nodiscard]] std::string power_text(const PowerReport& report);
 [[nodiscard]] std::string power_json(const PowerReport& report);
 

@@ -22,8 +22,8 @@ void make_block(const Rehearsal& study, const PrimaryTest& test, const PowerPlan
     const int run = first + static_cast<int>(i);
     const std::uint64_t seed = study_seed(plan.seed, cell.participants, cell.hypothesis, run);
     cell.runs[static_cast<std::size_t>(run)] =
-        judged(test, study.outcomes(cell.participants, cell.hypothesis, seed),
-               cell.hypothesis == Hypothesis::null);
+        analyse_run(test, study.outcomes(cell.participants, cell.hypothesis, seed),
+                    cell.hypothesis == Hypothesis::null);
   });
 }
 
@@ -45,7 +45,7 @@ PowerRuns make_runs(const Rehearsal& study, const PrimaryTest& test, PowerSettin
           {size, hypothesis, std::vector<PowerRun>(static_cast<std::size_t>(plan.runs))});
     }
   }
-  // Progress counts participants, because they cost the time.
+  // Progress counts participants, because the time is proportional to their number.
   double people = 0.0;
   for (const int size : plan.participants) people += 2.0 * plan.runs * size;
   double done = 0.0;

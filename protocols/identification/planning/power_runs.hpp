@@ -1,4 +1,4 @@
-/// \file The runs of a power run: the numbers of every simulated study. Source: docs/planning.md.
+/// \file The simulated studies of a power analysis, and their results. Source: docs/planning.md.
 #pragma once
 
 #include "analysis/planning/power_plan.hpp"
@@ -14,7 +14,7 @@
 
 namespace touchtrial::planning::identification {
 
-/// The powers that a size may reach.
+/// The target powers for which the required size is reported.
 inline constexpr std::array<double, 2> kPowerTargets{0.8, 0.9};
 
 /// The seed of one simulated study, as for `simulate --seed`. Every size, hypothesis and run has
@@ -22,26 +22,25 @@ inline constexpr std::array<double, 2> kPowerTargets{0.8, 0.9};
 [[nodiscard]] std::uint64_t study_seed(std::uint64_t seed, int participants, Hypothesis hypothesis,
                                        int run);
 
-/// In place of the hash of fields: nobody feels anything.
+/// Replaces the hash of fields if nobody feels anything.
 inline constexpr std::string_view kNoFields = "none";
 
-/// What a power run simulates. Two runs with equal settings and plans simulate the same studies.
+/// The input of a power analysis. Equal settings and plans simulate the same studies.
 struct PowerSetting {
   std::string study;     ///< its name
   std::string protocol;  ///< its name
   std::string test;      ///< words_of the primary test
   std::string estimate;  ///< estimate_words
   std::string seal;      ///< study_seal of the simulated key, hexadecimal: the whole study file
-  std::string fields;    ///< SHA-256 of the force fields that are felt, hexadecimal; or kNoFields
+  std::string fields;    ///< SHA-256 of the felt force fields, hexadecimal; or kNoFields
   std::string subject;   ///< words_of the subject model, or of the stated people
   std::string program;   ///< version
-  /// Whether every participant's order presents every class equally often. Otherwise the right
-  /// answers that a bias gives, and so all numbers, depend on the orders that the study's seed
-  /// draws.
+  /// Whether every participant's order presents every class equally often. Otherwise all results
+  /// depend on the orders that the study's seed draws, because they change the effect of a bias.
   bool has_fixed_counts = true;
-  std::string device{};  ///< analysis::device_words of what the subject holds
+  std::string device{};  ///< analysis::device_words of the subject's device
 
-  /// Whether people feel the study's textures; otherwise only how often they are right is stated.
+  /// Whether participants feel the study's textures. Otherwise only their accuracy is stated.
   [[nodiscard]] bool feels() const { return fields != kNoFields; }
 };
 
@@ -56,14 +55,14 @@ struct PowerCell {
 
 struct PowerRuns {
   PowerSetting setting;
-  PowerPlan plan;                ///< settled
+  PowerPlan plan;                ///< with the test's level and margin
   std::vector<PowerCell> cells;  ///< by size, the population before the null
 };
 
-/// Makes the runs of a plan. They depend on setting and plan alone, not on the number of threads.
+/// Runs a plan. The results depend only on setting and plan, not on the number of threads.
 /// \param study  made for at least the plan's largest size
 /// \param jobs  threads, >= 1
-/// \param progress  called between blocks of runs, from one thread, with the share that is done
+/// \param progress  called between blocks of runs, from one thread
 [[nodiscard]] PowerRuns make_runs(const Rehearsal& study, const PrimaryTest& test,
                                   PowerSetting setting, const PowerPlan& plan, int jobs,
                                   const std::function<void(int done, int of)>& progress = {});

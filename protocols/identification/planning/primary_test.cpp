@@ -26,10 +26,10 @@ PrimaryTest pair_test(const study::Study& study, const std::optional<MethodLabel
   if (!methods) {
     if (test) return *test;
     throw UsageError("the study compares " + std::to_string(study.presented_methods()) +
-                     " methods; name the two of its primary test with --methods, of: " +
+                     " methods; choose two for the primary test with --methods, of: " +
                      study.presented_labels());
   }
-  // Two methods have the usual test of a comparison.
+  // The default test of two methods applies.
   if (!test) test = choices::primary_question(study, 2);
   test->first = method_of(study, methods->first);
   test->second = method_of(study, methods->second);
@@ -45,7 +45,7 @@ bool is_difference(const PrimaryTest& test) {
   return test.estimand == study::Estimand::difference;
 }
 
-/// The largest p within the level that these differences could have.
+/// The maximum p within the level that these differences could have.
 double attainable_of(const PrimaryTest& test, const std::vector<double>& values) {
   if (test.test != study::RegisteredTest::sign_flip) return test.alpha;
   if (test.sides == analysis::Sides::two) {
@@ -60,14 +60,15 @@ PrimaryTest primary_test_of(const study::Study& study, const std::optional<Metho
   study::require_choice_of_classes(study, "power");
   if (study.presented_methods() > 1) return pair_test(study, methods);
   if (methods) {
-    throw UsageError("--methods: the study presents one method; leave the option out");
+    throw UsageError("--methods: the study presents only one method; remove the option");
   }
   return *choices::primary_question(study, 1);
 }
 
 PrimaryTest with_margin(PrimaryTest test, double margin) {
   if (!is_difference(test)) {
-    throw UsageError("--margin: the study presents one method; a margin compares two");
+    throw UsageError(
+        "--margin: needs two methods, but the study presents only one; remove the option");
   }
   if (!(margin > 0.0 && margin <= 1.0)) {
     throw UsageError(fmt::format(
@@ -94,7 +95,8 @@ std::string estimate_words(const PrimaryTest& test) {
   return is_difference(test) ? std::string(kDifferenceWords) : "accuracy";
 }
 
-PowerRun judged(const PrimaryTest& test, const analysis::Outcomes& outcomes, bool with_attainable) {
+PowerRun analyse_run(const PrimaryTest& test, const analysis::Outcomes& outcomes,
+                     bool with_attainable) {
   const auto people = choices::primary_values(test, outcomes);
   const auto classes = static_cast<int>(outcomes.classes.size());
   const choices::PrimaryEstimate found =
@@ -103,7 +105,7 @@ PowerRun judged(const PrimaryTest& test, const analysis::Outcomes& outcomes, boo
   const analysis::Interval interval = found.interval.value_or(whole);
   double p = choices::primary_p(test, classes, people).value_or(1.0);
   if (test.margin) {
-    // Methods that are not above chance are not shown to be as good as each other.
+    // Non-inferiority is shown only if both methods are above chance.
     const choices::Selection counted{{}, {}, choices::counted_sessions(outcomes)};
     for (const analysis::AboveChance& one : choices::above_chance(test, outcomes, counted)) {
       p = std::max(p, one.p.value_or(1.0));

@@ -1,5 +1,5 @@
-/// \file A study that is simulated again and again, straight to its outcomes, and what every kind of
-/// simulated people has in common. Source: docs/planning.md.
+/// \file The interface of fast simulations of a study, which produce outcomes without sessions, and
+/// functions that they share. Source: docs/planning.md.
 #pragma once
 
 #include "analysis/outcomes/outcomes.hpp"
@@ -16,19 +16,19 @@ class RandomStream;
 
 namespace touchtrial::planning::identification {
 
-/// The population that a study is simulated with. If the test has a margin, methods are alike in
-/// the population too (as under `null` without one), and under `null` the first is worse by the
-/// margin: people miss some of their right answers with it.
+/// The population with which a study is simulated. If the test has a margin, methods are equal in
+/// `population` (as in `null` without a margin), and in `null` the first method is worse by the
+/// margin, because participants miss some of their right answers with it.
 enum class Hypothesis {
-  population,  ///< people as in the subject file
-  /// The same people, with no effect to find. For a test against chance, they feel a random
+  population,  ///< participants as in the subject file
+  /// The same participants without an effect. For a test against chance, they feel a random
   /// stimulus of the method, whatever is presented. For a test between two methods, they feel the
   /// presented stimulus with one of the two methods at random.
   null,
 };
 [[nodiscard]] std::string_view name_of(Hypothesis hypothesis);
 
-/// Makes outcomes of one study. Thread-safe.
+/// Simulates outcomes of one study. Thread-safe.
 class Rehearsal {
  public:
   virtual ~Rehearsal() = default;
@@ -36,24 +36,24 @@ class Rehearsal {
   Rehearsal(const Rehearsal&) = delete;
   Rehearsal& operator=(const Rehearsal&) = delete;
 
-  /// Outcomes of participants with the numbers and enrolment numbers 1 .. `participants`: a
-  /// function of the arguments alone.
+  /// Outcomes of participants with the numbers and enrolment numbers 1 .. `participants`. They
+  /// depend only on the arguments.
   [[nodiscard]] virtual analysis::Outcomes outcomes(int participants, Hypothesis hypothesis,
                                                     std::uint64_t study_seed) const = 0;
 };
 
 /// The outcomes of a study without participants.
 [[nodiscard]] analysis::Outcomes nobody_yet(const study::Study& study);
-/// A session that was held to its end.
-/// \param order_block  analysis::SessionOutcome
+/// A completed session.
+/// \param order_block  as in analysis::SessionOutcome
 [[nodiscard]] analysis::SessionOutcome completed_session(int number, int session_number, int visit,
                                                          int order_block);
-/// A scored trial that was answered.
+/// An answered scored trial.
 /// \param position  of the answer, in the schedule's layout
 [[nodiscard]] analysis::TrialOutcome answered_trial(int number, int session, int visit,
                                                     const study::Trial& presented,
                                                     const study::Schedule& schedule, int position);
-/// Another picture than that at a position, each equally likely.
+/// Draws a position other than the given one, each equally likely.
 /// \pre pictures >= 2
 [[nodiscard]] int another_position(int position, std::size_t pictures, RandomStream& random);
 

@@ -17,7 +17,7 @@
 namespace touchtrial::planning::identification {
 namespace {
 
-/// Trainings have other seeds than the studies that use them.
+/// The seed of a training, which differs from those of the studies that use it.
 std::uint64_t training_seed(std::uint64_t seed, int training) {
   return RandomStream(seed, "power: training", static_cast<std::uint64_t>(training)).bits();
 }
@@ -38,8 +38,8 @@ void require_answers(const study::Study& study, const simulation::SubjectModel& 
   const bool in_time = subject.explore_s < study.trials.explore_limit_s;
   if (in_time || study.trials.on_timeout != study::OnTimeout::no_response) return;
   throw StudyError(one_line(fmt::format(
-      "{}: /explore_s: {} s is not less than the study's explore_limit_s ({} s), after which "
-      "it takes no answer (on_timeout \"no-response\"); nobody would ever answer: explore for less",
+      "{}: /explore_s: {} s is not less than the study's explore_limit_s ({} s), after which it "
+      "rejects answers (on_timeout \"no-response\"), so nobody would ever answer; lower explore_s",
       subject.source, subject.explore_s, study.trials.explore_limit_s)));
 }
 
@@ -67,8 +67,8 @@ engine::FeltFeatures BankedFeelings::felt(const study::StimulusIndex& stimulus,
   return bank_.felt(bank_.place_of(stimulus))[trial.draw % explorations];
 }
 
-/// What the participants of one simulated study share.
-struct RehearsedStudy::Answering {
+/// Data shared by the participants of one simulated study.
+struct RehearsedStudy::SharedInput {
   const simulation::SubjectModel& subject;
   const std::shared_ptr<const simulation::FeltKnowledge>& learnt;
   Hypothesis hypothesis;
@@ -77,7 +77,7 @@ struct RehearsedStudy::Answering {
 
 RehearsedStudy::RehearsedStudy(const study::Study& study, const simulation::SubjectModel& subject,
                                const PrimaryTest& test, const Feelings& feelings,
-                               int most_participants)
+                               int max_participants)
     : subject_(subject),
       test_(test),
       feelings_(feelings),
@@ -86,7 +86,7 @@ RehearsedStudy::RehearsedStudy(const study::Study& study, const simulation::Subj
       empty_(nobody_yet(study)) {
   require_answers(study, subject);
   const study::StudyKey key = study::simulated_study_key(study);
-  for (int i = 0; i < most_participants * visits_; ++i) {
+  for (int i = 0; i < max_participants * visits_; ++i) {
     schedules_.push_back(planned_visit(study, key, 1 + i / visits_, 1 + i % visits_));
   }
   if (test_.margin) set_margin();
@@ -96,10 +96,11 @@ void RehearsedStudy::set_margin() {
   constexpr int kPeople = 400;
   const double accuracy = accuracy_of(kPeople);
   if (accuracy <= *test_.margin) {
-    throw UsageError(fmt::format(
-        "a margin of {:.4g} points is not less than the accuracy of methods that are alike "
-        "({:.1f} %), so that nothing is worse by it; register a smaller margin",
-        100.0 * *test_.margin, 100.0 * accuracy));
+    throw UsageError(
+        fmt::format("a margin of {:.4g} points is not less than the accuracy of equal methods "
+                    "({:.1f} %), so no "
+                    "method can be worse by it; choose a smaller margin",
+                    100.0 * *test_.margin, 100.0 * accuracy));
   }
   margin_loss_ = *test_.margin / accuracy;
 }
@@ -149,53 +150,52 @@ study::StimulusIndex RehearsedStudy::felt_stimulus(const study::StimulusIndex& p
   return felt;
 }
 
-/// One participant of a simulated study, with the random numbers that planning alone needs.
+/// One participant of a simulated study, with the random streams that only planning needs.
 struct RehearsedStudy::Person {
-  Person(const Answering& answering, int participant)
+  Person(const SharedInput& shared, int participant)
       : number(participant),
-        knowledge(simulation::remembered(answering.learnt, answering.subject, answering.study_seed,
-                                         number)),
-        individual(answering.subject, answering.study_seed, number),
+        knowledge(simulation::remembered(shared.learnt, shared.subject, shared.study_seed, number)),
+        individual(shared.subject, shared.study_seed, number),
         decision(individual, *knowledge),
-        draws(answering.study_seed, "power: feelings", static_cast<std::uint64_t>(number)) {}
+        draws(shared.study_seed, "power: feelings", static_cast<std::uint64_t>(number)) {}
 
   int number;
   std::shared_ptr<const simulation::FeltKnowledge> knowledge;
   simulation::Individual individual;
   simulation::FeltDecision decision;
-  /// One stream for each participant: making a stream takes longer than the rest of a trial.
+  /// One stream for each participant, because making a stream takes longer than the rest of a
+  /// trial.
   RandomStream draws;
   std::optional<RandomStream> losses;
 };
 
-int RehearsedStudy::lost(int position, double loss, Person& person, int right,
-                         const study::Schedule& schedule) {
+int RehearsedStudy::with_loss(int position, double loss, Person& person, int right,
+                              const study::Schedule& schedule) {
   if (loss <= 0.0 || schedule.layout[position] != right) return position;
   if (person.losses->uniform() >= loss) return position;
   return another_position(position, schedule.layout.size(), *person.losses);
 }
 
-void RehearsedStudy::add_participant(int number, const Answering& answering,
+void RehearsedStudy::add_participant(int number, const SharedInput& shared,
                                      analysis::Outcomes& outcomes) const {
-  Person person(answering, number);
+  Person person(shared, number);
   if (margin_loss_ > 0.0) {
-    person.losses.emplace(answering.study_seed, "power: losses",
-                          static_cast<std::uint64_t>(number));
+    person.losses.emplace(shared.study_seed, "power: losses", static_cast<std::uint64_t>(number));
   }
-  for (int visit = 1; visit <= visits_; ++visit) add_visit(person, visit, answering, outcomes);
+  for (int visit = 1; visit <= visits_; ++visit) add_visit(person, visit, shared, outcomes);
 }
 
-void RehearsedStudy::add_visit(Person& person, int visit, const Answering& answering,
+void RehearsedStudy::add_visit(Person& person, int visit, const SharedInput& shared,
                                analysis::Outcomes& outcomes) const {
   const int session = (person.number - 1) * visits_ + visit;
   const PlannedSchedule& planned = schedules_[static_cast<std::size_t>(session) - 1];
   const simulation::SeenPictures seen =
-      simulation::see(planned.pictures, answering.subject, person.individual, *person.knowledge);
-  simulation::Condition condition(answering.subject, answering.study_seed, person.number, visit,
+      simulation::see(planned.pictures, shared.subject, person.individual, *person.knowledge);
+  simulation::Condition condition(shared.subject, shared.study_seed, person.number, visit,
                                   static_cast<int>(planned.course.size()));
   outcomes.sessions.push_back(
       completed_session(person.number, session, visit, planned.order_block));
-  FeltTrial trial{answering.study_seed, person.number,
+  FeltTrial trial{shared.study_seed, person.number,
                   simulation::SimulatedParticipant::trials_before(visit), 0};
   for (std::size_t i = 0; i < planned.course.size(); ++i) {
     const study::Trial& presented = planned.schedule.trials[i];
@@ -206,12 +206,12 @@ void RehearsedStudy::add_visit(Person& person, int visit, const Answering& answe
     ++trial.nth;
     trial.draw = person.draws.bits();
     trial.gain_db = presented.planes.front().gain_db;
-    const std::uint64_t instead = person.draws.bits();
+    const std::uint64_t null_draw = person.draws.bits();
     if (!place.carries_over) condition.forget();
-    // What is not scored is answered only if the next answer leans on it.
-    if (!is_scored && !(answering.subject.serial.is_on() && place.carries_over)) continue;
+    // Unscored trials are simulated only if they affect the next answer.
+    if (!is_scored && !(shared.subject.serial.is_on() && place.carries_over)) continue;
     const study::StimulusIndex felt =
-        felt_stimulus(presented.field(), answering.hypothesis, instead);
+        felt_stimulus(presented.field(), shared.hypothesis, null_draw);
     RandomStream random = simulation::stream_of_trial(trial.study_seed, simulation::kAnswerPurpose,
                                                       trial.participant, trial.nth);
     int position =
@@ -220,13 +220,13 @@ void RehearsedStudy::add_visit(Person& person, int visit, const Answering& answe
             .position;
     if (is_scored) {
       const bool is_worse =
-          answering.hypothesis == Hypothesis::null && presented.field().method == test_.first;
+          shared.hypothesis == Hypothesis::null && presented.field().method == test_.first;
       const double loss = is_worse ? margin_loss_ : 0.0;
-      position = lost(position, loss, person, presented.field().class_index, planned.schedule);
+      position = with_loss(position, loss, person, presented.field().class_index, planned.schedule);
       outcomes.trials.push_back(
           answered_trial(person.number, session, visit, presented, planned.schedule, position));
     }
-    if (!answering.subject.serial.is_on()) continue;
+    if (!shared.subject.serial.is_on()) continue;
     place.label = empty_.classes[felt.class_index];
     simulation::end_trial(condition, place, position, seen, *person.knowledge);
   }
@@ -236,9 +236,9 @@ analysis::Outcomes RehearsedStudy::outcomes(int participants, Hypothesis hypothe
                                             std::uint64_t study_seed) const {
   analysis::Outcomes outcomes = empty_;
   const std::shared_ptr<const simulation::FeltKnowledge> learnt = feelings_.knowledge(study_seed);
-  const Answering answering{subject_, learnt, hypothesis, study_seed};
+  const SharedInput shared{subject_, learnt, hypothesis, study_seed};
   for (int number = 1; number <= participants; ++number) {
-    add_participant(number, answering, outcomes);
+    add_participant(number, shared, outcomes);
   }
   return outcomes;
 }

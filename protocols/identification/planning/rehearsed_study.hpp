@@ -1,6 +1,6 @@
-/// \file A study with simulated participants, straight to its outcomes: with its own schedules,
-/// pictures and orders, but without sessions, a database or traces; and where the participants'
-/// feelings come from. Source: docs/planning.md, "The fast path".
+/// \file Fast simulation of a study: with its schedules, pictures and orders, but without sessions,
+/// database and traces; and the source of what participants feel. Source: docs/planning.md, "The
+/// fast path".
 #pragma once
 
 #include "analysis/outcomes/outcomes.hpp"
@@ -25,12 +25,13 @@ namespace touchtrial::planning::identification {
 struct FeltTrial {
   std::uint64_t study_seed = 0;  ///< as in `simulate --seed`
   int participant = 0;           ///< number, from 1
-  std::uint64_t nth = 0;         ///< the participant's presentation, from 1
-  std::uint64_t draw = 0;        ///< the presentation's own random bits
+  std::uint64_t nth = 0;         ///< number of the participant's presentation, from 1
+  std::uint64_t draw = 0;        ///< random bits of the presentation
   double gain_db = 0.0;          ///< study::Plane::gain_db
 };
 
-/// What participants learn and feel: functions of the arguments alone. Thread-safe.
+/// The source of what participants learn and feel. Results depend only on the arguments.
+/// Thread-safe.
 class Feelings {
  public:
   virtual ~Feelings() = default;
@@ -38,23 +39,23 @@ class Feelings {
   Feelings(const Feelings&) = delete;
   Feelings& operator=(const Feelings&) = delete;
 
-  /// What the participants of a study learn from before it: `simulation::learn`.
+  /// The training of a study's participants: `simulation::learn`.
   [[nodiscard]] virtual std::shared_ptr<const simulation::FeltKnowledge> knowledge(
       std::uint64_t study_seed) const = 0;
-  /// What a stimulus feels like in a presentation, before noise.
+  /// The features of a stimulus in a presentation, without noise.
   [[nodiscard]] virtual engine::FeltFeatures felt(const study::StimulusIndex& stimulus,
                                                   const FeltTrial& trial) const = 0;
 };
 
 struct BankedFeelingsOptions {
-  int explorations = 1000;  ///< of each stimulus, for trials to draw from
-  int trainings = 16;       ///< for studies to draw from
+  int explorations = 1000;  ///< of each stimulus, from which trials draw
+  int trainings = 16;       ///< from which studies draw
   std::uint64_t seed = 1;   ///< of the paths
-  int jobs = 1;             ///< threads; feelings do not depend on them
+  int jobs = 1;             ///< threads; results do not depend on it
 };
 
-/// Explorations and trainings that are felt once. Each trial draws one of the explorations, and
-/// each study one of the trainings. Refers to none of its arguments.
+/// Precomputed explorations and trainings. Each trial draws one of the explorations, and each study
+/// one of the trainings. Holds no references to its arguments.
 class BankedFeelings final : public Feelings {
  public:
   /// \param study  of the fields
@@ -73,47 +74,47 @@ class BankedFeelings final : public Feelings {
   std::vector<std::shared_ptr<const simulation::FeltKnowledge>> trainings_;
 };
 
-/// Refuses people who explore until the time is up in a study that then takes no answer.
-/// \throws StudyError naming the subject's file
+/// Refuses a subject that explores until time is up if the study then rejects answers.
+/// \throws StudyError with the subject's file and the remedy
 void require_answers(const study::Study& study, const simulation::SubjectModel& subject);
 
-/// Makes outcomes of one study again and again. Refers to study, subject and feelings, which must
-/// outlive it. Thread-safe once constructed.
+/// Simulates outcomes of one study repeatedly. Study, subject and feelings must outlive it.
+/// Thread-safe once constructed.
 class RehearsedStudy final : public Rehearsal {
  public:
-  /// \param most_participants  of any simulated study, >= 1: the number of schedules that are made
-  /// \throws StudyError if the study's orders are impossible, or if participants explore so long
-  ///   that they would never answer; UsageError if the margin is more than the methods' accuracy
+  /// \param max_participants  of any simulated study, >= 1; schedules are made for so many
+  /// \throws StudyError if the study does not permit its orders, or as require_answers
+  /// \throws UsageError if the margin exceeds the methods' accuracy
   RehearsedStudy(const study::Study& study, const simulation::SubjectModel& subject,
-                 const PrimaryTest& test, const Feelings& feelings, int most_participants);
+                 const PrimaryTest& test, const Feelings& feelings, int max_participants);
 
-  /// Outcomes of participants with the numbers and enrolment numbers 1 .. `participants`. With
-  /// `population` and feelings through the servo, without margin, the scored trials are exactly
-  /// those of `simulate --seed study_seed`; times, evidence and unscored trials are left out.
+  /// Outcomes of participants with the numbers and enrolment numbers 1 .. `participants`. Without a
+  /// margin, with `population` and features from the servo, the scored trials are exactly those of
+  /// `simulate --seed study_seed`. Times, evidence and unscored trials are omitted.
   [[nodiscard]] analysis::Outcomes outcomes(int participants, Hypothesis hypothesis,
                                             std::uint64_t study_seed) const override;
 
  private:
-  /// What does not change from study to study.
+  /// The data of a visit that all simulated studies share.
   struct PlannedSchedule {
     study::Schedule schedule;
     std::vector<std::string> pictures;  ///< labels, by position
-    int order_block = -1;               ///< analysis::SessionOutcome
+    int order_block = -1;               ///< as in analysis::SessionOutcome
     simulation::TrialCourse course;     ///< by presentation
     std::vector<bool> break_before;     ///< by presentation
   };
-  struct Answering;
+  struct SharedInput;
   struct Person;
 
   [[nodiscard]] PlannedSchedule planned_visit(const study::Study& study, const study::StudyKey& key,
                                               int number, int visit) const;
-  void add_participant(int number, const Answering& answering, analysis::Outcomes& outcomes) const;
-  void add_visit(Person& person, int visit, const Answering& answering,
+  void add_participant(int number, const SharedInput& shared, analysis::Outcomes& outcomes) const;
+  void add_visit(Person& person, int visit, const SharedInput& shared,
                  analysis::Outcomes& outcomes) const;
-  /// Misses a right answer with a probability.
+  /// Replaces a right answer by a wrong one with probability `loss`.
   /// \param right  class
-  [[nodiscard]] static int lost(int position, double loss, Person& person, int right,
-                                const study::Schedule& schedule);
+  [[nodiscard]] static int with_loss(int position, double loss, Person& person, int right,
+                                     const study::Schedule& schedule);
   /// \param draw  random bits
   [[nodiscard]] study::StimulusIndex felt_stimulus(const study::StimulusIndex& presented,
                                                    Hypothesis hypothesis, std::uint64_t draw) const;
@@ -126,7 +127,7 @@ class RehearsedStudy final : public Rehearsal {
   PrimaryTest test_;
   const Feelings& feelings_;
   int visits_;                ///< of each participant
-  double margin_loss_ = 0.0;  ///< share of right answers missed with the first method, if worse
+  double margin_loss_ = 0.0;  ///< share of right answers lost with the first method under `null`
   std::vector<PlannedSchedule> schedules_;       ///< of each participant in turn, by visit
   std::vector<study::StimulusIndex> of_method_;  ///< every stimulus of the test's first method
   analysis::Outcomes empty_;

@@ -17,7 +17,7 @@ bool of_two_methods(const PrimaryTest& test) {
   return test.estimand == study::Estimand::difference;
 }
 
-/// The range of a person's quantity.
+/// The range of a person's accuracy, or of the difference of two accuracies.
 analysis::Interval range_of(const StatedPeople& people, const PrimaryTest& test) {
   if (!of_two_methods(test)) return {0.0, 1.0};
   const double room = 2.0 * std::min(*people.accuracy, 1.0 - *people.accuracy);
@@ -27,23 +27,23 @@ analysis::Interval range_of(const StatedPeople& people, const PrimaryTest& test)
 void require_spread(double mean, double sd, const analysis::Interval& range,
                     const char* with_margin) {
   const bool inside = mean >= range.low && mean <= range.high;
-  const double most = inside ? std::sqrt((mean - range.low) * (range.high - mean)) : 0.0;
+  const double max_sd = inside ? std::sqrt((mean - range.low) * (range.high - mean)) : 0.0;
   if (!inside) {
     throw UsageError(
         fmt::format("--mean: {:.4g}{} is out of range; give a share from {:.4g} to {:.4g}", mean,
                     with_margin, range.low, range.high));
   }
-  if (sd >= 0.0 && (sd < most || sd == 0.0)) return;
+  if (sd >= 0.0 && (sd < max_sd || sd == 0.0)) return;
   throw UsageError(fmt::format(
       "--sd-between: {:.4g} is impossible with a mean of {:.4g}{}; give 0, or less than {:.4g}", sd,
-      mean, with_margin, most));
+      mean, with_margin, max_sd));
 }
 
-/// One person's quantity.
-double drawn_quantity(double mean, double sd, const analysis::Interval& range,
-                      RandomStream& random) {
+/// Draws a person's accuracy, or the difference of two accuracies.
+double draw_quantity(double mean, double sd, const analysis::Interval& range,
+                     RandomStream& random) {
   const double share = random.uniform();
-  // Of a smaller spread no trial can tell, and the distribution has no more digits.
+  // A smaller spread has no effect on trials, and would exceed the precision of the distribution.
   if (sd < 1e-6 * (range.high - range.low)) return mean;
   const double width = range.high - range.low;
   const double m = (mean - range.low) / width;
@@ -53,11 +53,11 @@ double drawn_quantity(double mean, double sd, const analysis::Interval& range,
                                  boost::math::beta_distribution<>(m * n, (1.0 - m) * n), share);
 }
 
-/// How often one person is right.
+/// One person's probabilities of a right answer.
 struct StatedPerson {
   double first = 0.0;   ///< with the test's first method
-  double second = 0.0;  ///< of two: with its second
-  double other = 0.0;   ///< with any other
+  double second = 0.0;  ///< with the test's second method, if it compares two
+  double other = 0.0;   ///< with any other method
 };
 
 StatedPerson person_with(double quantity, const StatedPeople& people, const PrimaryTest& test) {
@@ -81,12 +81,13 @@ double mean_under_null(const PrimaryTest& test, std::size_t classes) {
 void require_possible(const StatedPeople& people, const PrimaryTest& test) {
   if (of_two_methods(test) && !people.accuracy) {
     throw UsageError(
-        "--mean: is a difference of accuracies in this study; give everybody's accuracy too, for "
-        "instance --accuracy 0.5");
+        "--mean: is a difference of accuracies in this study; also give the mean accuracy of both "
+        "methods, for instance --accuracy 0.5");
   }
   if (!of_two_methods(test) && people.accuracy) {
     throw UsageError(
-        "--accuracy: is of studies that compare two methods; --mean is the accuracy in this one");
+        "--accuracy: applies to studies that compare two methods; remove it, and give the accuracy "
+        "with --mean");
   }
   if (people.accuracy && !(*people.accuracy > 0.0 && *people.accuracy < 1.0)) {
     throw UsageError(fmt::format("--accuracy: {:.4g} is out of range; give a share between 0 and 1",
@@ -108,11 +109,11 @@ std::string words_of(const StatedPeople& people) {
 }
 
 StatedRehearsal::StatedRehearsal(const study::Study& study, const StatedPeople& people,
-                                 const PrimaryTest& test, int most_participants)
+                                 const PrimaryTest& test, int max_participants)
     : people_(people), test_(test), visits_(study.visits.count), empty_(nobody_yet(study)) {
   require_possible(people, test);
   const study::StudyKey key = study::simulated_study_key(study);
-  for (int number = 1; number <= most_participants; ++number) {
+  for (int number = 1; number <= max_participants; ++number) {
     for (int visit = 1; visit <= visits_; ++visit) {
       planned_.push_back(
           {study::make_schedule(study, key.draw_of(number, study::Draws::rehearsal, visit)),
@@ -130,8 +131,7 @@ analysis::Outcomes StatedRehearsal::outcomes(int participants, Hypothesis hypoth
   const analysis::Interval range = range_of(people_, test_);
   for (int number = 1; number <= participants; ++number) {
     RandomStream random(study_seed, "power: stated people", static_cast<std::uint64_t>(number));
-    const StatedPerson person =
-        person_with(drawn_quantity(mean, sd, range, random), people_, test_);
+    const StatedPerson person = person_with(draw_quantity(mean, sd, range, random), people_, test_);
     for (int visit = 1; visit <= visits_; ++visit) {
       const int session = (number - 1) * visits_ + visit;
       const PlannedVisit& planned = planned_[static_cast<std::size_t>(session) - 1];

@@ -1,6 +1,6 @@
-/// \file People of whom nothing is known but how often they are right: a mean and a spread between
-/// them. Nobody feels anything, so neither device nor hand nor texture enters. Source:
-/// docs/planning.md, "From a stated mean and spread".
+/// \file Simulated people who are described only by the mean and spread of their accuracy. They feel
+/// nothing, so device, hand and texture have no effect. Source: docs/planning.md, "From a stated
+/// mean and spread".
 #pragma once
 
 #include "protocols/identification/planning/primary_test.hpp"
@@ -13,39 +13,38 @@
 
 namespace touchtrial::planning::identification {
 
-/// What is stated of people. Without two methods the quantity is a person's accuracy; with two it
-/// is a person's accuracy with the first method less that with the second.
+/// The stated distribution of people. The quantity is a person's accuracy or, if the test compares
+/// two methods, the accuracy with the first method minus that with the second.
 struct StatedPeople {
-  double mean = 0.0;  ///< of the quantity, over people
-  double sd_between =
-      0.0;  ///< of the quantity, between people, without the chance of single trials
-  /// Of two methods: everybody's accuracy, the mean of both methods.
+  double mean = 0.0;        ///< of the quantity, over people
+  double sd_between = 0.0;  ///< of the quantity between people, without binomial variance
+  /// If the test compares two methods: the mean accuracy of both, the same for all people.
   std::optional<double> accuracy{};
 
   friend bool operator==(const StatedPeople&, const StatedPeople&) = default;
 };
 
-/// Checks the numbers against a test: people's quantities follow a beta distribution with this mean
-/// and spread, on [0, 1] for an accuracy, and for a difference on the largest range around 0 in
+/// Checks the numbers against a test. Quantities follow a beta distribution with this mean and
+/// spread. Its range is [0, 1] for an accuracy and, for a difference, the largest range around 0 in
 /// which both accuracies stay within [0, 1].
-/// \throws UsageError if the mean lies outside that range, the spread is impossible with it, or the
-///   accuracy is missing or not asked for
+/// \throws UsageError if the mean lies outside that range, the spread is impossible with the mean, or
+///   the accuracy is missing or superfluous
 void require_possible(const StatedPeople& people, const PrimaryTest& test);
 
 /// \return for instance "stated people: mean accuracy 0.4, SD 0.1 between people"
 [[nodiscard]] std::string words_of(const StatedPeople& people);
 
-/// A study with stated people: its own orders, and each scored presentation answered rightly with
-/// the person's probability, otherwise with one of the other pictures. Under the null everybody
-/// guesses; or, of two methods, differences keep their spread around 0; or, with a margin, around
-/// the margin that the first method is worse by.
+/// A simulation of a study with stated people. It uses the study's orders; each scored presentation
+/// is answered correctly with the person's probability, and otherwise with another picture at
+/// random. Under the null everybody guesses. If the test compares two methods, the differences have
+/// the same spread around 0 or, with a margin, around minus the margin.
 class StatedRehearsal final : public Rehearsal {
  public:
-  /// \param most_participants  of any simulated study, >= 1: the number of schedules that are made
-  /// \throws UsageError as require_possible does, also for people under the null; StudyError if the
-  ///   study's orders are impossible
+  /// \param max_participants  of any simulated study, >= 1; schedules are made for so many
+  /// \throws UsageError as require_possible, also for people under the null
+  /// \throws StudyError if the study does not permit its orders
   StatedRehearsal(const study::Study& study, const StatedPeople& people, const PrimaryTest& test,
-                  int most_participants);
+                  int max_participants);
 
   [[nodiscard]] analysis::Outcomes outcomes(int participants, Hypothesis hypothesis,
                                             std::uint64_t study_seed) const override;
@@ -53,7 +52,7 @@ class StatedRehearsal final : public Rehearsal {
  private:
   struct PlannedVisit {
     study::Schedule schedule;
-    int order_block = -1;  ///< analysis::SessionOutcome
+    int order_block = -1;  ///< as in analysis::SessionOutcome
   };
 
   StatedPeople people_;

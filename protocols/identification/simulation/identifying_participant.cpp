@@ -26,7 +26,7 @@ class IdentifyingPopulation final : public Population {
   std::shared_ptr<const FeltKnowledge> learnt_;
 };
 
-/// A pointer that owns nothing.
+/// A pointer without ownership.
 std::shared_ptr<const FeltKnowledge> borrowed(const FeltKnowledge& knowledge) {
   return {std::shared_ptr<const FeltKnowledge>(), &knowledge};
 }

@@ -1,4 +1,5 @@
-/// \file A simulated participant who knows the classes by touch and names the one that was felt.
+/// \file A simulated participant who has learnt how the classes feel, and identifies the presented
+/// one.
 #pragma once
 
 #include "protocols/simulation/condition.hpp"
@@ -14,9 +15,8 @@
 
 namespace touchtrial::simulation::identification {
 
-/// Perceives the felt intensities with noise and names the picture whose class makes them
-/// likeliest, bias and condition included; or lapses, and names any picture. Refers to the subject,
-/// which must outlive it.
+/// Perceives the felt intensities with noise and chooses the picture whose class makes them most
+/// likely, with bias and condition; in a lapse, chooses any picture. The subject must outlive it.
 class IdentifyingParticipant final : public SimulatedParticipant {
  public:
   /// \param number  from 1
@@ -27,7 +27,7 @@ class IdentifyingParticipant final : public SimulatedParticipant {
   IdentifyingParticipant(const SubjectModel& subject, const FeltKnowledge& knowledge,
                          std::uint64_t seed, int number);
 
-  /// \throws std::invalid_argument if a class that was learnt has no picture
+  /// \throws std::invalid_argument if a learnt class has no picture
   void see_pictures(const std::vector<std::string>& labels) override;
 
   void rest() override;
@@ -49,8 +49,8 @@ class IdentifyingParticipant final : public SimulatedParticipant {
   SeenPictures pictures_;
 };
 
-/// Teaches the study's labelled fields as the subject model says: to all alike, or to each by
-/// passes of their own.
+/// Trains participants on the study's labelled fields as the subject model specifies: all with the
+/// same training passes, or each with different ones.
 /// \throws StudyError if the subject names a class that the study does not have
 /// \throws FileError if the pack lacks a stimulus
 [[nodiscard]] std::unique_ptr<const Population> make_population(const PopulationSetting& setting);

@@ -21,7 +21,7 @@ bool mixes_methods(const Study& study) {
   return study.trials.blocks == Blocks::mixed && study.presented_methods() > 1;
 }
 
-/// Whether the limit on runs can exclude an order that is possible without it.
+/// Whether the limit on runs excludes any order.
 bool max_run_matters(const Study& study) {
   const TrialOptions& trials = study.trials;
   if (trials.max_run == 0) return false;
@@ -35,23 +35,25 @@ std::optional<OrderObstacle> obstacle_to_de_bruijn(const Study& study) {
   const int classes = classes_of(study);
   if (study.trials.repeats != classes) {
     return OrderObstacle{
-        "/repeats",
-        "is " + std::to_string(study.trials.repeats) +
-            "; the order de-bruijn needs as many repeats as classes: " + std::to_string(classes)};
+        "/repeats", "is " + std::to_string(study.trials.repeats) +
+                        ", but the order de-bruijn needs as many repeats as classes; set it to " +
+                        std::to_string(classes)};
   }
   if (study.trials.lead_in != 0) {
-    return OrderObstacle{"/lead_in",
-                         "must be 0: the order de-bruijn has one lead-in presentation of its own"};
+    return OrderObstacle{
+        "/lead_in", "must be 0, because the order de-bruijn adds one lead-in presentation itself"};
   }
   if (mixes_methods(study)) {
-    return OrderObstacle{"/blocks",
-                         "must be \"by-method\": the order de-bruijn balances classes within one "
-                         "method"};
+    return OrderObstacle{
+        "/blocks",
+        "must be \"by-method\", because the order de-bruijn balances classes within "
+        "one method"};
   }
   if (study.trials.max_run == 1) {
-    return OrderObstacle{"/max_run",
-                         "is 1, but in the order de-bruijn every class follows itself once; give 2 "
-                         "or more, which it keeps by itself, or choose the order shuffled"};
+    return OrderObstacle{
+        "/max_run",
+        "is 1, but in the order de-bruijn every class follows itself once; use 2 or "
+        "more, or choose the order shuffled"};
   }
   return std::nullopt;
 }
@@ -59,15 +61,17 @@ std::optional<OrderObstacle> obstacle_to_de_bruijn(const Study& study) {
 std::optional<OrderObstacle> obstacle_to_williams(const Study& study) {
   const TrialOptions& trials = study.trials;
   if (mixes_methods(study)) {
-    return OrderObstacle{"/blocks",
-                         "must be \"by-method\": the order williams balances classes within one "
-                         "method"};
+    return OrderObstacle{
+        "/blocks",
+        "must be \"by-method\", because the order williams balances classes within "
+        "one method"};
   }
   if (trials.max_run > 0 &&
       !williams_order_exists(classes_of(study), trials.repeats, trials.max_run)) {
-    return OrderObstacle{"/max_run",
-                         "is 1, which no order williams of 2 classes keeps: its two rows are each "
-                         "other's mirror image; give 2 or more, or choose the order shuffled"};
+    return OrderObstacle{
+        "/max_run",
+        "is 1, but no order williams of 2 classes has runs that short, because its "
+        "two rows mirror each other; use 2 or more, or choose the order shuffled"};
   }
   return std::nullopt;
 }
@@ -77,13 +81,13 @@ std::optional<OrderObstacle> obstacle_to_limit(const Study& study) {
   const std::vector<int> counts(study.classes.size(), copies_in_block(study));
   const std::string limit = "is " + std::to_string(study.trials.max_run);
   if (!limited_order_exists(counts, study.trials.max_run)) {
-    return OrderObstacle{"/max_run", limit + ", which no order keeps; raise it"};
+    return OrderObstacle{"/max_run", limit + ", which no order satisfies; raise it"};
   }
   if (!limited_orders_are_countable(counts, study.trials.max_run)) {
     return OrderObstacle{
         "/max_run", limit + ", but the orders of " + std::to_string(counts.size()) +
                         " classes presented " + std::to_string(counts.front()) +
-                        " times in a block are too many to count; give fewer classes or repeats, "
+                        " times in a block are too many to count; use fewer classes or repeats, "
                         "blocks by method, another order, or 0"};
   }
   return std::nullopt;
@@ -183,7 +187,7 @@ std::vector<BlockItem> limited_order(BlockDraw& draw, RunBefore before) {
   const auto classes = draw_limited_order(counts, max_run, before, draw.order);
   if (!classes) {
     throw StudyError(one_line("study " + draw.study.name + ": /trials/max_run: is " +
-                              std::to_string(max_run) + ", which no order keeps; raise it"));
+                              std::to_string(max_run) + ", which no order satisfies; raise it"));
   }
   return with_balanced_methods(*classes, draw);
 }
@@ -198,8 +202,7 @@ std::vector<BlockItem> williams_order(BlockDraw& draw, RunBefore before) {
   return items;
 }
 
-/// Draws the lead-in presentations. They are drawn before the scored ones, which continue their
-/// last run.
+/// Draws the lead-in presentations, before the scored ones, which continue their last run.
 std::vector<BlockItem> lead_ins(BlockDraw& draw) {
   const TrialOptions& trials = draw.study.trials;
   if (trials.max_run > 0) {

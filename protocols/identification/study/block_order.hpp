@@ -1,5 +1,5 @@
-/// \file The presentations of a block and their order, before images are chosen, and a check that a
-/// study's order is possible. Private to protocols/identification.
+/// \file The presentations of a block and their order, before images are chosen, and a check whether
+/// the study permits its order. Private to protocols/identification.
 #pragma once
 
 #include "core/cipher.hpp"
@@ -19,7 +19,7 @@ struct OrderObstacle {
   std::string what;
 };
 
-/// \return why the study's order is impossible, or nothing if every participant can get a schedule
+/// \return why the study's order is impossible; empty if every participant can get a schedule
 [[nodiscard]] std::optional<OrderObstacle> obstacle_to_order(const Study& study);
 
 /// The class and method of a trial, before an image is chosen.

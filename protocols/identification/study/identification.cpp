@@ -15,8 +15,8 @@ class Identification final : public Task {
   void check(const JsonValue& file, const Study& study) const override {
     if (static_cast<int>(study.methods.size()) < min_methods_) {
       file.refuse_below("/methods",
-                        "has 1 entry; the protocol comparison needs at least 2: add one, or choose "
-                        "the protocol classification");
+                        "has 1 entry, but the protocol comparison needs at least 2; add one, or "
+                        "choose the protocol classification");
     }
     if (const auto obstacle = obstacle_to_order(study)) {
       file.refuse_below("/trials" + obstacle->key, obstacle->what);

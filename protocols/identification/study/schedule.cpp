@@ -35,8 +35,8 @@ std::vector<BlockPlan> block_plans(const Study& study, const ScheduleDraw& draw)
   return plans;
 }
 
-/// Chooses images for one participant. For each class and method, it deals the images like a
-/// shuffled pack of cards: all are used before any repeats, and then they are shuffled again.
+/// Chooses images for one participant. For each class and method, all images are used in random
+/// order before any repeats, and then they are shuffled again.
 class ExemplarSupply {
  public:
   /// \param restart  suffix of the names of the random streams; empty for a schedule's first order
@@ -49,7 +49,7 @@ class ExemplarSupply {
  private:
   struct Deck {
     RandomStream random;
-    std::vector<int> left;  ///< images left to deal; the next one is at the back
+    std::vector<int> left;  ///< remaining images; the next one is at the back
   };
 
   const Study& study_;
@@ -85,14 +85,14 @@ std::vector<bool> random_places(std::size_t places, std::size_t count, RandomStr
   std::vector<std::size_t> later(places - 1);
   std::iota(later.begin(), later.end(), std::size_t{1});
   shuffle(std::span<std::size_t>(later), random);
-  std::vector<bool> taken(places, false);
-  for (std::size_t i = 0; i < count; ++i) taken[later[i]] = true;
-  return taken;
+  std::vector<bool> drawn_places(places, false);
+  for (std::size_t i = 0; i < count; ++i) drawn_places[later[i]] = true;
+  return drawn_places;
 }
 
-/// Inserts catch trials at random places. The first trial stays first; otherwise every
-/// choice of places is equally likely. A catch trial belongs to the block of the presentation
-/// before it. Does not number trials.
+/// Inserts catch trials at random places. The first trial stays first; otherwise every choice of
+/// places is equally likely. A catch trial belongs to the block of the preceding presentation. Does
+/// not number trials.
 /// \pre `shown` is not empty if `count` > 0
 std::vector<Trial> with_catch_trials(const std::vector<Trial>& shown, int count,
                                      RandomStream& random) {
@@ -131,19 +131,19 @@ void number(std::vector<Trial>& trials, int first) {
   for (Trial& shown : trials) shown.place.trial = first++;
 }
 
-/// Roves gains below the pack's, so that no presentation is stronger than what was prepared. Catch
-/// trials have none.
+/// Roves gains below the pack's, so that no presentation exceeds the prepared gain. Catch trials
+/// are not roved.
 void rove(const Study& study, RandomStream random, std::vector<Trial>& trials) {
   if (study.trials.rove_db == 0.0) return;
   for (Trial& shown : trials) {
     if (shown.role == Role::catch_trial) continue;
     shown.planes.front().gain_db =
-        study.trials.own_gain_db() + drawn_rove_db(study.trials.rove_db, random);
+        study.trials.own_gain_db() + draw_rove_db(study.trials.rove_db, random);
   }
 }
 
-/// Leaves a visit's own blocks, if the study divides its methods between visits. They keep their
-/// numbers, which are those of one long session.
+/// Removes the blocks of other visits, if the study divides its methods between visits. The
+/// remaining blocks keep their numbers.
 void keep_visit(const Study& study, int visit, std::vector<Trial>& shown) {
   if (visit == 0 || study.visits.methods != VisitMethods::divided) return;
   const int blocks = study.presented_methods() / study.visits.count;

@@ -11,7 +11,7 @@
 namespace touchtrial::study::identification {
 
 /// The order of one participant.
-/// \throws StudyError if it is impossible for the study
+/// \throws StudyError if the study does not permit it
 [[nodiscard]] std::unique_ptr<Order> identifying_order(const Study& study,
                                                        const ScheduleDraw& draw);
 /// The name and version of the rule that draws it.

@@ -18,7 +18,7 @@ namespace {
 constexpr double kTextureRoom = 0.8;
 /// More means than these need the page's whole width.
 constexpr std::size_t kMeansOfColumn = 8;
-constexpr double kLargestPicture_cm = 1.5;
+constexpr double kMaxPicture_cm = 1.5;
 constexpr double kPictureOfSlot = 0.86;
 
 void add_rows(const RatingReport& report, const ScaleReport& scale, std::size_t method, Layer& dots,
@@ -69,7 +69,7 @@ Axis rating_axis(const study::Scale& scale) {
 /// The items' pictures, each below its name.
 /// \param slot_cm  the room of an item along the axis
 Panel pictures_panel(const ItemPictures& pictures, double slot_cm) {
-  const double side_cm = std::min(kLargestPicture_cm, kPictureOfSlot * slot_cm);
+  const double side_cm = std::min(kMaxPicture_cm, kPictureOfSlot * slot_cm);
   Panel panel;
   panel.height_cm = side_cm;
   panel.x = {.low = 0.5, .high = static_cast<double>(pictures.size()) + 0.5, .hidden = true};

@@ -81,7 +81,7 @@ MeasureList<MethodDifference> difference_measures(const RatingReport& report) {
                     [&](const Row& one) { return named(report.methods, one.first); }),
       label_of<Row>("second", "second",
                     [&](const Row& one) { return named(report.methods, one.second); }),
-      kept_of<Row>("classes", &Row::classes),
+      member_of<Row>("classes", &Row::classes),
       count_of<Row>("participants", "n", [](const Row& one) { return one.difference.participants; })
           .with("n: participants who rated every texture by both methods; each counts with one "
                 "difference, the mean over textures."),
@@ -91,7 +91,7 @@ MeasureList<MethodDifference> difference_measures(const RatingReport& report) {
                        [](const Row& one) { return one.difference.known_interval(); }),
       number_of<Row>("sd", "", decimals(kRatingDecimals),
                      [](const Row& one) { return one.difference.sd; }),
-      shown_of<Row>("t", shown),
+      column_of<Row>("t", shown),
       number_of<Row>("p", "p", p_figure, p_of(&Row::sign_flip, &FamilyP::p))
           .with("p: exact sign flips of participants' differences, two-sided; by Holm: adjusted "
                 "over all pairs.",
@@ -100,11 +100,11 @@ MeasureList<MethodDifference> difference_measures(const RatingReport& report) {
       number_of<Row>("t", "", decimals(kRatingDecimals), &Row::t),
       number_of<Row>("t_p", "", p_figure, p_of(&Row::t_test, &FamilyP::p)),
       number_of<Row>("t_p_holm", "", p_figure, p_of(&Row::t_test, &FamilyP::holm)),
-      shown_of<Row>("d_z, 95%", [](const Row& one) { return effect_figure(statistic_of(one)); })
+      column_of<Row>("d_z, 95%", [](const Row& one) { return effect_figure(statistic_of(one)); })
           .with("d_z: mean difference over its SD between participants; few participants make it "
                 "too large. Interval by noncentral t, which assumes normal differences.",
                 {Source::cumming_finch}),
-      kept_of<Row>("d_z", d_z_json)};
+      member_of<Row>("d_z", d_z_json)};
 }
 
 MeasureList<std::size_t> use_measures(const RatingReport& report, const ScaleReport& scale) {
@@ -123,17 +123,17 @@ MeasureList<std::size_t> use_measures(const RatingReport& report, const ScaleRep
                             "means of items without the means of participant and item. Repeats: "
                             "the participant's own ICC(1,1).",
                             100.0 * kNarrowUse)),
-      kept_of<Row>("at_low", use([](const ScaleUse& one) { return one.at_low.correct; })),
-      kept_of<Row>("at_high", use([](const ScaleUse& one) { return one.at_high.correct; })),
+      member_of<Row>("at_low", use([](const ScaleUse& one) { return one.at_low.correct; })),
+      member_of<Row>("at_high", use([](const ScaleUse& one) { return one.at_high.correct; })),
       number_of<Row>("mean", "mean", decimals(kRatingDecimals), use(&ScaleUse::mean)),
       number_of<Row>("sd", "", decimals(kRatingDecimals), use(&ScaleUse::sd)),
-      shown_of<Row>("SD", use([](const ScaleUse& one) {
-                      return Cell(plain_figure(one.sd, kRatingDecimals), one.narrow);
-                    })),
+      column_of<Row>("SD", use([](const ScaleUse& one) {
+                       return Cell(plain_figure(one.sd, kRatingDecimals), one.narrow);
+                     })),
       count_of<Row>("distinct", "values", use(&ScaleUse::distinct)),
-      shown_of<Row>("at low end", use(share_at(&ScaleUse::at_low))),
-      shown_of<Row>("at high end", use(share_at(&ScaleUse::at_high))),
-      kept_of<Row>("narrow", use(&ScaleUse::narrow)),
+      column_of<Row>("at low end", use(share_at(&ScaleUse::at_low))),
+      column_of<Row>("at high end", use(share_at(&ScaleUse::at_high))),
+      member_of<Row>("narrow", use(&ScaleUse::narrow)),
       number_of<Row>("scatter", "scatter", decimals(kRatingDecimals),
                      [&](Row i) { return scale.scatter[i]; }),
       number_of<Row>("retest", "repeats", decimals(kCorrelationDecimals),

@@ -70,20 +70,9 @@ Section result_section(const RatingReport& report) {
     say(question_sentence(report, scale));
   }
   if (report.trials == 0) say("No trial counts, so there is no result.");
-  return section;
-}
-
-Section methods_section(const RatingReport& report) {
-  Section section{"analysis", "Analysis", {}};
-  std::string text =
-      "The unit is the participant: repeats of a texture by a method are averaged first, and a "
-      "participant enters a mean, a difference or the agreement only with all that it is over.";
   if (report.without_answer > 0) {
-    text +=
-        fmt::format(" {} without an answer {} no rating.", counted(report.without_answer, "trial"),
-                    report.without_answer == 1 ? "has" : "have");
+    say(fmt::format("Left out: {} without an answer.", counted(report.without_answer, "trial")));
   }
-  section.more.emplace_back(Cited{std::move(text)});
   return section;
 }
 
@@ -108,7 +97,7 @@ Document rating_document(const RatingReport& report, const Provenance& provenanc
   return framed_document(
       report, result_section(report),
       {differences_section(report), means_section(report, drawn), reliability_section(report),
-       catches_section(report), use_section(report), methods_section(report)},
+       catches_section(report), use_section(report)},
       provenance, pictures);
 }
 

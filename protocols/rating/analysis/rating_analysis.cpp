@@ -36,7 +36,7 @@ class RatingResults final : public Results {
   ItemPictures pictures_;
 };
 
-/// The first picture of a class, made small.
+/// A thumbnail of a class's first picture.
 GreyImage picture_of(const std::filesystem::path& file) {
   try {
     const GreyImage grey = engine::read_grey_image(file);
@@ -45,11 +45,11 @@ GreyImage picture_of(const std::filesystem::path& file) {
     const auto side = [&](int length) { return std::max(1, length * kPictureSide_px / longer); };
     return engine::resized(grey, side(grey.height()), side(grey.width()));
   } catch (const Error&) {
-    return {};  // the figure does without
+    return {};  // the figure omits it
   }
 }
 
-/// Of a report with a page, as far as the study's pictures are in reach.
+/// Thumbnails for a report with a page, if the study's pictures are available.
 ItemPictures item_pictures(const ReportOptions& wishes) {
   ItemPictures pictures;
   if (wishes.source == nullptr || !wishes.page) return pictures;

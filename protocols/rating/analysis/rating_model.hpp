@@ -1,6 +1,6 @@
 /// \file Exports a long table of ratings and the R script that fits a linear mixed model to it,
-/// participants being random. Sources: Bates, Maechler, Bolker, Walker 2015, Journal of Statistical
-/// Software 67(1); docs/rating.md.
+/// with random effects of participants. Sources: Bates, Maechler, Bolker, Walker 2015, Journal of
+/// Statistical Software 67(1); docs/rating.md.
 #pragma once
 
 #include "analysis/outcomes/outcomes.hpp"

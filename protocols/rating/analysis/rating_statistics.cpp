@@ -28,7 +28,7 @@ double length_of(const Interval& scale) {
   return scale.high - scale.low;
 }
 
-/// All differences that are possible.
+/// The range of possible differences.
 Interval differences_on(const Interval& scale) {
   return {-length_of(scale), length_of(scale)};
 }
@@ -105,14 +105,14 @@ std::vector<GroupMean> group_means(std::span<const Repeats> participants, const 
   return means;
 }
 
-/// The F above which there is the share `tail`.
+/// The F quantile with upper tail `tail`.
 double f_beyond(double degrees, double degrees_below, double tail) {
   return quantile(complement(boost::math::fisher_f_distribution<>(degrees, degrees_below), tail));
 }
 
 /// McGraw and Wong's degrees of freedom of the columns' and the residual mean square, weighed as
 /// the correlation weighs them.
-/// \return nothing with fewer than one
+/// \return nothing if fewer than one
 std::optional<double> satterthwaite(const TwoWayMeanSquares& squares, double correlation) {
   const double n = squares.rows;
   const double k = squares.columns;
@@ -142,14 +142,14 @@ std::optional<Interval> interval_of_single(const TwoWayMeanSquares& squares, dou
                   (f_high * of_rows - of_residual) / (others + f_high * of_rows)};
 }
 
-/// Spearman and Brown's correlation of means of k, from that of single ones.
+/// The Spearman-Brown formula: the reliability of means of k from that of single ratings.
 std::optional<double> of_means(double single, double k) {
   const double below = 1.0 + (k - 1.0) * single;
   if (below <= 0.0) return std::nullopt;
   return k * single / below;
 }
 
-/// Somebody's absence may leave differences that are all the same, which have no d_z.
+/// Nothing if leaving out one person leaves equal differences, which have no d_z.
 std::optional<JackknifeEstimate> jackknifed(double d_z, std::span<const double> differences,
                                             double level) {
   if (differences.size() < 3) return std::nullopt;
@@ -157,7 +157,7 @@ std::optional<JackknifeEstimate> jackknifed(double d_z, std::span<const double> 
   for (std::size_t i = 0; i < differences.size(); ++i) {
     std::vector<double> others(differences.begin(), differences.end());
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    const auto other = bare_t_statistic(others);
+    const auto other = t_statistic_without_interval(others);
     if (!other) return std::nullopt;
     without.push_back(other->d);
   }
@@ -183,7 +183,7 @@ void adjust(std::span<MethodDifference> pairs, std::optional<FamilyP> MethodDiff
   }
 }
 
-/// The items of the first method whose class the second has too.
+/// The items of the first method whose class the second method also has.
 Items shared_items(const Items& first, const Items& second) {
   Items shared;
   for (const Item& item : first) {
@@ -204,7 +204,7 @@ MethodDifference difference_of(std::span<const Repeats> participants, const Item
     const auto lower = mean_over(repeats, of_second);
     if (higher && lower) differences.push_back(without_noise(*higher - *lower));
   }
-  const auto statistic = bare_t_statistic(differences);
+  const auto statistic = t_statistic_without_interval(differences);
   const auto t = statistic ? std::optional(statistic->t) : std::nullopt;
   return {first.begin()->method,
           second.begin()->method,
@@ -392,12 +392,12 @@ RetestReliability retest_reliability(std::span<const RatedParticipant> participa
     result.own.push_back(own);
     if (!own) continue;
     known.push_back(*own);
-    if (std::abs(*own) > kFurthestCorrelation) ++result.cut;
-    z.push_back(std::atanh(std::clamp(*own, -kFurthestCorrelation, kFurthestCorrelation)));
+    if (std::abs(*own) > kMaxCorrelation) ++result.cut;
+    z.push_back(std::atanh(std::clamp(*own, -kMaxCorrelation, kMaxCorrelation)));
   }
   result.participants = static_cast<int>(known.size());
   result.quartiles = quartiles(known);
-  const double furthest = std::atanh(kFurthestCorrelation);
+  const double furthest = std::atanh(kMaxCorrelation);
   const MeanEstimate mean = participant_mean(z, {-furthest, furthest}, level);
   if (mean.mean) result.mean = std::tanh(*mean.mean);
   if (const auto interval = mean.known_interval()) {

@@ -1,11 +1,11 @@
-/// \file What ratings on one scale come to: means, agreement between people and with themselves,
-/// how the scale was used, methods compared, catch trials. Pure functions on numbers; the unit is
-/// the participant, so people may differ in how they use the scale, in their scatter and in what a
-/// method does to them. A study with several scales calls them once for each.
+/// \file Statistics of ratings on one scale: means, inter-rater agreement, test-retest reliability,
+/// use of the scale, differences of methods, catch trials. They are pure functions on numbers. The
+/// unit is the participant, so people may differ in their use of the scale, in variance and in the
+/// effects of methods. A study with several scales calls them once for each.
 ///
-/// A participant's repeats of an item are averaged first, so that every item weighs the same.
-/// A participant counts in a mean, a difference or a table only with all items that it is over:
-/// otherwise easy and difficult textures would be mixed in other shares for those who miss some.
+/// A participant's repeats of an item are averaged first, so that all items have equal weight. A
+/// mean, a difference or a table includes only participants with all of its items; otherwise
+/// missing items would confound participants with textures.
 ///
 /// Sources: Shrout, Fleiss 1979 and McGraw, Wong 1996 (intraclass correlations and their
 /// intervals); Donner 1986 (uneven numbers of repeats); Fisher 1925 (means of correlations);
@@ -23,7 +23,7 @@
 
 namespace touchtrial::analysis::rating {
 
-/// What was rated: a texture under its picture, as a method renders it.
+/// A rated item: the texture of a picture, rendered by a method.
 struct Item {
   int texture_class = 0;
   int method = 0;
@@ -37,7 +37,7 @@ struct ItemRating {
   double value = 0.0;
 };
 
-/// The answers of one participant on one scale, in any order. What was not answered is not there.
+/// The answers of one participant on one scale, in any order. Unanswered items are absent.
 struct RatedParticipant {
   std::vector<ItemRating> scored;
   std::vector<double> catches;  ///< of catch trials: a plane without texture under a picture
@@ -48,13 +48,13 @@ struct RatedParticipant {
 
 struct ItemMean {
   Item item;
-  MeanEstimate mean;  ///< over participants' means of their repeats
+  MeanEstimate mean;  ///< over the means of each participant's repeats
 };
 
 /// Over all items of a method, or of a class.
 struct GroupMean {
   int group = 0;      ///< the method, or the class
-  int items = 0;      ///< that the mean is over
+  int items = 0;      ///< number of items in the mean
   MeanEstimate mean;  ///< over the participants who rated all of them
 };
 
@@ -65,7 +65,7 @@ struct RatingMeans {
   std::vector<GroupMean> classes;
 };
 
-/// \param items  that the means are over; ratings of others are left out, twins count once
+/// \param items  the items of the means; other ratings and duplicate items are ignored
 /// \param scale  its ends; intervals are cut to them
 /// \param level  in (0, 1)
 /// \throws std::invalid_argument if the scale's ends are not finite and ascending, a rating lies
@@ -78,14 +78,14 @@ struct RatingMeans {
 /// \name Reliability
 /// \{
 
-/// The two-way analysis of variance of a table with one number in each cell. Rows are what is
-/// judged, columns those who judge.
+/// The two-way analysis of variance of a table with one number in each cell. Rows are items,
+/// columns are judges.
 struct TwoWayMeanSquares {
   int rows = 0;
   int columns = 0;
   double between_rows = 0.0;     ///< squared units of the scale, as are the others
-  double between_columns = 0.0;  ///< people who rate everything higher than others
-  double residual = 0.0;         ///< people who rank the rows differently, and scatter
+  double between_columns = 0.0;  ///< differences between people in overall level
+  double residual = 0.0;         ///< interaction of people and rows, and error
 };
 
 /// \param table  its rows, equally long
@@ -94,38 +94,39 @@ struct TwoWayMeanSquares {
 [[nodiscard]] std::optional<TwoWayMeanSquares> two_way_mean_squares(
     std::span<const std::vector<double>> table);
 
-/// The share of the variance that comes from what is judged. An estimate may lie below 0; the
-/// correlation itself does not.
+/// The share of variance due to the judged items. The estimate may be below 0, the true value
+/// cannot.
 struct IntraclassCorrelation {
   double estimate = 0.0;
-  /// By F quantiles with Satterthwaite's degrees of freedom, not cut to what is possible. Nothing
-  /// if these are fewer than one, which only estimates below 0 cause, or if everybody agrees in
-  /// all. Assumes that people scatter alike: if some scatter much more, it is too narrow.
+  /// By F quantiles with Satterthwaite's degrees of freedom, not cut to the possible range. Nothing
+  /// if there are fewer degrees than one, which happens only for estimates below 0, or if agreement
+  /// is perfect. Assumes equal error variances of people; it is too narrow if some have much more.
   std::optional<Interval> interval{};
 };
 
-/// ICC(2,1), also ICC(A,1): of one judge drawn at random, by absolute agreement.
+/// ICC(2,1), also ICC(A,1): absolute agreement of single judges, drawn at random.
 /// \param level  in (0, 1)
 /// \return nothing if its denominator is not positive, as when all numbers are the same
 /// \throws std::invalid_argument if the level is out of range
 [[nodiscard]] std::optional<IntraclassCorrelation> single_agreement(
     const TwoWayMeanSquares& squares, double level = kConfidenceLevel);
 
-/// ICC(2,k), also ICC(A,k): of the mean of as many judges as there are columns.
+/// ICC(2,k), also ICC(A,k): absolute agreement of the mean over all columns' judges.
 /// \param level  in (0, 1)
-/// \return nothing if its denominator is not positive; no interval if that is so at its lower end
+/// \return nothing if its denominator is not positive; no interval if the denominator is not
+///   positive at its lower end
 /// \throws std::invalid_argument if the level is out of range
 [[nodiscard]] std::optional<IntraclassCorrelation> average_agreement(
     const TwoWayMeanSquares& squares, double level = kConfidenceLevel);
 
-/// ICC(1,1), by a one-way analysis of variance, also of groups that differ in size.
-/// \param groups  each the repeats of one thing; those with fewer than two are left out
+/// ICC(1,1), by a one-way analysis of variance; groups may differ in size.
+/// \param groups  each the repeats of one item; those with fewer than two are left out
 /// \return in [-1, 1]; nothing with fewer than two such groups, or if all numbers are the same
 /// \throws std::invalid_argument if a number is not finite
 [[nodiscard]] std::optional<double> one_way_correlation(
     std::span<const std::vector<double>> groups);
 
-/// How far participants agree about the items.
+/// Inter-rater agreement about the items.
 struct Agreement {
   int items = 0;
   int participants = 0;                             ///< who rated all items
@@ -141,18 +142,17 @@ struct Agreement {
 [[nodiscard]] Agreement agreement(std::span<const RatedParticipant> participants,
                                   std::span<const Item> items, double level = kConfidenceLevel);
 
-/// Correlations further out count as this one in a mean of Fisher's z, which would be infinite for
-/// somebody who repeats every answer.
-inline constexpr double kFurthestCorrelation = 0.99;
+/// Correlations are clamped to this magnitude before Fisher's z, which would be infinite for
+/// perfect repetition.
+inline constexpr double kMaxCorrelation = 0.99;
 
-/// How far participants agree with themselves: ICC(1,1) of each participant's repeats. It is the
-/// one-way form because the order of trials is drawn: nothing but time tells a first repeat from a
-/// second, and drift over time counts against reliability. It depends on how much the items differ
-/// to the participant.
+/// Test-retest reliability: ICC(1,1) of each participant's repeats. The one-way form is used
+/// because first and second repeats are exchangeable in a random order, and drift over time should
+/// reduce reliability. It depends on how much the items differ for the participant.
 struct RetestReliability {
   std::vector<std::optional<double>> own;  ///< one_way_correlation of each participant's items
   int participants = 0;                    ///< who have one
-  int cut = 0;                             ///< of these, beyond kFurthestCorrelation
+  int cut = 0;                             ///< of these, beyond kMaxCorrelation
   Quartiles quartiles{};                   ///< of participants' own correlations, uncut
   std::optional<double> mean{};            ///< by Fisher's z; nothing without participants
   std::optional<Interval> interval{};      ///< t over participants' z; nothing with fewer than two
@@ -169,11 +169,11 @@ struct RetestReliability {
 /// \name Use of the scale
 /// \{
 
-/// Somebody whose answers have a smaller SD, as a share of the scale's length, uses almost none of
-/// it.
+/// A participant whose answers have a smaller SD, as a share of the scale's length, uses a narrow
+/// part of it.
 inline constexpr double kNarrowUse = 0.05;
 
-/// All scored answers of one participant, repeats and items alike.
+/// All scored answers of one participant, over items and repeats.
 struct ScaleUse {
   Proportion at_low{};   ///< answers at the lower end, of all
   Proportion at_high{};  ///< at the upper end
@@ -199,7 +199,7 @@ struct ScaleUses {
 /// \name Methods compared
 /// \{
 
-/// Of one test in a family.
+/// The p of one test in a family.
 struct FamilyP {
   double p = 1.0;
   double holm = 1.0;  ///< holm_adjusted over the pairs that have a p
@@ -209,8 +209,8 @@ struct FamilyP {
 struct StandardisedDifference {
   double d_z = 0.0;
   std::optional<Interval> interval{};  ///< analysis::effect_interval
-  /// Without that assumption, and without most of the bias of d_z: jackknife over participants.
-  /// Nothing with fewer than three, or if all differences but one are the same.
+  /// By the jackknife over participants, without that assumption and without most of the bias of
+  /// d_z. Nothing with fewer than three, or if all differences but one are equal.
   std::optional<JackknifeEstimate> jackknifed{};
 };
 
@@ -224,12 +224,13 @@ struct StandardisedDifference {
 /// How much higher one method is rated than another. A participant's difference is the mean over
 /// the classes that both methods have.
 struct MethodDifference {
-  int first = 0;                    ///< method
-  int second = 0;                   ///< method
-  int classes = 0;                  ///< that both have
-  MeanEstimate difference;          ///< first less second, in units of the scale
-  std::optional<double> t{};        ///< of n - 1 degrees; nothing if all differences are the same
-  std::optional<FamilyP> t_test{};  ///< t_test_p, two-sided; nothing without t
+  int first = 0;            ///< method
+  int second = 0;           ///< method
+  int classes = 0;          ///< that both have
+  MeanEstimate difference;  ///< first less second, in units of the scale
+  std::optional<double>
+      t{};  ///< with n - 1 degrees of freedom; nothing if all differences are equal
+  std::optional<FamilyP> t_test{};     ///< t_test_p, two-sided; nothing without t
   std::optional<FamilyP> sign_flip{};  ///< sign_flip_p; nothing without participants
   std::optional<StandardisedDifference> standardised{};
 };
@@ -244,15 +245,15 @@ struct MethodDifference {
 /// \name Catch trials
 /// \{
 
-/// One participant who rated catch trials and scored ones.
+/// One participant who rated both catch and scored trials.
 struct CatchRating {
   int participant = 0;  ///< place in the order given
   double catches = 0.0;
   double scored = 0.0;  ///< mean over the rated items' means
 };
 
-/// Whether people rate what they feel, and not the picture alone: catch trials have nothing to
-/// feel.
+/// Tests whether people rate what they feel rather than the picture: catch trials have no texture
+/// to feel.
 struct CatchComparison {
   std::vector<CatchRating> participants;
   MeanEstimate catches;     ///< of these participants
@@ -260,7 +261,8 @@ struct CatchComparison {
   int not_lower = 0;        ///< participants who rate catch trials at least as high as scored ones
 };
 
-/// \param items  that catch trials are compared with; otherwise as in rating_means, errors too
+/// \param items  the items to compare catch trials with. Other arguments and errors are those of
+///   rating_means
 [[nodiscard]] CatchComparison catch_comparison(std::span<const RatedParticipant> participants,
                                                std::span<const Item> items, const Interval& scale,
                                                double level = kConfidenceLevel);

@@ -12,7 +12,7 @@ namespace touchtrial::analysis::rating {
 /// count. Class, method and exemplar of a catch trial are empty.
 [[nodiscard]] DataTable ratings_table(const Outcomes& outcomes);
 
-/// What trials.csv and its like have in addition: the rating on each scale.
+/// Additional columns of trial tables: the rating on each scale.
 [[nodiscard]] std::vector<TrialColumn> rating_columns(const Outcomes& outcomes);
 
 }  // namespace touchtrial::analysis::rating

@@ -28,7 +28,7 @@ void warn_of_catches(const RatingReport& report, const ScaleReport& scale, Sente
   if (n > 0 && (scale.catches.difference.mean <= 0.0 || (interval && interval->low <= 0.0))) {
     all.push_back(fmt::format(
         "Catch trials, in which there is nothing to feel, are not rated lower than textures as far "
-        "as {} tell: ratings may be of the pictures alone.",
+        "as {} tell: ratings may reflect the pictures alone.",
         counted(n, "participant")));
   }
   if (names.empty()) return;

@@ -28,8 +28,8 @@ int method_named(const study::Study& study, const std::string& label) {
 MethodPair compared_methods(const study::Study& study, const std::vector<std::string>& labels) {
   if (study.presented_methods() < 2) {
     throw StudyError(one_line(study.source +
-                              ": /methods: has one method, and power is of the difference of two; "
-                              "add another"));
+                              ": /methods: has one method, but `power` needs two to compare; add "
+                              "another"));
   }
   if (labels.empty()) return {};
   if (labels.size() != 2 || labels[0] == labels[1]) {
@@ -41,21 +41,22 @@ MethodPair compared_methods(const study::Study& study, const std::vector<std::st
 
 /// \throws UsageError if a size is too small ever to be significant
 void require_enough(const RatingPlan& plan) {
-  const int fewest = fewest_participants(plan.alpha);
+  const int min_size = min_participants(plan.alpha);
   for (const int size : plan.participants) {
-    if (size >= fewest) continue;
+    if (size >= min_size) continue;
     throw UsageError(fmt::format(
         "--participants: sign flips of {} cannot give a p of {:.4g} or less, whatever the "
         "difference; give {} or more",
-        touchtrial::counted(size, "participant"), plan.alpha, fewest));
+        touchtrial::counted(size, "participant"), plan.alpha, min_size));
   }
 }
 
-/// \throws UsageError if nobody is left
+/// \throws UsageError if no participant completed all sessions
 void require_people(const RatingPool& pool) {
   if (pool.people > 0) return;
   throw UsageError(
-      "power: no simulated participant reached the end of a session: see `touchtrial simulate`");
+      "power: no simulated participant completed all sessions; find the cause with `touchtrial "
+      "simulate`");
 }
 
 class RatingPlanner final : public Planner {

@@ -18,15 +18,16 @@ struct SampleResult {
   bool false_alarm = false;
 };
 
-/// Somebody of a pool, and the sign that the null hypothesis gives to the own differences.
-struct Drawn {
+/// A participant drawn from a pool, and a random sign for the differences under the null
+/// hypothesis.
+struct SampledPerson {
   std::size_t person = 0;
   double sign = 1.0;
 };
 
-std::vector<Drawn> drawn(int people, int size, RandomStream& random) {
-  std::vector<Drawn> sample(static_cast<std::size_t>(size));
-  for (Drawn& one : sample) {
+std::vector<SampledPerson> draw_sample(int people, int size, RandomStream& random) {
+  std::vector<SampledPerson> sample(static_cast<std::size_t>(size));
+  for (SampledPerson& one : sample) {
     one.person = static_cast<std::size_t>(random.below(static_cast<std::uint64_t>(people)));
     one.sign = random.below(2) == 0 ? 1.0 : -1.0;
   }
@@ -38,17 +39,18 @@ bool rejects(std::span<const double> differences, double alpha) {
   return p && *p <= alpha;
 }
 
-SampleResult result_of(const PooledScale& scale, std::span<const Drawn> sample, double alpha) {
+SampleResult result_of(const PooledScale& scale, std::span<const SampledPerson> sample,
+                       double alpha) {
   std::vector<double> differences;
   std::vector<double> under_null;
-  for (const Drawn& one : sample) {
+  for (const SampledPerson& one : sample) {
     const auto& difference = scale.people[one.person].difference;
     if (!difference) continue;
     differences.push_back(*difference);
     under_null.push_back(one.sign * *difference);
   }
-  const double most = scale.ends.high - scale.ends.low;
-  const auto interval = analysis::participant_mean(differences, {-most, most}).known_interval();
+  const double range = scale.ends.high - scale.ends.low;
+  const auto interval = analysis::participant_mean(differences, {-range, range}).known_interval();
   SampleResult result;
   if (interval) result.width = interval->high - interval->low;
   result.significant = rejects(differences, alpha);
@@ -77,7 +79,7 @@ DifferencePower power_of(std::span<const std::vector<SampleResult>> samples, std
 
 }  // namespace
 
-int fewest_participants(double alpha) {
+int min_participants(double alpha) {
   int participants = 2;
   while (std::ldexp(2.0, -participants) > alpha) ++participants;
   return participants;
@@ -85,7 +87,7 @@ int fewest_participants(double alpha) {
 
 double attainable_error(int participants, double alpha) {
   if (participants > analysis::kExactSignFlips) return alpha;
-  // Patterns of signs come in pairs of opposite ones, which have the same p.
+  // Opposite patterns of signs have the same p.
   const double pairs = std::ldexp(1.0, participants - 1);
   return std::floor(alpha * pairs) / pairs;
 }
@@ -96,7 +98,7 @@ std::vector<RatingRow> rows_of(const RatingPool& pool, const RatingPlan& plan, i
     std::vector<std::vector<SampleResult>> samples(static_cast<std::size_t>(plan.runs));
     in_parallel(jobs, samples.size(), [&](std::size_t run) {
       RandomStream random(plan.seed, "power: sample of " + std::to_string(size), run);
-      const std::vector<Drawn> sample = drawn(pool.people, size, random);
+      const std::vector<SampledPerson> sample = draw_sample(pool.people, size, random);
       for (const PooledScale& scale : pool.scales) {
         samples[run].push_back(result_of(scale, sample, plan.alpha));
       }

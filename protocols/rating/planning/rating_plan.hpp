@@ -1,5 +1,5 @@
-/// \file How often the difference of two methods' ratings is found with a number of participants,
-/// and how wide its interval is. Source: docs/planning.md, "Power of rating studies".
+/// \file Power of the difference between two methods' ratings, and the width of its interval, by
+/// number of participants. Source: docs/planning.md, "Power of rating studies".
 #pragma once
 
 #include "analysis/statistics/proportion.hpp"
@@ -20,47 +20,47 @@ struct RatingPlan {
   double alpha = 0.05;            ///< of the sign-flip test, two-sided
 };
 
-/// Of one scale, over samples.
+/// Power on one scale, over samples.
 struct DifferencePower {
   analysis::Proportion significant;  ///< sign_flip_p
   analysis::Interval power{};        ///< Wilson's, 95 %
-  /// The same samples with a random sign on everybody's difference.
+  /// Significant results for the same samples with random signs of the differences.
   analysis::Proportion false_alarms;
   analysis::Interval type_one{};
-  /// Mean width of the 95 % t interval of the mean difference, cut to the scale; nothing if no
+  /// Mean width of the 95 % t interval of the mean difference, clipped to the scale; empty if no
   /// sample has one.
   std::optional<double> width;
-  int without = 0;  ///< samples with fewer than two differences, and so no interval
+  int without = 0;  ///< samples without an interval, because they have fewer than two differences
 };
 
 struct RatingRow {
   int participants = 0;
-  double attainable = 0.0;              ///< attainable_error
-  std::vector<DifferencePower> scales;  ///< of the pool
+  double attainable = 0.0;              ///< attainable_error()
+  std::vector<DifferencePower> scales;  ///< in the order of the pool
 };
 
-/// The least number of participants of whom sign flips can give a p of `alpha` or less.
+/// The minimum number of participants with which sign flips can give a p of `alpha` or less.
 /// \param alpha  in (0, 1)
-[[nodiscard]] int fewest_participants(double alpha);
+[[nodiscard]] int min_participants(double alpha);
 
-/// The largest type-I error that sign flips of so many participants can have.
+/// The maximum type-I error that sign flips of this number of participants can have.
 /// \param alpha  in (0, 1)
 [[nodiscard]] double attainable_error(int participants, double alpha);
 
-/// One row for each size. A sample draws participants of the pool, each anew from all of them, with
-/// the differences that they have; it has the same participants on every scale.
+/// Computes one row for each size. A sample draws participants from the pool with replacement; it
+/// has the same participants on every scale.
 /// \pre the pool has at least one participant
 /// \param jobs  threads; results do not depend on them
 [[nodiscard]] std::vector<RatingRow> rows_of(const RatingPool& pool, const RatingPlan& plan,
                                              int jobs);
 
-/// What the numbers are of, in words.
+/// The setting of a power analysis, in words.
 struct RatingPlanSetting {
   std::string study;
   std::string subject;  ///< words_of the subject model
   std::string first;    ///< the methods' labels
   std::string second;
-  std::string device{};  ///< analysis::device_words of what the subject holds
+  std::string device{};  ///< analysis::device_words of the subject's device
 };
 
 struct RatingPlanReport {

@@ -16,7 +16,7 @@ namespace {
 using analysis::MeanEstimate;
 using nlohmann::ordered_json;
 
-/// Over the participants of the pool who have the number.
+/// The mean over the participants of the pool who have the number.
 MeanEstimate pool_mean(const PooledScale& scale, std::optional<double> PooledRating::*what) {
   std::vector<double> values;
   for (const PooledRating& one : scale.people) {
@@ -27,7 +27,7 @@ MeanEstimate pool_mean(const PooledScale& scale, std::optional<double> PooledRat
       values, what == &PooledRating::difference ? analysis::Interval{-length, length} : scale.ends);
 }
 
-/// The error of a mean that the pool leaves, because it is finite.
+/// The standard error of a mean, due to the finite pool.
 std::optional<double> pool_error(const MeanEstimate& mean) {
   if (!mean.sd) return std::nullopt;
   return *mean.sd / std::sqrt(static_cast<double>(mean.participants));

@@ -16,7 +16,7 @@ namespace {
 using analysis::rating::Item;
 using analysis::rating::RatedParticipant;
 
-/// Every class by both methods.
+/// Every class with both methods.
 std::vector<Item> items_of(const study::Study& study, const MethodPair& pair) {
   std::vector<Item> items;
   for (int shown = 0; shown < static_cast<int>(study.classes.size()); ++shown) {
@@ -26,7 +26,7 @@ std::vector<Item> items_of(const study::Study& study, const MethodPair& pair) {
   return items;
 }
 
-/// \return the scored ratings on each scale; nothing if a session ended early
+/// \return the scored ratings on each scale; empty if a session ended early
 std::optional<std::vector<RatedParticipant>> ratings_of_person(const PoolSetting& setting,
                                                                int number, std::size_t scales) {
   std::vector<RatedParticipant> ratings(scales);
@@ -39,11 +39,11 @@ std::optional<std::vector<RatedParticipant>> ratings_of_person(const PoolSetting
       ratings[scale].scored.push_back({{felt.class_index, felt.method}, values.at(scale)});
     }
   };
-  if (!hold_pool_sessions(setting, number, note)) return std::nullopt;
+  if (!run_pool_sessions(setting, number, note)) return std::nullopt;
   return ratings;
 }
 
-/// By the statistics of the report, of this participant alone.
+/// Computes the statistics of the report for a single participant.
 PooledRating pooled(const RatedParticipant& person, std::span<const Item> items,
                     const MethodPair& pair, const analysis::Interval& ends) {
   const std::span<const RatedParticipant> alone(&person, 1);

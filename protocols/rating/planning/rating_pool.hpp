@@ -1,4 +1,5 @@
-/// \file Ratings of simulated participants, from whom studies of any size are drawn.
+/// \file A pool of simulated participants with their ratings, from which studies of any size are
+/// drawn.
 /// Source: docs/planning.md, "Power of rating studies".
 #pragma once
 
@@ -16,18 +17,18 @@
 
 namespace touchtrial::planning::rating {
 
-/// What is compared: indices of two methods of the study.
+/// Indices of the two compared methods of the study.
 struct MethodPair {
   int first = 0;
   int second = 1;
 };
 
-/// What one participant's ratings on one scale come to, as in `report`: each texture weighs the
-/// same. Nothing if a texture was never rated.
+/// One participant's mean ratings on one scale. As in `report`, each texture has the same weight,
+/// and a mean is missing if a texture was never rated.
 struct PooledRating {
   std::optional<double> first;       ///< mean with the first method
   std::optional<double> second;      ///< with the second
-  std::optional<double> difference;  ///< first less second
+  std::optional<double> difference;  ///< first minus second
 
   friend bool operator==(const PooledRating&, const PooledRating&) = default;
 };
@@ -39,20 +40,20 @@ struct PooledScale {
   std::vector<PooledRating> people;  ///< the same, in the same order, on every scale
 };
 
-/// Participants who each did all sessions of the study.
+/// Participants who completed all sessions of the study.
 struct RatingPool {
   std::vector<PooledScale> scales;  ///< of the study
   int people = 0;
-  int unfinished = 0;  ///< participants whose sessions did not reach their end; not among `people`
+  int unfinished = 0;  ///< participants with an incomplete session; not counted in `people`
 };
 
 struct RatingPoolOptions {
   int people = 100;        ///< >= 2
-  std::uint64_t seed = 1;  ///< of everything random in participants, as in `simulate --seed`
+  std::uint64_t seed = 1;  ///< of all random numbers of participants, as in `simulate --seed`
   int jobs = 1;            ///< threads; results do not depend on them
 };
 
-/// Simulates sessions.
+/// Simulates the sessions of a pool.
 /// \param pair  two different methods of the study
 /// \param progress  called after each participant, from one thread at a time
 [[nodiscard]] RatingPool simulated_ratings(const study::StudyKey& key,

@@ -11,11 +11,11 @@
 namespace touchtrial::simulation::rating {
 namespace {
 
-constexpr double kQuickestThoughtS = 1.5;
-constexpr double kSlowestThoughtS = 6.0;
+constexpr double kMinThoughtS = 1.5;
+constexpr double kMaxThoughtS = 6.0;
 /// The distance beyond the noise, in its standard deviations, at which a fit has fallen to 1/e.
 constexpr double kScale = 1.5;
-// How people differ in their use of a scale.
+// Differences between participants in the use of a scale.
 constexpr double kShiftSd = 0.08;
 constexpr double kLogStretchSd = 0.25;
 
@@ -101,13 +101,13 @@ double RatingParticipant::fit_of(engine::FeltFeatures felt, double noise_factor,
   for (double& feature : felt) feature += shared + noise_factor * noise.own * random.normal();
   const auto expected = expectations_.find(picture_);
   if (expected == expectations_.end()) return 0.5;
-  engine::FeltFeatures wanted = expected->second;
-  if (individual_.floor()) individual_.floor()->apply_to(wanted);
+  engine::FeltFeatures perceived = expected->second;
+  if (individual_.floor()) individual_.floor()->apply_to(perceived);
   double squares = 0.0;
   for (std::size_t i = 0; i < felt.size(); ++i) {
-    squares += (felt[i] - wanted[i]) * (felt[i] - wanted[i]) / (sd * sd);
+    squares += (felt[i] - perceived[i]) * (felt[i] - perceived[i]) / (sd * sd);
   }
-  // The noise alone makes a mean square of 1.
+  // Noise alone gives a mean square of 1.
   const double beyond = std::max(0.0, squares / static_cast<double>(felt.size()) - 1.0);
   return std::exp(-std::sqrt(beyond) / kScale);
 }
@@ -115,8 +115,8 @@ double RatingParticipant::fit_of(engine::FeltFeatures felt, double noise_factor,
 ParticipantAnswer RatingParticipant::choose(const engine::FeltFeatures& felt,
                                             RandomStream& random) {
   const Moment moment = condition_.before(begun(), 0);
-  const bool lapses = random.uniform() < moved(individual_.lapse(), moment.lapse_log_odds);
-  const double thought_s = random.uniform(kQuickestThoughtS, kSlowestThoughtS);
+  const bool lapses = random.uniform() < with_log_odds(individual_.lapse(), moment.lapse_log_odds);
+  const double thought_s = random.uniform(kMinThoughtS, kMaxThoughtS);
   const double fit = fit_of(felt, moment.noise_factor, random);
   ParticipantAnswer answer;
   answer.thought = std::chrono::milliseconds(std::llround(thought_s * 1000.0));

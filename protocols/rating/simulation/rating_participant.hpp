@@ -1,6 +1,6 @@
-/// \file A simulated participant who rates how well a felt texture fits a picture: the nearer what
-/// is felt is to what the picture made them expect, the better. Source: docs/rating.md, "Simulated
-/// participants".
+/// \file A simulated participant who rates how well a felt texture fits a picture. The rating is the
+/// higher, the closer the texture is to the expectation from the picture. Source: docs/rating.md,
+/// "Simulated participants".
 #pragma once
 
 #include "protocols/rating/study/rating.hpp"
@@ -17,14 +17,14 @@
 
 namespace touchtrial::simulation::rating {
 
-/// What a picture makes people expect to feel, by class label: the mean over the class's fields by
-/// the methods that are no controls. Natural logarithms of newtons.
+/// Features that participants expect from the picture of a class, by label: the mean over the
+/// class's fields of all methods except controls. Natural logarithms of newtons.
 using Expectations = std::map<std::string, engine::FeltFeatures>;
 
-/// Feels with noise of its own, and rates by the distance to the expectation beyond that noise,
-/// in its standard deviations, on a part of the scale that is its own; or lapses, and rates
-/// anything. A picture of which nothing is expected, as in practice, is rated in the middle. Refers
-/// to subject, study and expectations, which must outlive it.
+/// Feels with noise, and rates by the distance from the expectation in standard deviations of that
+/// noise, with an individual use of the scale; in a lapse, gives any rating. A picture without an
+/// expectation, as in practice, is rated in the middle. Subject, study and expectations must
+/// outlive it.
 class RatingParticipant final : public SimulatedParticipant {
  public:
   /// \param number  from 1
@@ -41,7 +41,7 @@ class RatingParticipant final : public SimulatedParticipant {
   void begin_visit(int visit, TrialCourse course) override;
 
  private:
-  /// How well it fits, 0 to 1, before a place on the scale is chosen for it.
+  /// The goodness of fit, 0 to 1, before it is mapped to the scale.
   [[nodiscard]] double fit_of(engine::FeltFeatures felt, double noise_factor,
                               RandomStream& random) const;
 
@@ -52,8 +52,8 @@ class RatingParticipant final : public SimulatedParticipant {
   int number_;
   Individual individual_;
   Condition condition_;
-  double shift_;    ///< of all this person's ratings, as a share of the scale
-  double stretch_;  ///< of their differences
+  double shift_;    ///< of all ratings of this person, as a share of the scale
+  double stretch_;  ///< factor on the differences of the ratings
   std::string picture_;
 };
 

@@ -21,7 +21,7 @@
 namespace touchtrial::study::rating {
 namespace {
 
-constexpr const char* kOwnScale = "fit";  ///< whose words the languages have
+constexpr const char* kOwnScale = "fit";  ///< the scale that has texts in the language files
 
 void describe_words(ObjectIo& io, std::string_view key, Translated& words, const About& about) {
   io.member(key, about, true, [&words](ValueIo& value) { describe_translated(value, words); });
@@ -48,7 +48,7 @@ void describe_scale(ObjectIo& io, RatedScale& scale) {
              {.meaning = "2 to 11: numbers from 1; 0: a line from 0 to 1, in steps of .001",
               .range = "0, 2 to 11"});
   io.rule([&scale](const JsonValue& place, const JsonObject& /*object*/) {
-    if (scale.points == 1) place.refuse_below("/points", "must be 0, a line, or at least 2");
+    if (scale.points == 1) place.refuse_below("/points", "is 1; use 0 for a line, or 2 to 11");
   });
 }
 
@@ -81,7 +81,7 @@ std::string section_schema() {
                            [&usual](ObjectIo& io) { describe(io, usual); });
 }
 
-/// Deals a class's images like a shuffled pack of cards: all are used before any repeats.
+/// Chooses a class's images in random order; all are used before any repeats.
 class ImageDeck {
  public:
   explicit ImageDeck(std::size_t images) : images_(images) {}
@@ -110,9 +110,9 @@ Trial rated_trial(int class_index, int block) {
   return trial;
 }
 
-/// Every texture by each of these methods once, in random order.
-std::vector<Trial> drawn_pass(const Study& study, int block, const std::vector<int>& methods,
-                              RandomStream& random, std::vector<ImageDeck>& decks) {
+/// Draws a pass: every texture once with each of these methods, in random order.
+std::vector<Trial> draw_pass(const Study& study, int block, const std::vector<int>& methods,
+                             RandomStream& random, std::vector<ImageDeck>& decks) {
   std::vector<Trial> trials;
   for (int shown = 0; shown < static_cast<int>(study.classes.size()); ++shown) {
     for (const int method : methods) {
@@ -121,28 +121,28 @@ std::vector<Trial> drawn_pass(const Study& study, int block, const std::vector<i
       plane.field.method = method;
       plane.field.exemplar = decks[static_cast<std::size_t>(shown)].next(random);
       if (study.trials.rove_db == 0.0) continue;
-      plane.gain_db = study.trials.own_gain_db() + drawn_rove_db(study.trials.rove_db, random);
+      plane.gain_db = study.trials.own_gain_db() + draw_rove_db(study.trials.rove_db, random);
     }
   }
   shuffle(std::span<Trial>(trials), random);
   return trials;
 }
 
-/// The trials of a block: passes, in each of which every texture comes once.
-std::vector<Trial> drawn_block(const Study& study, const ScheduleDraw& draw, int block,
-                               RandomStream& random, std::vector<ImageDeck>& decks) {
+/// Draws the passes of a block.
+std::vector<Trial> draw_block(const Study& study, const ScheduleDraw& draw, int block,
+                              RandomStream& random, std::vector<ImageDeck>& decks) {
   const bool by_method = study.trials.blocks == Blocks::by_method;
   std::vector<int> methods = williams_row(study.presented_methods(), draw.method_order);
   if (by_method) methods = {methods[static_cast<std::size_t>(block)]};
   std::vector<Trial> trials;
   for (int pass = 0; pass < (by_method ? study.trials.repeats : 1); ++pass) {
-    std::ranges::move(drawn_pass(study, block, methods, random, decks), std::back_inserter(trials));
+    std::ranges::move(draw_pass(study, block, methods, random, decks), std::back_inserter(trials));
   }
   return trials;
 }
 
-/// Planes without texture, each under the picture of a random class, at random places but the
-/// first.
+/// Adds planes without texture, each with the picture of a random class, at random places except
+/// the first.
 void add_catch_trials(const Study& study, int count, RandomStream& random,
                       std::vector<Trial>& trials) {
   for (int i = 0; i < count; ++i) {
@@ -170,12 +170,12 @@ int blocks_of(const Study& study) {
                                                   : study.trials.repeats;
 }
 
-Schedule drawn_schedule(const Study& study, const ScheduleDraw& draw) {
+Schedule draw_schedule(const Study& study, const ScheduleDraw& draw) {
   RandomStream random(draw.secret, "rating: order", static_cast<std::uint64_t>(draw.visit));
   std::vector<ImageDeck> decks = decks_of(study);
   Schedule schedule;
   for (int block = 0; block < blocks_of(study); ++block) {
-    std::ranges::move(drawn_block(study, draw, block, random, decks),
+    std::ranges::move(draw_block(study, draw, block, random, decks),
                       std::back_inserter(schedule.trials));
   }
   add_catch_trials(study, study.trials.catch_trials, random, schedule.trials);
@@ -186,7 +186,7 @@ Schedule drawn_schedule(const Study& study, const ScheduleDraw& draw) {
 class RatingOrder final : public Order {
  public:
   RatingOrder(const Study& study, const ScheduleDraw& draw)
-      : Order(drawn_schedule(study, draw), draw.secret), study_(study), draw_(draw) {}
+      : Order(draw_schedule(study, draw), draw.secret), study_(study), draw_(draw) {}
 
   std::vector<Trial> restarted(int block, int restarts_before, int first_trial) const override {
     if (block < 0 || block >= blocks_of(study_) || restarts_before < 0) {
@@ -196,7 +196,7 @@ class RatingOrder final : public Order {
                         fmt::format("rating: block {}, restart {}", block, restarts_before + 1),
                         static_cast<std::uint64_t>(draw_.visit));
     std::vector<ImageDeck> decks = decks_of(study_);
-    std::vector<Trial> trials = drawn_block(study_, draw_, block, random, decks);
+    std::vector<Trial> trials = draw_block(study_, draw_, block, random, decks);
     const auto caught = std::ranges::count_if(schedule().trials, [block](const Trial& trial) {
       return trial.place.block == block && trial.role == Role::catch_trial;
     });
@@ -249,7 +249,7 @@ void RatingTask::check(const JsonValue& file, const Study& study) const {
     const auto require = [&](const char* key, const Translated& words) {
       if (words.contains(language) || (words.empty() && scale.id == kOwnScale)) return;
       file.refuse_below(fmt::format("/rating/scales/{}/{}/{}", i, key, language),
-                        "is missing, the study's language; add it");
+                        "is missing, but is the study's language; add it");
     };
     require("text", scale.text);
     require("low", scale.low);
@@ -260,18 +260,20 @@ void RatingTask::check(const JsonValue& file, const Study& study) const {
     file.refuse_below(std::string("/trials") + key, what);
   };
   if (trials.order != TrialOrder::shuffled) refuse("/order", "must be \"shuffled\" for ratings");
-  if (trials.lead_in > 0) refuse("/lead_in", "must be 0: ratings have no lead-in");
-  if (trials.max_run > 0)
-    refuse("/max_run", "must be 0: every texture is felt once before any is repeated");
+  if (trials.lead_in > 0) refuse("/lead_in", "must be 0, because ratings have no lead-in");
+  if (trials.max_run > 0) {
+    refuse("/max_run", "must be 0, because every texture is felt once before any is repeated");
+  }
   if (study.visits.methods == VisitMethods::divided) {
     file.refuse_below("/visits/methods",
-                      "must be \"all\": everybody rates every method at each visit");
+                      "must be \"all\", because participants rate every method at each visit");
   }
   if (study.session.confidence_levels > 0) {
-    file.refuse_below("/session/confidence", "must be 0: a rating has no confidence");
+    file.refuse_below("/session/confidence", "must be 0, because ratings have no confidence");
   }
   if (study.session.sight == Sight::blindfold) {
-    file.refuse_below("/session/sight", "must be \"curtain\": pictures are rated against textures");
+    file.refuse_below("/session/sight",
+                      "must be \"curtain\", because participants compare textures with pictures");
   }
 }
 
@@ -284,7 +286,7 @@ std::string RatingTask::in_clear() const {
 Practice RatingTask::practice(const Study& study, const ScheduleDraw& draw, int round) const {
   Practice practice = Task::practice(study, draw, round);
   practice.labels.clear();
-  practice.criterion = 0;  // no rating is right
+  practice.criterion = 0;  // ratings are neither right nor wrong
   for (Trial& trial : practice.trials) {
     trial.right.reset();
     trial.picture = trial.field().class_index;

@@ -1,5 +1,5 @@
-/// \file Ratings: a participant feels a texture, then sees a picture, and says on one or several
-/// scales how well they fit. Source: docs/rating.md.
+/// \file The protocol "rating": a participant feels a texture, then sees a picture, and rates on one
+/// or several scales how well they fit. Source: docs/rating.md.
 #pragma once
 
 #include "study/protocol.hpp"
@@ -12,8 +12,8 @@ namespace touchtrial::study::rating {
 /// A scale of the study file.
 struct RatedScale {
   std::string id;  ///< a plain name, unique
-  /// \name The words of the question and of the scale's ends; of the scale "fit" they may be empty:
-  /// then the languages' own
+  /// \name Texts of the question and of the scale's ends. Those of the scale "fit" may be empty:
+  /// the language file then has them.
   ///@{
   Translated text;
   Translated low;
@@ -28,8 +28,8 @@ inline constexpr int kMaxScales = 6;
 /// The study file's "rating".
 struct RatingOptions {
   std::vector<RatedScale> scales{{.id = "fit", .text = {}, .low = {}, .high = {}}};
-  /// Practice begins with the ends of the scale: a plane without texture, and a texture under its
-  /// own picture.
+  /// Whether practice begins with examples of the scale's ends: a plane without texture, and a
+  /// texture with its own picture.
   bool anchors = true;
 };
 

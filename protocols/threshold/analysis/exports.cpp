@@ -6,69 +6,18 @@
 #include "protocols/threshold/analysis/report.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
 namespace touchtrial::analysis::threshold {
 namespace {
 
-using Row = std::vector<DataCell>;
-
-DataCell censored_cell(const procedures::Threshold& threshold) {
-  const std::string_view word = word_of(threshold.censored);
-  return word.empty() ? DataCell{} : DataCell(std::string(word));
-}
-
-void add_threshold(Row& row, const procedures::Threshold& threshold) {
-  row.push_back(or_nothing(threshold.level));
-  row.push_back(or_nothing(threshold.low));
-  row.push_back(or_nothing(threshold.high));
-  row.push_back(censored_cell(threshold));
-}
-
-/// Where the track's threshold lies, as the group's mean takes it; an open end is empty.
-void add_bounds(Row& row, const TrackReport& track, const std::vector<double>& levels) {
-  const Bounds bounds = track.estimate ? bounds_of(*track.estimate, levels) : Bounds{};
-  for (const double end : {bounds.low, bounds.high}) {
-    row.push_back(std::isfinite(end) ? DataCell(end) : DataCell{});
-  }
-}
-
-Row threshold_row(const ThresholdReport& report, const TrackReport& track) {
-  const StandardReport& standard = report.standards[track.standard];
-  const auto label = static_cast<std::size_t>(standard.of.class_index);
-  const procedures::Threshold threshold =
-      track.estimate ? track.estimate->threshold : procedures::Threshold{};
-  const procedures::Threshold reversals = track.reversals.value_or(procedures::Threshold{});
-  const Quantity weber = quantity_of(report.options(), standard.of, threshold);
-  Row row{track.participant,
-          std::int64_t{track.track},
-          label < report.classes.size() ? DataCell(report.classes[label]) : DataCell{},
-          standard.of.value,
-          std::int64_t{track.answers.n},
-          std::int64_t{track.answers.correct},
-          std::int64_t{track.catches.n},
-          std::int64_t{track.catches.correct}};
-  add_threshold(row, threshold);
-  add_bounds(row, track, standard.levels);
-  row.push_back(or_nothing(reversals.level));
-  row.push_back(censored_cell(reversals));
-  row.push_back(or_nothing(weber.value));
-  row.push_back(or_nothing(weber.low));
-  row.push_back(or_nothing(weber.high));
-  row.push_back(or_nothing(track.fit ? std::optional(track.fit->p) : std::nullopt));
-  row.push_back(or_nothing(track.learning_db));
-  row.push_back(or_nothing(report.criterion));
-  return row;
-}
-
 std::string kind_word(const TrialOutcome& trial) {
   if (in_control(trial)) return "control";
   return trial.role == study::Role::catch_trial ? "catch" : "track";
 }
 
-/// A trial's choice; empty if it is none of the study's.
+/// A trial's choice; empty if it is not one of the study's.
 DataCell choice_cell(const Outcomes& outcomes, const std::optional<int>& choice) {
   if (!choice || *choice < 0 || static_cast<std::size_t>(*choice) >= outcomes.choices.size()) {
     return std::monostate{};
@@ -76,7 +25,7 @@ DataCell choice_cell(const Outcomes& outcomes, const std::optional<int>& choice)
   return outcomes.choices[static_cast<std::size_t>(*choice)];
 }
 
-/// What a track is about; nothing for trials of none.
+/// The standard of a trial's track; nothing for trials without a track.
 std::optional<study::threshold::Standard> standard_of(const Outcomes& outcomes,
                                                       const TrialOutcome& trial) {
   if (!trial.chosen || trial.chosen->track < 1) return std::nullopt;
@@ -96,7 +45,7 @@ DataCell standard_cell(const Outcomes& outcomes, const TrialOutcome& trial) {
   return standard ? DataCell(study::threshold::words_of(outcomes.design, *standard)) : DataCell{};
 }
 
-/// The level of a trial, if it has one of the study's.
+/// The level of a trial, if it is one of the study's.
 std::optional<double> level_of(const Outcomes& outcomes, const TrialOutcome& trial) {
   const auto& levels = study::threshold::options_of(outcomes.design).track.levels;
   if (!trial.chosen || trial.chosen->level < 0) return std::nullopt;
@@ -104,7 +53,7 @@ std::optional<double> level_of(const Outcomes& outcomes, const TrialOutcome& tri
   return level < levels.size() ? std::optional(levels[level]) : std::nullopt;
 }
 
-/// What the comparison of a trial was, in the units of the standard.
+/// The comparison of a trial, in the units of the standard.
 DataCell comparison_cell(const Outcomes& outcomes, const TrialOutcome& trial) {
   const auto standard = standard_of(outcomes, trial);
   const auto level = level_of(outcomes, trial);
@@ -113,7 +62,8 @@ DataCell comparison_cell(const Outcomes& outcomes, const TrialOutcome& trial) {
   return study::threshold::comparison_at(options, *standard, *level);
 }
 
-Row trial_row(const Outcomes& outcomes, const choices::Person& person, const TrialOutcome& trial) {
+std::vector<DataCell> trial_row(const Outcomes& outcomes, const choices::Person& person,
+                                const TrialOutcome& trial) {
   return {person.name,
           std::int64_t{trial.row.session},
           std::int64_t{trial.row.trial},
@@ -188,21 +138,6 @@ std::vector<TrialColumn> threshold_trial_columns() {
           {"level_db", true, [](const TrialView& trial) {
              return or_nothing(level_of(*trial.study, *trial.outcome));
            }}};
-}
-
-DataTable thresholds_table(const ThresholdReport& report, bool simulated) {
-  DataTable table{{"participant",  "track",      "class",        "standard_value",
-                   "trials",       "right",      "catch_trials", "catch_right",
-                   "threshold_db", "low_db",     "high_db",      "censored",
-                   "at_least_db",  "at_most_db", "reversals_db", "reversals_censored",
-                   "weber",        "weber_low",  "weber_high",   "fit_p",
-                   "learning_db",  "criterion",  "simulated"},
-                  {}};
-  for (const TrackReport& track : report.tracks) {
-    table.rows.push_back(threshold_row(report, track));
-    table.rows.back().push_back(flag(simulated));
-  }
-  return table;
 }
 
 DataTable track_trials_table(const Outcomes& outcomes) {

@@ -1,7 +1,7 @@
-/// \file What `export` writes of thresholds: tables (columns: docs/thresholds.md), and a long table of
-/// trials with the R script that fits the study's function with a guess and a lapse rate to it,
-/// participants and their standards being random. Source: Moscatelli, Mezzetti, Lacquaniti 2012,
-/// Journal of Vision 12(11):26.
+/// \file Exports of thresholds: tables (columns: docs/thresholds.md), and a long table of trials
+/// with the R script that fits the study's psychometric function, with guess and lapse rates and
+/// random effects of participants and their standards. Source: Moscatelli, Mezzetti, Lacquaniti
+/// 2012, Journal of Vision 12(11):26.
 #pragma once
 
 #include "analysis/exports/trial_tables.hpp"
@@ -14,14 +14,11 @@
 
 namespace touchtrial::analysis::threshold {
 
-/// thresholds.csv: one row for each participant and track.
-[[nodiscard]] DataTable thresholds_table(const ThresholdReport& report, bool simulated);
-
 /// tracks.csv: one row for each answered trial, as it was felt, of sessions that count. The track
 /// of a trial of the control block is empty.
 [[nodiscard]] DataTable track_trials_table(const Outcomes& outcomes);
 
-/// What trials.csv and its like have in addition: track, standard and level_db.
+/// Additional columns of trial tables: track, standard and level_db.
 [[nodiscard]] std::vector<TrialColumn> threshold_trial_columns();
 
 /// The part of the script that is the same for every study: threshold_model_functions.R, built in.
@@ -32,7 +29,7 @@ namespace touchtrial::analysis::threshold {
 
 /// Writes threshold_model.csv, threshold_model.R and threshold_model.md.
 /// \return the files, in the order written
-/// \throws UsageError for same or different, which has no guess rate
+/// \throws UsageError for the task "same or different", which has no guess rate
 /// \throws FileError as write_export does
 std::vector<std::filesystem::path> export_threshold_model(const record::StudyStore& store,
                                                           const Outcomes& outcomes,

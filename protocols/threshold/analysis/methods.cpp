@@ -205,7 +205,7 @@ void add_estimates(const ThresholdReport& report, Sentences& all) {
   all.push_back(
       {"It was estimated from the answers at each level alone, catch trials included, and not from "
        "the procedure's beliefs: its 95 % interval holds the thresholds whose likelihood, averaged "
-       "over widths of 2 to 50 dB and lapse rates up to 0.5, is not rejected by a ratio test, and "
+       "over widths of 2 to 60 dB and lapse rates up to 0.5, is not rejected by a ratio test, and "
        "its value is the likeliest one of observers with usual widths and lapse rates."});
   all.push_back(
       {"Participants with a threshold beyond the levels count by that bound: the mean is "

@@ -1,4 +1,4 @@
-/// \file What a participant's tracks come to in a mean over participants. Source:
+/// \file One participant's threshold from the tracks, for means over participants. Source:
 /// docs/thresholds.md, "Groups".
 #pragma once
 
@@ -10,17 +10,17 @@
 
 namespace touchtrial::analysis::threshold {
 
-/// As what a track counts: with its observer's threshold if that lies inside the levels, else as
-/// beyond the level at that end. If it lies inside and the interval is open on both sides, nothing
-/// is known. That the interval of a threshold leaves the levels does not make it censored: a mean
-/// without the numbers of those who are near an end would lie too far from it.
+/// The bounds with which a track enters the mean. They are the observer's threshold if that lies
+/// inside the levels, and otherwise the range beyond the level at that end. If it lies inside but
+/// its interval is open on both sides, the bounds are open. An interval that extends beyond the
+/// levels does not make the threshold censored: dropping numbers near an end would bias the mean.
 [[nodiscard]] Bounds bounds_of(const procedures::ThresholdEstimate& track,
                                std::span<const double> levels);
 
-/// What is known of one participant's threshold of a standard, in units of the level.
+/// One participant's threshold at a standard, in units of the level.
 struct PersonThreshold {
   Bounds bounds{};
-  /// no: it is known; undetermined: neither it nor a side.
+  /// no: the threshold is known; undetermined: neither the threshold nor its side is known.
   procedures::Censored censored = procedures::Censored::undetermined;
 
   friend bool operator==(const PersonThreshold&, const PersonThreshold&) = default;

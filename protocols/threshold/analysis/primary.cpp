@@ -24,7 +24,7 @@ using study::Estimand;
 
 using Tracks = std::vector<TrackReport>;
 
-/// The people of a selection who have all visits that decide, with their trials.
+/// The people of a selection with all required visits, and their trials.
 std::vector<Person> people_in(const Outcomes& outcomes, const Selection& selection) {
   const choices::FirstSessions first(outcomes);
   const std::set<int> whole = choices::people_with_all_visits(outcomes, selection, first);
@@ -32,7 +32,7 @@ std::vector<Person> people_in(const Outcomes& outcomes, const Selection& selecti
   for (const TrialOutcome& trial : outcomes.trials) {
     const int person = first.of(trial.row.session);
     if (!is_answer(trial) || !selection.admits(trial)) continue;
-    if (!outcomes.design.decides(trial.visit) || !whole.contains(person)) continue;
+    if (!outcomes.design.enters_analysis(trial.visit) || !whole.contains(person)) continue;
     people[person].name = trial.participant;
     people[person].trials.push_back(&trial);
   }
@@ -44,7 +44,7 @@ std::vector<Person> people_in(const Outcomes& outcomes, const Selection& selecti
   return all;
 }
 
-/// The tracks of people by their trials, so that most choices of sessions cost no new estimates.
+/// A cache of tracks by their trials, so that most selections need no new estimates.
 class KnownTracks {
  public:
   KnownTracks(const Outcomes& outcomes, const ThresholdReport& report) : design_(report.design) {
@@ -77,7 +77,7 @@ class KnownTracks {
   std::map<OwnTrials, Tracks> known_;
 };
 
-/// Where one participant's threshold at a standard lies.
+/// The bounds of one participant's threshold at a standard.
 std::optional<Bounds> own_bounds(const ThresholdReport& report, const Tracks& tracks,
                                  std::size_t standard) {
   std::vector<procedures::ThresholdEstimate> own;
@@ -88,15 +88,15 @@ std::optional<Bounds> own_bounds(const ThresholdReport& report, const Tracks& tr
   return person_threshold(own, report.standards[standard].levels).bounds;
 }
 
-/// Where the thresholds of one participant lie, by the study's standards; nothing without a track.
+/// The bounds of one participant's thresholds, by the study's standards; nothing without a track.
 using OwnBounds = std::vector<std::optional<Bounds>>;
 
-/// The people of a choice.
+/// The people of a selection.
 struct Sample {
   std::vector<OwnBounds> people;
   int trials = 0;
 
-  /// Of those who have them.
+  /// The bounds of the people who have them.
   [[nodiscard]] std::vector<Bounds> of(std::size_t standard) const {
     std::vector<Bounds> all;
     for (const OwnBounds& own : people) {
@@ -128,13 +128,13 @@ Sample sample_of(const ThresholdReport& report, const std::vector<Person>& peopl
   return sample;
 }
 
-/// What is estimated, by indices of standards.
+/// The registered quantity, by indices of standards.
 struct Registered {
   Estimand estimand{};
   std::vector<std::size_t> standards;
   Sides sides = Sides::two;
   std::optional<double> margin{};
-  double level = 0.05;  ///< that p must not exceed
+  double level = 0.05;  ///< alpha: p must not exceed it
 
   [[nodiscard]] double interval_level() const { return 1.0 - (margin ? 2.0 : 1.0) * level; }
 };
@@ -172,7 +172,7 @@ std::vector<PrimaryPair> pairs_of(const ThresholdReport& report, const Registere
   return pairs;
 }
 
-/// The one that decides: without an interval, else with the one that reaches furthest from 0.
+/// The deciding pair: one without an interval, else the one whose interval extends furthest from 0.
 const PrimaryPair& furthest(const std::vector<PrimaryPair>& pairs) {
   const auto reach = [](const PrimaryPair& pair) {
     if (!pair.interval) return std::numeric_limits<double>::infinity();
@@ -181,7 +181,7 @@ const PrimaryPair& furthest(const std::vector<PrimaryPair>& pairs) {
   return *std::ranges::max_element(pairs, {}, reach);
 }
 
-/// The people whose mean a question is about that has one.
+/// The bounds of the people over whom the question's mean is taken.
 std::vector<Bounds> people_asked(const Registered& question, const Sample& sample) {
   const std::vector<std::size_t>& of = question.standards;
   return question.estimand == Estimand::mean_threshold ? sample.of(of.front())
@@ -208,7 +208,7 @@ PrimaryChoice choice_of(const ThresholdReport& report, const Registered& questio
   return choice;
 }
 
-/// What belongs to the registered choice alone.
+/// Adds the results that exist only for the registered selection.
 void put_registered_choice(const ThresholdReport& report, const Registered& question,
                            const Sample& sample, PrimaryResult& result) {
   if (question.estimand == Estimand::mean_threshold) return;
@@ -229,7 +229,8 @@ void put_registered_choice(const ThresholdReport& report, const Registered& ques
   if (found.interval) result.bound = found.interval->low;
 }
 
-/// People without a threshold at the registered standards: how many, and whether they are too many.
+/// Adds the number of people without a threshold at the registered standards, and whether it is too
+/// large.
 void put_unknown(const ThresholdReport& report, const Registered& question, const Sample& sample,
                  PrimaryResult& result) {
   std::vector<std::string> some;
@@ -323,7 +324,7 @@ std::optional<PrimaryResult> primary_result(const Outcomes& outcomes, const Thre
   for (const std::vector<Person>& one : people) samples.push_back(sample_of(report, one, known));
   const Sample& of_registered = samples.front();
   const StudyCourse course = course_of(outcomes, static_cast<int>(of_registered.people.size()));
-  // After registered looks, intervals have the level of the test.
+  // With registered looks, intervals have the level of the test.
   question.level = level_of(result, course, registered->spending);
   result.level = question.level;
   result.interval_level = question.interval_level();

@@ -10,9 +10,9 @@
 
 namespace touchtrial::analysis::threshold {
 
-/// The answer under every choice of sessions and trials, judged.
+/// The answer under every selection of sessions and trials, with its decision.
 /// \param report  its tracks and standards
-/// \param jobs  threads for tracks that the report does not have, 0: one for each core
+/// \param jobs  threads for tracks that are not in the report; 0: one for each core
 /// \return nothing if the study registers no question
 [[nodiscard]] std::optional<PrimaryResult> primary_result(const Outcomes& outcomes,
                                                           const ThresholdReport& report,

@@ -114,7 +114,7 @@ struct SameDifferentGroup {
 
 /// The control block with the hand off the device.
 struct SoundReport : AgainstGuessing {
-  choices::Anybody anybody;           ///< whether anybody could hear it
+  choices::GlobalNullResult anybody;  ///< whether anybody could hear it
   choices::Detectable detectable;     ///< what so few trials could have shown
   std::vector<std::string> hearers;   ///< whose own p is within the level, if anybody could
   std::vector<CensoredMean> without;  ///< means of standards without the hearers, if there are some

@@ -11,7 +11,7 @@ namespace {
 
 using choices::Person;
 
-constexpr int kSaidDifferent = 1;  ///< index into the choices of "same or different"
+constexpr int kAnsweredDifferent = 1;  ///< index into the choices of "same or different"
 
 /// Answers "different" at the levels of one standard.
 struct LevelAnswers {
@@ -22,8 +22,9 @@ struct LevelAnswers {
 void add_answer(LevelAnswers& answers, const TrialOutcome& trial) {
   const auto level = static_cast<std::size_t>(trial.chosen->level);
   if (level >= answers.same.size()) return;
-  Proportion& of = *trial.right == kSaidDifferent ? answers.different[level] : answers.same[level];
-  of.add(*trial.response == kSaidDifferent);
+  Proportion& of =
+      *trial.right == kAnsweredDifferent ? answers.different[level] : answers.same[level];
+  of.add(*trial.response == kAnsweredDifferent);
 }
 
 /// The answers of each standard.
@@ -43,15 +44,14 @@ StandardAnswers answers_by_standard(const Person& person, std::size_t standards,
   return all;
 }
 
-/// A share of which neither none nor all are: half an answer stands for none, and is taken from
-/// all.
+/// A share in (0, 1): 0 answers are replaced by half an answer, n by n - 1/2.
 std::optional<double> inner_share(const Proportion& of) {
   if (of.n == 0) return std::nullopt;
   const double correct = std::clamp(static_cast<double>(of.correct), 0.5, of.n - 0.5);
   return correct / of.n;
 }
 
-/// Fewer hits than false alarms are most likely with d' = 0.
+/// With fewer hits than false alarms, d' = 0 is most likely.
 double d_of(const std::optional<SameDifferentFit>& fit) {
   return fit ? fit->d_prime : 0.0;
 }
@@ -88,12 +88,12 @@ void add_to(StandardAnswers& sum, const StandardAnswers& own) {
   }
 }
 
-/// Draws of people for one interval. Each costs a search for d'.
+/// The number of draws of people for one interval; each needs a search for d'.
 constexpr int kDraws = 1999;
 
 using DPrime = std::optional<SameDifferentFit> (*)(const SameDifferent& shares);
 
-/// d' of all answers of these people, each counted as often as it was drawn.
+/// d' of these people's pooled answers; a person drawn twice counts twice.
 double pooled_d_prime(std::span<const SameDifferentLevel* const> people,
                       std::span<const std::size_t> drawn, DPrime d_prime) {
   Proportion hits;

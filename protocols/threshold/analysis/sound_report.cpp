@@ -27,11 +27,11 @@ std::optional<SoundReport> sound_report(std::span<const choices::Person> people,
       choices::against_guessing(people, guess, in_control);
   if (!answers) return std::nullopt;
   SoundReport report{*answers,
-                     choices::anybody_better(*answers, guess),
+                     choices::test_anyone_above_chance(*answers, guess),
                      choices::detectable_in(*answers, guess),
                      {},
                      {}};
-  report.hearers = choices::those_better(*answers, report.anybody);
+  report.hearers = choices::people_above_chance(*answers, report.anybody);
   if (report.hearers.empty()) return report;
   for (const StandardReport& one : standards) {
     report.without.push_back(mean_without(one, report.hearers));

@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "protocols/threshold/analysis/exports.hpp"
 #include "protocols/threshold/analysis/figures.hpp"
+#include "protocols/threshold/analysis/measures.hpp"
 #include "protocols/threshold/analysis/methods.hpp"
 #include "protocols/threshold/analysis/page/sections.hpp"
 #include "protocols/threshold/analysis/report.hpp"
@@ -53,7 +54,8 @@ class ThresholdAnalysis final : public ProtocolAnalysis {
                         methods);
   }
   std::vector<ResultTable> tables(const Outcomes& outcomes) const override {
-    return {{"thresholds.csv", thresholds_table(make_report(outcomes), outcomes.simulated)},
+    const ThresholdReport report = make_report(outcomes);
+    return {{"thresholds.csv", data_table_of(report.tracks, track_measures(report))},
             {"tracks.csv", track_trials_table(outcomes)}};
   }
   std::vector<TrialColumn> trial_columns(const Outcomes&) const override {

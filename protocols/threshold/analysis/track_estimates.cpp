@@ -60,7 +60,7 @@ procedures::FitOptions fit_options(const ThresholdOptions& options) {
   return {.shape = options.track.grid.shape, .guess = options.track.grid.guess};
 }
 
-/// Of the trials that the procedure chose and of the catch trials.
+/// Counts of the procedure's trials and of the catch trials.
 std::vector<LevelCounts> counts_of_both(const TrackReport& track, std::span<const double> levels) {
   std::vector<TrackTrial> trials = track.trials;
   for (int i = 0; i < track.catches.n; ++i) {
@@ -69,7 +69,7 @@ std::vector<LevelCounts> counts_of_both(const TrackReport& track, std::span<cons
   return procedures::counts_of(levels, trials);
 }
 
-/// What one trial tells of a change of the threshold, p being the share right at its level.
+/// One trial's information about a change of the threshold, with p the share right at its level.
 struct TrialWeight {
   double score = 0.0;        ///< p' / (p (1 - p)), by which a residual counts
   double information = 0.0;  ///< p'^2 / (p (1 - p))
@@ -77,7 +77,7 @@ struct TrialWeight {
 
 TrialWeight weight_at(Observer observer, double level) {
   constexpr double kStep_db = 0.01;
-  // Without lapses one mistake far above the threshold would count more than all else.
+  // Without lapses, one mistake far above the threshold would outweigh everything else.
   observer.lapse = std::max(observer.lapse, 0.02);
   const procedures::AnswerShares at = procedures::shares_at(observer, level);
   const double rise = (procedures::shares_at(observer, level + kStep_db).correct -
@@ -87,9 +87,9 @@ TrialWeight weight_at(Observer observer, double level) {
   return {rise / variance, rise * rise / variance};
 }
 
-/// The change of the threshold over a track, in one step of Fisher scoring from the fit without a
-/// change. Given the observer, each residual has a mean of 0 whatever the answers before it, so a
-/// procedure that follows answers does not look like learning.
+/// The change of the threshold over a track, by one step of Fisher scoring from the fit without a
+/// change. Each residual has mean 0 given the earlier answers, so an adaptive procedure does not
+/// look like learning.
 /// \return nothing if its standard error is more than a quarter of the range of levels
 std::optional<double> learning_of(std::span<const TrackTrial> trials, const Observer& observer,
                                   std::span<const double> levels) {
@@ -112,8 +112,8 @@ std::optional<double> learning_of(std::span<const TrackTrial> trials, const Obse
     score += place * weights[i].score * ((trials[i].correct ? 1.0 : 0.0) - expected);
     spread += place * place * weights[i].information;
   }
-  const double most_error = 0.25 * (levels.back() - levels.front());
-  if (!(spread * most_error * most_error >= 1.0)) return std::nullopt;
+  const double max_error = 0.25 * (levels.back() - levels.front());
+  if (!(spread * max_error * max_error >= 1.0)) return std::nullopt;
   return -score / spread;
 }
 

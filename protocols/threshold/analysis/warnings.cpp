@@ -15,7 +15,7 @@ using Sentences = std::vector<std::string>;
 void warn_of_sound(const ThresholdReport& report, Sentences& all) {
   if (!report.control) {
     all.emplace_back(
-        "There was no control block with the hand off the device, so nothing tells whether "
+        "There was no control block with the hand off the device, so it is not known whether "
         "participants could hear what they were meant to feel.");
     return;
   }
@@ -24,14 +24,15 @@ void warn_of_sound(const ThresholdReport& report, Sentences& all) {
   if (who.empty()) {
     all.push_back(fmt::format(
         "With the hand off the device participants together did better than guessing ({}): they "
-        "could hear something, and every threshold may be of the ear.",
+        "could hear something, and every threshold may reflect hearing.",
         p_phrase(report.control->anybody.p)));
     return;
   }
-  all.push_back(fmt::format(
-      "With the hand off the device {}. They could hear something, and their thresholds may be of "
-      "the ear. The result keeps them; a table has the means without them.",
-      who));
+  all.push_back(
+      fmt::format("With the hand off the device {}. They could hear something, and their "
+                  "thresholds may reflect "
+                  "hearing. The result includes them; a table has the means without them.",
+                  who));
 }
 
 void warn_of_censored(const ThresholdReport& report, Sentences& all) {
@@ -42,8 +43,8 @@ void warn_of_censored(const ThresholdReport& report, Sentences& all) {
                                           one.mean.exact, one.mean.exact == 1 ? "has" : "have");
     if (one.mean.lack == Lack::most) {
       all.push_back(known +
-                    ", fewer than half, so there is no mean. Present levels that reach "
-                    "farther, or a texture that is felt more easily.");
+                    ", fewer than half, so there is no mean. Present a wider range of "
+                    "levels, or a texture that is easier to feel.");
     } else if (one.mean.mean) {
       all.push_back(known +
                     "; the mean counts the others as beyond the levels, and assumes that "

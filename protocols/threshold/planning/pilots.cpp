@@ -15,13 +15,14 @@ using analysis::threshold::ThresholdReport;
 using analysis::threshold::TrackReport;
 
 constexpr int kMinPilots = 3;
-/// Right answers at the threshold that levels count from (d' = 1.62) among two and three intervals.
+/// Shares of right answers at d' = 1.62, the criterion of stimulus levels, with two and three
+/// intervals.
 constexpr double kRightOfTwo = 0.8744;
 constexpr double kRightOfThree = 0.794;
 
-/// How far the level with the share of right answers that levels count from lies above the report's
-/// thresholds, in dB, along the functions of tracks with a threshold.
-double rise_db(const ThresholdReport& report, std::size_t standard) {
+/// The distance from the report's thresholds to the criterion of stimulus levels, dB. It is the
+/// mean over the psychometric functions of all tracks with a threshold.
+double criterion_shift_db(const ThresholdReport& report, std::size_t standard) {
   const double right = report.guess > 0.4 ? kRightOfTwo : kRightOfThree;
   double sum = 0.0;
   int n = 0;
@@ -51,14 +52,15 @@ std::optional<std::vector<std::pair<std::string, double>>> pilot_means(
     const CensoredMean& mean = standard.mean;
     if (mean.exact < kMinPilots || !mean.mean) {
       throw StudyError(one_line(fmt::format(
-          "{}: has {} thresholds of {} and {} that are not known; it needs {} or more, and no more "
-          "that are not known",
+          "{}: has {} known thresholds of {} and {} unknown ones; it needs {} or more known ones, "
+          "and "
+          "no more unknown ones than that; run more pilots",
           place, mean.exact, standard.words, mean.participants - mean.exact, kMinPilots)));
     }
     means.emplace_back(report.classes.at(static_cast<std::size_t>(standard.of.class_index)),
-                       *mean.mean + rise_db(report, i));
+                       *mean.mean + criterion_shift_db(report, i));
   }
-  if (means.empty()) throw StudyError(one_line(place + ": has no threshold yet"));
+  if (means.empty()) throw StudyError(one_line(place + ": has no threshold yet; run pilots"));
   return means;
 }
 

@@ -1,4 +1,4 @@
-/// \file Thresholds of detection that pilots had. Source: docs/perception.md, "Pilots".
+/// \file Detection thresholds of pilots. Source: docs/perception.md, "Pilots".
 #pragma once
 
 #include "protocols/threshold/analysis/report.hpp"
@@ -10,10 +10,11 @@
 
 namespace touchtrial::planning::threshold {
 
+/// The mean thresholds of a pilot study.
 /// \param report  of the pilots' study
-/// \param place  with which an error begins
-/// \return as Planner::pilot_thresholds; nothing if the study is no detection study along gain that
-///   asks which interval
+/// \param place  prefix of error messages
+/// \return as Planner::pilot_thresholds; empty unless the study is a detection study along gain that
+///   asks which interval had the texture
 /// \throws StudyError if there are too few thresholds
 [[nodiscard]] std::optional<std::vector<std::pair<std::string, double>>> pilot_means(
     const analysis::threshold::ThresholdReport& report, const std::string& place);

@@ -23,17 +23,17 @@ constexpr int kMaxTrialsOfTrack = 2000;
 
 std::vector<int> trials_to_try(const study::Study& study, const PowerOptions& options) {
   if (options.trials.empty()) return {study::threshold::options_of(study).track.trials};
-  std::vector<int> trials = numbers_named(options.trials, "--trials", "a number of trials");
+  std::vector<int> trials = parse_numbers(options.trials, "--trials", "a number of trials");
   std::ranges::sort(trials);
   const bool twice = std::ranges::adjacent_find(trials) != trials.end();
   if (twice || trials.front() < 1 || trials.back() > kMaxTrialsOfTrack) {
-    throw UsageError(fmt::format("--trials: give different numbers from 1 to {}, as 30,60,120",
+    throw UsageError(fmt::format("--trials: give different numbers from 1 to {}, such as 30,60,120",
                                  kMaxTrialsOfTrack));
   }
   return trials;
 }
 
-/// The standards that are compared; nothing if there is one.
+/// The two compared standards; empty if the study has only one.
 std::optional<std::pair<std::size_t, std::size_t>> compared_standards(const study::Study& study,
                                                                       const PowerOptions& options) {
   const auto standards = static_cast<int>(study::threshold::standards_of(study).size());
@@ -42,24 +42,25 @@ std::optional<std::pair<std::size_t, std::size_t>> compared_standards(const stud
     return std::pair<std::size_t, std::size_t>{0, 1};
   }
   const std::vector<int> named =
-      numbers_named(options.difference, "--difference", "a standard's number");
+      parse_numbers(options.difference, "--difference", "a standard's number");
   const bool is_pair = named.size() == 2 && named[0] != named[1];
-  const auto [least, most] = std::ranges::minmax(named);
-  if (!is_pair || least < 1 || most > standards) {
+  const auto [min, max] = std::ranges::minmax(named);
+  if (!is_pair || min < 1 || max > standards) {
     throw UsageError(
-        fmt::format("--difference: give the numbers of two different thresholds as 1,2; "
+        fmt::format("--difference: give the numbers of two different thresholds, such as 1,2; "
                     "the study has {}",
                     touchtrial::counted(standards, "threshold")));
   }
   return std::pair{static_cast<std::size_t>(named[0] - 1), static_cast<std::size_t>(named[1] - 1)};
 }
 
-/// \throws UsageError if nobody is left
+/// \throws UsageError if no participant completed the session
 void require_people(const ThresholdPool& pool) {
   if (!pool.people.empty()) return;
   throw UsageError(
-      "power: no simulated participant reached the end of a session; the subject's hand is outside "
-      "the windows of speed and force, or an interval is too long: see `touchtrial simulate`");
+      "power: no simulated participant completed a session; the subject's hand is outside the "
+      "windows of speed and force, or an interval is too long; find the cause with `touchtrial "
+      "simulate`");
 }
 
 class ThresholdPlanner final : public Planner {
@@ -102,7 +103,7 @@ class ThresholdPlanner final : public Planner {
   std::string_view study_with_tracks() const override { return "config/detection.json"; }
   std::string procedure(const study::Study& study, int track,
                         const std::vector<bool>& answers) const override {
-    return track_walk_json(walked(study, track, answers));
+    return track_walk_json(replay_track(study, track, answers));
   }
 
   std::vector<std::pair<std::string, double>> pilot_thresholds(

@@ -21,7 +21,7 @@ struct SampleResult {
   std::vector<double> half_widths;  ///< by standard
   double of_difference = kNoInterval;
   bool significant = false;
-  std::optional<bool> false_alarm;  ///< nothing if nobody knows what no difference is
+  std::optional<bool> false_alarm;  ///< empty if the pool has no mean difference
 };
 
 double half_width_of(std::span<const Bounds> people) {
@@ -34,8 +34,8 @@ bool rejects(std::span<const Bounds> people, double null, double alpha) {
   return p && *p <= alpha;
 }
 
-/// People of a pool, by their indices.
-std::vector<std::size_t> drawn(std::size_t people, int size, RandomStream& random) {
+/// Draws people of a pool with replacement, by index.
+std::vector<std::size_t> draw_sample(std::size_t people, int size, RandomStream& random) {
   std::vector<std::size_t> sample(static_cast<std::size_t>(size));
   for (std::size_t& one : sample) one = static_cast<std::size_t>(random.below(people));
   return sample;
@@ -47,7 +47,7 @@ std::vector<Bounds> sampled(std::span<const Bounds> pool, std::span<const std::s
   return people;
 }
 
-/// Of the two thresholds that the plan compares.
+/// Differences between the two thresholds that the plan compares.
 struct Differences {
   std::vector<Bounds> people;
   std::optional<double> mean;  ///< over the whole pool
@@ -143,7 +143,7 @@ std::vector<ThresholdRow> rows_of(const ThresholdPool& pool, const ThresholdPlan
     std::vector<SampleResult> samples(static_cast<std::size_t>(plan.runs));
     in_parallel(jobs, samples.size(), [&](std::size_t run) {
       RandomStream random(plan.seed, "power: sample of " + std::to_string(size), run);
-      const std::vector<std::size_t> sample = drawn(pool.people.size(), size, random);
+      const std::vector<std::size_t> sample = draw_sample(pool.people.size(), size, random);
       for (const std::vector<Bounds>& people : standards) {
         samples[run].half_widths.push_back(half_width_of(sampled(people, sample)));
       }

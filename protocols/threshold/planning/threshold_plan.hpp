@@ -1,6 +1,5 @@
-/// \file How narrow the interval of a mean threshold becomes with a number of participants, and how
-/// often a difference of two thresholds is found. Source: docs/planning.md, "Power of threshold
-/// studies".
+/// \file The width of the interval of a mean threshold, and the power of a difference between two
+/// thresholds, by number of participants. Source: docs/planning.md, "Power of threshold studies".
 #pragma once
 
 #include "analysis/statistics/censored_mean.hpp"
@@ -20,7 +19,7 @@ struct ThresholdPlan {
   std::vector<int> participants;     ///< sizes, >= 2
   int runs = 1000;                   ///< samples of each size, >= 1
   std::uint64_t seed = 1;            ///< of the samples
-  std::optional<double> width_db{};  ///< wanted half-width
+  std::optional<double> width_db{};  ///< target half-width
   /// Indices of the standards whose thresholds are compared, first minus second.
   std::optional<std::pair<std::size_t, std::size_t>> difference{};
   double alpha = 0.05;  ///< of the comparison, two-sided
@@ -28,10 +27,11 @@ struct ThresholdPlan {
 
 /// Half-widths of the 95 % interval of a mean, over samples.
 struct HalfWidths {
-  std::optional<double> median;  ///< nothing: that many samples have no interval
-  std::optional<double> upper;   ///< nine tenths of the samples are narrower
-  analysis::Proportion without;  ///< samples without an interval, as most are beyond the levels
-  analysis::Proportion narrow;   ///< samples within the wanted half-width; of none without one
+  std::optional<double> median;  ///< empty if half of the samples have no interval
+  std::optional<double> upper;   ///< 90 % quantile; empty likewise
+  analysis::Proportion
+      without;  ///< samples without an interval, because most people lie beyond levels
+  analysis::Proportion narrow;  ///< samples within the target half-width; n = 0 without a target
   analysis::Interval narrow_interval{};  ///< Wilson's, 95 %
 };
 
@@ -39,8 +39,8 @@ struct DifferencePower {
   HalfWidths width;
   analysis::Proportion significant;  ///< analysis::censored_p of the differences
   analysis::Interval power{};        ///< Wilson's, 95 %
-  /// The same samples, with the pool's mean difference taken off everybody's; of none if the pool
-  /// has no mean.
+  /// Significant results for the same samples after subtraction of the pool's mean difference; n =
+  /// 0 if the pool has no mean.
   analysis::Proportion false_alarms;
   analysis::Interval type_one{};
 };
@@ -52,27 +52,27 @@ struct ThresholdRow {
   std::optional<DifferencePower> difference;
 };
 
-/// Everybody's thresholds: first minus second.
+/// The difference of two thresholds of each participant, first minus second.
 [[nodiscard]] std::vector<analysis::Bounds> differences_in(
     const ThresholdPool& pool, const std::pair<std::size_t, std::size_t>& of);
 [[nodiscard]] std::vector<analysis::Bounds> thresholds_in(const ThresholdPool& pool,
                                                           std::size_t standard);
 
-/// One row for each size. A sample draws participants of the pool, each anew from all of them.
+/// Computes one row for each size. A sample draws participants from the pool with replacement.
 /// \pre the pool has at least one participant and the standards of the plan
 /// \param jobs  threads; results do not depend on them
 [[nodiscard]] std::vector<ThresholdRow> rows_of(const ThresholdPool& pool,
                                                 const ThresholdPlan& plan, int jobs);
 
-/// What the numbers are of, in words.
+/// The setting of a power analysis, in words.
 struct ThresholdPlanSetting {
   std::string study;
   std::string subject;   ///< words_of the subject model
   std::string unit;      ///< of a level
-  std::string device{};  ///< analysis::device_words of what the subject holds
+  std::string device{};  ///< analysis::device_words of the subject's device
 };
 
-/// For each number of trials a pool, and its rows.
+/// A pool and its rows for each number of trials.
 struct ThresholdPlanReport {
   ThresholdPlanSetting setting;
   ThresholdPlan plan;

@@ -32,8 +32,8 @@ std::string compared_words(const ThresholdPlanReport& report) {
   return words[report.plan.difference->first] + " less " + words[report.plan.difference->second];
 }
 
-/// The error of a mean that the pool leaves, because it is finite. People beyond the levels tell
-/// something too, so it is a little less.
+/// The standard error of a mean, due to the finite pool. It is slightly too large, because people
+/// beyond the levels also contribute information.
 std::optional<double> pool_error(const CensoredMean& mean) {
   if (!mean.sd) return std::nullopt;
   return *mean.sd / std::sqrt(static_cast<double>(mean.exact));
@@ -118,8 +118,8 @@ std::string stamp_of(const ThresholdPlanReport& report) {
          report.setting.subject;
 }
 
-/// One for each threshold and number of trials of which the pool has no mean.
-std::vector<std::string> sentences_of_weak_pools(const ThresholdPlanReport& report) {
+/// One warning for each threshold and number of trials for which the pool has no mean.
+std::vector<std::string> warnings_without_mean(const ThresholdPlanReport& report) {
   std::vector<std::string> sentences;
   for (const auto& [pool, rows] : report.pools) {
     for (std::size_t i = 0; i < pool.standards.size(); ++i) {
@@ -147,7 +147,7 @@ std::vector<std::string> sentences_of(const ThresholdPlanReport& report) {
       "tenths of samples stay below. Means count everybody, as the report does: people beyond the "
       "levels by the probability to lie there. Without: samples that have no interval, because "
       "more than half are beyond. Add the participants that you expect to lose."};
-  std::ranges::move(sentences_of_weak_pools(report), std::back_inserter(sentences));
+  std::ranges::move(warnings_without_mean(report), std::back_inserter(sentences));
   if (report.plan.difference) {
     sentences.push_back(fmt::format(
         "Power: test of the mean difference by the same likelihood, two-sided, level {:.4g}; if "

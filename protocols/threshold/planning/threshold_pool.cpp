@@ -25,7 +25,7 @@ using procedures::ThresholdEstimate;
 using procedures::TrackTrial;
 using study::threshold::ThresholdOptions;
 
-/// The trials of each track, also its catch trials.
+/// The trials of each track, including its catch trials.
 using TracksOfPerson = std::vector<std::vector<TrackTrial>>;
 
 study::Study with_trials(const study::Study& study, int trials) {
@@ -36,14 +36,13 @@ study::Study with_trials(const study::Study& study, int trials) {
   try {
     static_cast<void>(procedures::Block(study::threshold::block_settings(changed), Digest{}));
   } catch (const std::invalid_argument& error) {
-    throw UsageError(
-        fmt::format("--trials: {} are impossible for this study: {}; give another number", trials,
-                    error.what()));
+    throw UsageError(fmt::format(
+        "--trials: {} is impossible for this study: {}; use another number", trials, error.what()));
   }
   return changed;
 }
 
-/// \return nothing if a session ended early
+/// \return empty if a session ended early
 std::optional<TracksOfPerson> tracks_of_person(const PoolSetting& setting, int number) {
   TracksOfPerson tracks(study::threshold::block_settings(setting.key.study).tracks.size());
   const auto note = [&tracks](const study::Order& order, const study::Trial& shown,
@@ -53,11 +52,11 @@ std::optional<TracksOfPerson> tracks_of_person(const PoolSetting& setting, int n
         {static_cast<std::size_t>(shown.level->level),
          order.schedule().choice_of(answer) == shown.right});
   };
-  if (!hold_pool_sessions(setting, number, note)) return std::nullopt;
+  if (!run_pool_sessions(setting, number, note)) return std::nullopt;
   return tracks;
 }
 
-/// By standard.
+/// One person's thresholds, by standard.
 std::vector<PersonThreshold> thresholds_of(const TracksOfPerson& tracks,
                                            const study::Study& study) {
   const std::vector<procedures::TrackSettings> settings =
@@ -77,7 +76,6 @@ std::vector<PersonThreshold> thresholds_of(const TracksOfPerson& tracks,
   return thresholds;
 }
 
-/// Adds a participant.
 void add_person(ThresholdPool& pool, const std::vector<PersonThreshold>& thresholds,
                 int tracks_each) {
   pool.tracks += static_cast<int>(thresholds.size()) * tracks_each;
@@ -99,8 +97,8 @@ ThresholdPool simulated_thresholds(const study::StudyKey& key,
   const ThresholdOptions& registered = study::threshold::options_of(key.study);
   if (registered.question == study::threshold::Question::same_different) {
     throw UsageError(one_line(key.study.source +
-                              ": asks for same or different, which gives a d' at each level and no "
-                              "threshold; power needs another question"));
+                              ": the question same-different gives a d' at each level but no "
+                              "threshold; use a study with another question"));
   }
   study::StudyKey changed = key;
   changed.study = with_trials(key.study, trials);

@@ -1,4 +1,5 @@
-/// \file Thresholds of simulated participants, from which studies of any size are drawn.
+/// \file A pool of simulated participants with their thresholds, from which studies of any size are
+/// drawn.
 /// Source: docs/planning.md, "Power of threshold studies".
 #pragma once
 
@@ -15,31 +16,31 @@
 
 namespace touchtrial::planning::threshold {
 
-/// Participants who each did a whole session with so many trials a track.
+/// Participants who completed a session with a given number of trials per track.
 struct ThresholdPool {
   int trials = 0;                      ///< of a track
   std::vector<std::string> standards;  ///< in words
-  /// By participant, then standard: as what the report counts the own tracks.
+  /// Thresholds by participant and standard, as the report computes them.
   std::vector<std::vector<analysis::Bounds>> people;
-  int unfinished = 0;  ///< participants whose session did not reach its end; not among `people`
+  int unfinished = 0;  ///< participants with an incomplete session; not in `people`
   int tracks = 0;      ///< of all `people`
-  int below = 0;       ///< thresholds of people beyond the lowest level
+  int below = 0;       ///< thresholds below the lowest level
   int above = 0;
   int undetermined = 0;
 };
 
 struct ThresholdPoolOptions {
   int people = 100;        ///< >= 2
-  std::uint64_t seed = 1;  ///< of everything random in participants, as in `simulate --seed`
+  std::uint64_t seed = 1;  ///< of all random numbers of participants, as in `simulate --seed`
   int jobs = 1;            ///< threads; results do not depend on them
 };
 
-/// Simulates sessions without their control block, which comes after the tracks. The thresholds are
-/// those that `report` counts. Participant n is the same person for every number of trials.
-/// \param trials  of a track, in place of the study's
+/// Simulates the sessions of a pool, without the control block after the tracks. The thresholds are
+/// those that `report` computes. Participant n is the same person for every number of trials.
+/// \param trials  of a track; replaces the study's number
 /// \param progress  called after each participant, from one thread at a time
-/// \throws UsageError if the procedure cannot have so many trials, or the question has no
-///   thresholds
+/// \throws UsageError if the procedure does not permit this number of trials, or the question gives
+///   no thresholds
 [[nodiscard]] ThresholdPool simulated_thresholds(const study::StudyKey& key,
                                                  const session::StimulusSource& source,
                                                  const simulation::SubjectModel& subject,

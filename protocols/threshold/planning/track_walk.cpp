@@ -22,19 +22,20 @@ using procedures::Posterior;
 using study::threshold::Question;
 using study::threshold::ThresholdOptions;
 
-Belief belief_in(const Marginal& marginal, double mode) {
+Belief summary_of(const Marginal& marginal, double mode) {
   return {procedures::mean_of(marginal), procedures::sd_of(marginal), mode};
 }
 
 ObserverBelief belief_of(const Posterior& posterior) {
   const procedures::Observer mode = posterior.mode();
-  return {belief_in(posterior.threshold(), mode.threshold),
-          belief_in(posterior.slope(), mode.slope), belief_in(posterior.lapse(), mode.lapse)};
+  return {summary_of(posterior.threshold(), mode.threshold),
+          summary_of(posterior.slope(), mode.slope), summary_of(posterior.lapse(), mode.lapse)};
 }
 
-/// Fills the levels, and the level's index before each answer.
-std::vector<std::size_t> follow(TrackWalk& walk) {
-  // Whoever asks twice must see the same order of constant stimuli.
+/// Replays the answers through the procedure, and records the levels.
+/// \return index of the level of each answer
+std::vector<std::size_t> replay_levels(TrackWalk& walk) {
+  // A fixed seed, so that repeated calls give the same order of constant stimuli.
   RandomStream stream(0, "touchtrial procedure", static_cast<std::uint64_t>(walk.track));
   const std::unique_ptr<procedures::Procedure> procedure =
       procedures::make_procedure(walk.settings, stream);
@@ -50,13 +51,13 @@ std::vector<std::size_t> follow(TrackWalk& walk) {
   return answered;
 }
 
-void believe(TrackWalk& walk, const std::vector<std::size_t>& answered) {
+void update_posterior(TrackWalk& walk, const std::vector<std::size_t>& answered) {
   Posterior posterior(walk.settings.levels, walk.settings.grid);
   walk.prior = {posterior.threshold(), posterior.slope(), posterior.lapse()};
-  walk.beliefs.push_back(belief_of(posterior));
+  walk.posteriors.push_back(belief_of(posterior));
   for (std::size_t i = 0; i < answered.size(); ++i) {
     posterior.observe(answered[i], walk.answers[i]);
-    walk.beliefs.push_back(belief_of(posterior));
+    walk.posteriors.push_back(belief_of(posterior));
   }
 }
 
@@ -80,13 +81,13 @@ ordered_json walked_grid_json(const TrackWalk& walk) {
 
 }  // namespace
 
-TrackWalk walked(const study::Study& study, int track, const std::vector<bool>& answers) {
+TrackWalk replay_track(const study::Study& study, int track, const std::vector<bool>& answers) {
   const ThresholdOptions& options = study::threshold::options_of(study);
   const std::vector<procedures::TrackSettings> tracks =
       study::threshold::block_settings(study).tracks;
   if (track < 1 || static_cast<std::size_t>(track) > tracks.size()) {
     throw UsageError(
-        one_line(fmt::format("--track: {} is not a track of {}, which has {}; give 1{}", track,
+        one_line(fmt::format("--track: {} is not a track of {}, which has {}; use 1{}", track,
                              study.source, touchtrial::counted(std::ssize(tracks), "track"),
                              tracks.size() > 1 ? fmt::format(" to {}", tracks.size()) : "")));
   }
@@ -100,19 +101,19 @@ TrackWalk walked(const study::Study& study, int track, const std::vector<bool>& 
   walk.answers = answers;
   if (answers.size() > static_cast<std::size_t>(walk.settings.trials)) {
     throw UsageError(fmt::format(
-        "--answers: has {} answers, more than the track's {} trials; give at most one for each",
+        "--answers: has {} answers, but the track has {} trials; give at most one answer per trial",
         answers.size(), walk.settings.trials));
   }
-  const std::vector<std::size_t> answered = follow(walk);
-  if (options.question != Question::same_different) believe(walk, answered);
+  const std::vector<std::size_t> answered = replay_levels(walk);
+  if (options.question != Question::same_different) update_posterior(walk, answered);
   return walk;
 }
 
 std::string track_walk_json(const TrackWalk& walk) {
   ordered_json posterior = nullptr;
-  if (!walk.beliefs.empty()) {
+  if (!walk.posteriors.empty()) {
     posterior = ordered_json::array();
-    for (const ObserverBelief& belief : walk.beliefs) {
+    for (const ObserverBelief& belief : walk.posteriors) {
       posterior.push_back({{"threshold", belief_json(belief.threshold)},
                            {"slope", belief_json(belief.slope)},
                            {"lapse", belief_json(belief.lapse)}});
@@ -128,7 +129,7 @@ std::string track_walk_json(const TrackWalk& walk) {
       {"unit", walk.unit},
       {"answers", answers},
       {"levels", walk.levels},
-      {"grid", walk.beliefs.empty() ? ordered_json(nullptr) : walked_grid_json(walk)},
+      {"grid", walk.posteriors.empty() ? ordered_json(nullptr) : walked_grid_json(walk)},
       {"posterior", posterior}};
   return json_text(document);
 }

@@ -1,5 +1,5 @@
-/// \file What the procedure of one track chooses after a list of answers, and what it then believes.
-/// Source: docs/thresholds.md, "The command".
+/// \file Replays answers through the procedure of one track: its levels and posteriors. Source:
+/// docs/thresholds.md, "The command".
 #pragma once
 
 #include "protocols/procedures/posterior.hpp"
@@ -11,40 +11,42 @@
 
 namespace touchtrial::planning::threshold {
 
-/// What is believed of one parameter. `mode` is of the most probable grid point.
+/// Summary of the posterior of one parameter. `mode` is its value at the most probable grid point.
 struct Belief {
   double mean = 0.0;
   double sd = 0.0;
   double mode = 0.0;
 };
 
+/// Summary of the posterior of an observer.
 struct ObserverBelief {
   Belief threshold;
   Belief slope;
   Belief lapse;
 };
 
-/// One track by itself, as far as the answers go.
+/// One track with the given answers.
 struct TrackWalk {
   int track = 1;      ///< from 1
-  std::string words;  ///< what the track is about
+  std::string words;  ///< the standard of the track, in words
   std::string unit;   ///< of a level
   procedures::TrackSettings settings;
   std::vector<bool> answers;  ///< whether each was right
-  /// The level before each answer and, if the track has trials left, the next one.
+  /// The level of each answer and, if trials remain, of the next one.
   std::vector<double> levels;
-  /// Before the first answer and after each. Empty if answers have no fixed guess rate.
-  std::vector<ObserverBelief> beliefs;
-  /// Of threshold, slope and lapse, before the first answer; their product is the prior of a grid
-  /// point. Empty as `beliefs` is.
+  /// Posteriors before the first answer and after each. Empty if answers have no fixed guess rate.
+  std::vector<ObserverBelief> posteriors;
+  /// Priors of threshold, slope and lapse, whose product is the prior of a grid point. Empty if
+  /// `posteriors` is.
   std::vector<procedures::Marginal> prior;
 };
 
+/// Replays answers through a track of a study.
 /// \param track  from 1
 /// \pre the study's protocol is threshold
-/// \throws UsageError if the track is not there, or there are more answers than trials
-[[nodiscard]] TrackWalk walked(const study::Study& study, int track,
-                               const std::vector<bool>& answers);
+/// \throws UsageError if the track does not exist, or there are more answers than trials
+[[nodiscard]] TrackWalk replay_track(const study::Study& study, int track,
+                                     const std::vector<bool>& answers);
 
 [[nodiscard]] std::string track_walk_json(const TrackWalk& walk);
 

@@ -16,15 +16,15 @@ namespace {
 using study::threshold::Question;
 using study::threshold::ThresholdOptions;
 
-constexpr double kQuickestThoughtS = 0.8;
-constexpr double kSlowestThoughtS = 4.0;
+constexpr double kMinThoughtS = 0.8;
+constexpr double kMaxThoughtS = 4.0;
 
 engine::FeltFeatures perceived(engine::FeltFeatures felt, const Individual& person) {
   if (person.floor()) person.floor()->apply_to(felt);
   return felt;
 }
 
-/// Which of three is farthest from the other two.
+/// The index of the strength that is farthest from the others.
 int odd_of(const std::vector<double>& strengths) {
   int odd = 0;
   double farthest = -1.0;
@@ -40,7 +40,7 @@ int odd_of(const std::vector<double>& strengths) {
   return odd;
 }
 
-/// As explorations of trials: long enough for any interval.
+/// Sets an exploration time that is long enough for any interval.
 SubjectModel with_intervals(SubjectModel subject, const study::Study& study) {
   constexpr double kMoreS = 1.0;
   subject.explore_s = study.trials.explore_limit_s + kMoreS;
@@ -60,7 +60,7 @@ class ComparingPopulation final : public Population {
   }
 
  private:
-  /// The mean over standards and passes; each pass strokes both planes on the same way.
+  /// The mean over standards and passes; each pass strokes both planes on the same path.
   [[nodiscard]] static ExpectedChange learnt(const PopulationSetting& setting);
 
   const study::Study& study_;
@@ -116,7 +116,7 @@ ComparingParticipant::ComparingParticipant(const SubjectModel& subject, const st
   for (std::size_t i = 0; i < weights_.size(); ++i) weights_[i] = higher[i] - lower[i];
   const auto sum = [this] { return std::accumulate(weights_.begin(), weights_.end(), 0.0); };
   if (options_.rove_db > 0.0) {
-    // Strength as a whole says nothing where gains are roved.
+    // If gains are roved, the overall strength is not informative.
     const double mean = sum() / static_cast<double>(weights_.size());
     for (double& weight : weights_) weight -= mean;
   }
@@ -124,7 +124,7 @@ ComparingParticipant::ComparingParticipant(const SubjectModel& subject, const st
       std::inner_product(weights_.begin(), weights_.end(), weights_.begin(), 0.0);
   const engine::FeltNoise noise = individual_.noise();
   noise_ = std::sqrt(noise.own * noise.own * squares + noise.common * noise.common * sum() * sum());
-  // Two that differ by more than their noise usually makes them are called different.
+  // Two strengths count as different if they differ by more than the noise of their difference.
   criterion_ = std::sqrt(2.0) * noise_;
 }
 
@@ -160,7 +160,7 @@ double ComparingParticipant::strength(engine::FeltFeatures felt, double noise_fa
   return sum;
 }
 
-int ComparingParticipant::named(const std::vector<double>& strengths) const {
+int ComparingParticipant::choice_from(const std::vector<double>& strengths) const {
   switch (options_.question) {
     case Question::odd_one_out:
       return odd_of(strengths);
@@ -172,11 +172,12 @@ int ComparingParticipant::named(const std::vector<double>& strengths) const {
   return static_cast<int>(std::ranges::max_element(strengths) - strengths.begin());
 }
 
-int ComparingParticipant::given_answer(RandomStream& random) {
+int ComparingParticipant::answer_by_function(RandomStream& random) {
   if (!order_) {
     throw UsageError(
-        "an observer of a given function is told levels by `simulate` alone; remove "
-        "given_function from the subject file, or simulate");
+        "given_function: the level is known only to `simulate`; use `touchtrial simulate`, or "
+        "remove "
+        "given_function from the subject file");
   }
   const study::Trial shown = order_->at({.place = {.trial = trial_}});
   const int target = shown.right.value();
@@ -205,9 +206,9 @@ ParticipantAnswer ComparingParticipant::choose(const engine::FeltFeatures& felt,
                                                RandomStream& random) {
   felt_.push_back(felt);
   const Moment moment = condition_.before(trials_, 0);
-  const bool lapses = random.uniform() < moved(individual_.lapse(), moment.lapse_log_odds);
+  const bool lapses = random.uniform() < with_log_odds(individual_.lapse(), moment.lapse_log_odds);
   const auto anything = static_cast<int>(random.below(labels_.size()));
-  const double thought_s = random.uniform(kQuickestThoughtS, kSlowestThoughtS);
+  const double thought_s = random.uniform(kMinThoughtS, kMaxThoughtS);
   std::vector<double> strengths;
   for (const engine::FeltFeatures& one : felt_) {
     strengths.push_back(strength(one, moment.noise_factor, random));
@@ -217,8 +218,8 @@ ParticipantAnswer ComparingParticipant::choose(const engine::FeltFeatures& felt,
     const std::vector<double> bias = individual_.bias(labels_);
     for (std::size_t i = 0; i < strengths.size(); ++i) strengths[i] += noise_ * bias[i];
   }
-  int position = lapses || hears_only_ ? anything : named(strengths);
-  if (subject_.given_function && !hears_only_) position = given_answer(random);
+  int position = lapses || hears_only_ ? anything : choice_from(strengths);
+  if (subject_.given_function && !hears_only_) position = answer_by_function(random);
   condition_.after(static_cast<std::size_t>(position), std::nullopt);
   return {position, std::chrono::milliseconds(std::llround(thought_s * 1000.0))};
 }

@@ -1,6 +1,6 @@
-/// \file A simulated participant who compares how the planes of a trial feel. No psychometric
-/// function is put in: the threshold follows from sense and noise. Source: docs/thresholds.md,
-/// "Simulated participants".
+/// \file A simulated participant who compares the planes of a trial. It has no psychometric function;
+/// the threshold results from sense and noise. Source: docs/thresholds.md, "Simulated
+/// participants".
 #pragma once
 
 #include "protocols/simulation/condition.hpp"
@@ -18,16 +18,17 @@
 
 namespace touchtrial::simulation::threshold {
 
-/// What all participants of a study know before the first trial: which way the felt intensities
-/// change where there is more of what is asked for, and by how much at the highest level.
+/// What all participants of a study learn before the first trial: the direction in which features
+/// change with the level, and the change at the highest level.
 struct ExpectedChange {
-  engine::FeltFeatures lower{};   ///< typical, of standards or blank planes
-  engine::FeltFeatures higher{};  ///< typical, of the highest levels
+  engine::FeltFeatures lower{};   ///< mean features of standards or blank planes
+  engine::FeltFeatures higher{};  ///< mean features of the highest levels
 };
 
-/// Feels every interval with noise of its own and names the strongest, the odd one, or whether two
-/// differ by more than a criterion; or lapses, and names any. With SubjectModel::given_function it
-/// answers by that instead, as nobody could. Refers to subject and study, which must outlive it.
+/// Feels every interval with independent noise and chooses the strongest, the odd one, or
+/// "different" if two differ by more than a criterion; in a lapse, chooses at random. With
+/// SubjectModel::given_function it answers by that function instead. Subject and study must outlive
+/// it.
 class ComparingParticipant final : public SimulatedParticipant {
  public:
   /// \param subject  explores for as long as an interval may last
@@ -46,12 +47,14 @@ class ComparingParticipant final : public SimulatedParticipant {
   void begin_visit(int visit, TrialCourse course) override;
 
  private:
-  /// How strong a plane felt, along the expected change.
+  /// The perceived strength of a plane, along the expected change.
   [[nodiscard]] double strength(engine::FeltFeatures felt, double noise_factor,
                                 RandomStream& random) const;
-  [[nodiscard]] int named(const std::vector<double>& strengths) const;
-  /// \throws UsageError if nothing tells the level
-  [[nodiscard]] int given_answer(RandomStream& random);
+  /// The position chosen from the strengths of the intervals.
+  [[nodiscard]] int choice_from(const std::vector<double>& strengths) const;
+  /// The answer by SubjectModel::given_function.
+  /// \throws UsageError if the level is not known
+  [[nodiscard]] int answer_by_function(RandomStream& random);
 
   const SubjectModel& subject_;
   const study::threshold::ThresholdOptions& options_;

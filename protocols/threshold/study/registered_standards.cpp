@@ -27,8 +27,8 @@ bool is_named(const Study& study, const Standard& standard, const RegisteredStan
          (!by.value || std::abs(*by.value - standard.value) < kRounding);
 }
 
-/// Those that a name fits.
-std::vector<std::size_t> named_by(const Study& study, const RegisteredStandard& name) {
+/// Indices of the standards that match a registered one.
+std::vector<std::size_t> matching_standards(const Study& study, const RegisteredStandard& name) {
   const std::vector<Standard> standards = standards_of(study);
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < standards.size(); ++i) {
@@ -42,17 +42,18 @@ void check_names(const JsonValue& file, const Study& study) {
   std::vector<std::size_t> all;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::string place = fmt::format("{}/{}", kPlace, i);
-    const std::vector<std::size_t> found = named_by(study, names[i]);
+    const std::vector<std::size_t> found = matching_standards(study, names[i]);
     if (found.empty()) {
-      file.refuse_below(
-          place, "is no standard of the study; name one that it has: " + standards_in_words(study));
+      file.refuse_below(place,
+                        "is not a standard of the study; use one of: " + standards_in_words(study));
     }
     if (found.size() > 1) {
-      file.refuse_below(place, fmt::format("fits {} standards; give class and value of one of: {}",
-                                           found.size(), standards_in_words(study)));
+      file.refuse_below(place,
+                        fmt::format("matches {} standards; give class and value of one of: {}",
+                                    found.size(), standards_in_words(study)));
     }
     if (std::ranges::find(all, found.front()) != all.end()) {
-      file.refuse_below(place, "is the same standard twice; name each once");
+      file.refuse_below(place, "repeats a standard; name each once");
     }
     all.push_back(found.front());
   }
@@ -66,7 +67,7 @@ void check_number(const JsonValue& file, const Study& study) {
   const auto refuse = [&](const char* needs) {
     const bool named = !study.registration.analysis->standards.empty();
     file.refuse_below(named ? kPlace : "/registration/estimand",
-                      fmt::format("is of {}, but {} {}{}", needs,
+                      fmt::format("needs {}, but {} {}{}", needs,
                                   named ? "it names" : "the study has", number, which));
   };
   if (estimand == Estimand::mean_threshold && number != 1) refuse("one standard");
@@ -80,9 +81,10 @@ void check_registered(const JsonValue& file, const Study& study) {
   const auto& analysis = study.registration.analysis;
   if (!analysis || !is_of_thresholds(analysis->estimand)) return;
   if (options_of(study).question == Question::same_different) {
-    file.refuse_below("/registration/estimand",
-                      "is about thresholds, which \"same-different\" does not give; leave estimand "
-                      "and what belongs to it out, and state the test in primary_test");
+    file.refuse_below(
+        "/registration/estimand",
+        "needs thresholds, which the question \"same-different\" does not give; remove "
+        "the estimand with its keys, and describe the test in primary_test");
   }
   check_names(file, study);
   check_number(file, study);
@@ -91,7 +93,8 @@ void check_registered(const JsonValue& file, const Study& study) {
 std::vector<std::size_t> registered_standards(const Study& study) {
   const std::vector<RegisteredStandard>& names = study.registration.analysis->standards;
   std::vector<std::size_t> all;
-  for (const RegisteredStandard& name : names) all.push_back(named_by(study, name).front());
+  for (const RegisteredStandard& name : names)
+    all.push_back(matching_standards(study, name).front());
   if (!all.empty()) return all;
   all.resize(standards_of(study).size());
   std::iota(all.begin(), all.end(), std::size_t{0});

@@ -1,4 +1,4 @@
-/// \file The standards that a registered question about thresholds is of.
+/// \file The standards of a registered question about thresholds.
 #pragma once
 
 #include "core/strict_json.hpp"
@@ -9,14 +9,15 @@
 
 namespace touchtrial::study::threshold {
 
-/// Checks that the registered standards are of the study, and as many as the question needs: one of
-/// a mean, two of a difference, two or more of an equality.
+/// Checks that the study has the registered standards, and that the question has the right number
+/// of them: one for a mean, two for a difference, two or more for an equality.
 /// \param file  the whole study file
 /// \throws StudyError with the place and the remedy
 void check_registered(const JsonValue& file, const Study& study);
 
-/// Indices into standards_of: those that are named, in this order, else all.
-/// \pre the study registers a question about thresholds, and was checked
+/// Indices into standards_of() of the registered standards in their order, or of all if none are
+/// named.
+/// \pre the study registers a question about thresholds, and has been checked
 [[nodiscard]] std::vector<std::size_t> registered_standards(const Study& study);
 
 }  // namespace touchtrial::study::threshold

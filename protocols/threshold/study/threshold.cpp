@@ -20,18 +20,18 @@ namespace {
 
 constexpr int kControlBlock = 1;
 
-/// How many fields there are for a standard along the order: its own, and one a level.
+/// The number of fields of a standard along the order: its own, and one for each level.
 int fields_of_standard(const ThresholdOptions& options) {
   return 1 + static_cast<int>(options.track.levels.size());
 }
 
-/// Draws the trials of one participant. A trial's draws depend on its number, and on how often it
-/// was interrupted, so that a repeated one has another answer.
+/// Draws the trials of one participant. A trial's draws depend on its number and on how often it
+/// was interrupted, so that a repeated trial has a new right answer.
 class TrialDraw {
  public:
   TrialDraw(const Study& study, const Digest& secret) : study_(study), secret_(secret) {}
 
-  /// Fills a trial at the highest level of a standard that is drawn.
+  /// Fills a trial at the highest level of a random standard.
   void fill_easily(Trial& trial, std::string_view purpose, std::uint64_t index,
                    RandomStream& random) const {
     const std::vector<Standard> standards = standards_of(study_);
@@ -41,7 +41,7 @@ class TrialDraw {
     fill(trial, purpose, index, nth, top);
   }
 
-  /// Fills the planes, and says which answer is right.
+  /// Fills in the planes and the right answer.
   void fill(Trial& trial, std::string_view purpose, std::uint64_t index, std::size_t nth_standard,
             std::size_t level) const {
     const ThresholdOptions& options = options_of(study_);
@@ -66,7 +66,7 @@ class TrialDraw {
       case Question::which_interval:
         return interval == target;
       case Question::odd_one_out:
-        return (interval == target) != swapped;  // either is odd equally often
+        return (interval == target) != swapped;  // either kind is odd equally often
       case Question::same_different:
         return target == 0 ? swapped : (interval == 1) != swapped;
     }
@@ -82,7 +82,7 @@ class TrialDraw {
     };
     plane.field.exemplar = exemplar_of(plane.field);
     if (plane.mix) plane.mix->other.exemplar = exemplar_of(plane.mix->other);
-    const double rove_db = drawn_rove_db(options.rove_db, random);
+    const double rove_db = draw_rove_db(options.rove_db, random);
     if (plane.blank || options.rove_db == 0.0) return;
     plane.gain_db += rove_db;
     if (options.along != Along::gain) plane.gain_db -= options.rove_db / 2.0;
@@ -168,14 +168,17 @@ class ThresholdTask final : public study::Task {
 
   void check(const JsonValue& file, const Study& study) const override {
     if (options_.track.levels.empty()) {
-      file.refuse_below("/threshold", "is missing; a threshold needs at least task and levels");
+      file.refuse_below("/threshold", "is missing; add it with at least task and levels");
     }
     if (study.methods.size() != 1) {
-      file.refuse_below("/methods", fmt::format("has {} entries; a threshold is of one method",
-                                                study.methods.size()));
+      file.refuse_below("/methods",
+                        fmt::format("has {} entries, but the protocol threshold uses one "
+                                    "method; remove the others",
+                                    study.methods.size()));
     }
     if (options_.along == Along::order && study.methods.front().method != engine::Method::fixed) {
-      file.refuse_below("/methods/0/name", "must be \"fixed\", whose order the levels change");
+      file.refuse_below("/methods/0/name",
+                        "must be \"fixed\" for levels along the order, which no other method has");
     }
     check_section(file, study);
     check_registered(file, study);
@@ -191,8 +194,8 @@ class ThresholdTask final : public study::Task {
     const int missing = missing_catch_trials(study);
     if (missing == 0) return {};
     return {fmt::format(
-        "/threshold/catch: {} are too few to tell lapses from a higher threshold, and thresholds "
-        "of people who lapse will be biased; give {}",
+        "/threshold/catch: {} catch trials are too few to distinguish lapses from a higher "
+        "threshold, so thresholds of people who lapse will be biased; use {}",
         options_.catch_trials, options_.catch_trials + missing)};
   }
   int scored_trials(const Study& study) const override {
@@ -249,8 +252,8 @@ class ThresholdTask final : public study::Task {
     if (options_.intervals == 3) all.push_back({"third"});
     return all;
   }
-  /// Along the order, every level needs a field of its own.
-  /// \param own  the study file's method, or one of those that this made of it
+  /// Along the order, every level needs its own field, and so its own method.
+  /// \param own  the study file's method, or one that this function returned
   [[nodiscard]] std::vector<StudyMethod> methods(const StudyMethod& own) const {
     if (options_.along != Along::order) return {own};
     std::vector<StudyMethod> all;
@@ -386,7 +389,8 @@ procedures::BlockSettings block_settings(const Study& study) {
   for (const Standard& standard : standards_of(study)) {
     procedures::TrackSettings track = options.track;
     track.levels = levels_of(options, standard);
-    if (track.levels.empty()) throw std::invalid_argument("a standard has no level");
+    if (track.levels.empty())
+      throw std::invalid_argument("block_settings: a standard has no level");
     track.up_down.first_level = std::min(track.up_down.first_level, track.levels.size() - 1);
     block.tracks.insert(block.tracks.end(), static_cast<std::size_t>(options.tracks_each), track);
   }
@@ -394,7 +398,7 @@ procedures::BlockSettings block_settings(const Study& study) {
 }
 
 int missing_catch_trials(const Study& study) {
-  constexpr int kLeast = 6;
+  constexpr int kMinCatchTrials = 6;
   const ThresholdOptions& options = options_of(study);
   if (options.question == Question::same_different) return 0;
   const procedures::BlockSettings block = block_settings(study);
@@ -403,7 +407,7 @@ int missing_catch_trials(const Study& study) {
     const int own = track.procedure == "constant-stimuli"
                         ? track.trials / static_cast<int>(track.levels.size())
                         : 0;
-    const int wanted = std::max(kLeast, (track.trials + 9) / 10);
+    const int wanted = std::max(kMinCatchTrials, (track.trials + 9) / 10);
     of_each = std::max(of_each, std::min(wanted, track.trials / 2) - own);
   }
   const int of_all = of_each * static_cast<int>(block.tracks.size());

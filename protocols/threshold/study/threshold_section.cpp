@@ -33,18 +33,18 @@ constexpr std::size_t kMaxValues = 200;
 constexpr NumberRange kLevelRange{-200.0, 40.0};
 constexpr double kMaxTables = 20e6;  ///< numbers of all tracks' posteriors
 
-/// Values of a list that ascends.
+/// Describes an ascending list of values.
 void describe_list(ValueIo& io, std::vector<double>& values, const NumberRange& range) {
   io.list(values, {.fewest = 1, .most = kMaxValues},
           [&range](ValueIo& item, double& value) { item.number(value, range); });
   io.rule([&values](const JsonValue& place) {
     if (std::ranges::adjacent_find(values, std::greater_equal<>()) != values.end()) {
-      place.refuse("must ascend, each value once; sort the list");
+      place.refuse("must be ascending without duplicates; sort the list");
     }
   });
 }
 
-/// The values from, from + step, .. of an object.
+/// Describes an object with the values from, from + step, ..
 void describe_steps(ObjectIo& io, std::vector<double>& values, const NumberRange& range) {
   double from = 0.0;
   double to = 0.0;
@@ -54,16 +54,16 @@ void describe_steps(ObjectIo& io, std::vector<double>& values, const NumberRange
   io.number("step", step, {0.0, 1000.0, true}, {.meaning = "between two values", .required = true});
   io.rule([&](const JsonValue& place, const JsonObject& /*object*/) {
     const double steps = std::floor((to - from) / step + 1e-9);
-    if (to < from) place.refuse("must not end below its beginning; exchange from and to");
+    if (to < from) place.refuse("has \"to\" less than \"from\"; swap them");
     if (steps >= static_cast<double>(kMaxValues)) {
-      place.refuse(fmt::format("has more than {} values; give a larger step", kMaxValues));
+      place.refuse(fmt::format("has more than {} values; use a larger step", kMaxValues));
     }
     values.clear();
     for (int i = 0; i <= static_cast<int>(steps); ++i) values.push_back(from + i * step);
   });
 }
 
-/// A list, or {"from", "to", "step"}.
+/// Describes values as a list, or as {"from", "to", "step"}.
 void describe_values(ObjectIo& io, std::string_view key, std::vector<double>& values,
                      const NumberRange& range, const About& about) {
   io.member(key, about, true, [&](ValueIo& value) {
@@ -86,15 +86,15 @@ void describe_windows(ObjectIo& io, HandRange& windows) {
   io.number("strongest_n", windows.strongest_n, kForce, {"largest force across the plane"});
   io.rule([&windows](const JsonValue& place, const JsonObject& /*object*/) {
     if (windows.slowest_mm_s >= windows.fastest_mm_s) {
-      place.refuse("has no speed between slowest_mm_s and fastest_mm_s; raise the second");
+      place.refuse("has fastest_mm_s not above slowest_mm_s; raise fastest_mm_s");
     }
     if (windows.lightest_n >= windows.strongest_n) {
-      place.refuse("has no force between lightest_n and strongest_n; raise the second");
+      place.refuse("has strongest_n not above lightest_n; raise strongest_n");
     }
   });
 }
 
-/// One of the levels, by its value.
+/// Describes the first level, by its value.
 void describe_first_level(ObjectIo& io, procedures::TrackSettings& track) {
   std::optional<double> wanted;
   if (!track.levels.empty()) wanted = track.levels[track.up_down.first_level];
@@ -105,7 +105,7 @@ void describe_first_level(ObjectIo& io, procedures::TrackSettings& track) {
     const auto found = std::ranges::find_if(
         track.levels, [&](double level) { return std::abs(level - *wanted) < 1e-9; });
     if (found == track.levels.end()) {
-      place.refuse_below("/first_level", "is none of the levels; give one of them");
+      place.refuse_below("/first_level", "is not one of the levels; use one of them");
     }
     track.up_down.first_level = static_cast<std::size_t>(found - track.levels.begin());
   });
@@ -149,7 +149,7 @@ void describe_practice(ObjectIo& io, ThresholdOptions& options) {
   io.integer("rounds", options.practice_rounds, 1, 10, {"rounds at most"});
 }
 
-/// What the task makes of the question.
+/// Describes task, question and intervals.
 void describe_question(ObjectIo& io, ThresholdOptions& options) {
   io.choice("task", options.task, kTaskNames,
             {.meaning = "`detection`: a texture or the same wall without it; `discrimination`: a "
@@ -167,26 +167,26 @@ void describe_question(ObjectIo& io, ThresholdOptions& options) {
              {.meaning = "planes of a trial", .otherwise = "2 (odd one out: 3)"});
   io.rule([&options](const JsonValue& place, const JsonObject& /*object*/) {
     if (options.question == Question::odd_one_out && options.intervals != 3) {
-      place.refuse_below("/intervals", "must be 3 to find the odd one; set 3");
+      place.refuse_below("/intervals", "must be 3 for the question odd-one-out");
     }
     if (options.question == Question::same_different && options.intervals != 2) {
-      place.refuse_below("/intervals", "must be 2 for same or different; set 2");
+      place.refuse_below("/intervals", "must be 2 for the question same-different");
     }
     if (options.task == Task::detection && options.along != Along::gain) {
       place.refuse_below("/along",
-                         "must be \"gain\" for detection, which asks for the weakest texture that "
-                         "is felt; or choose the task discrimination");
+                         "must be \"gain\" for the task detection; set it, or choose the task "
+                         "discrimination");
     }
     const bool has_strength = options.along == Along::gain || options.along == Along::pitch;
     if (!has_strength && options.question == Question::which_interval) {
       place.refuse_below("/along",
-                         "has no more or less that a participant could name; ask the question "
-                         "odd-one-out or same-different");
+                         "has no direction, which the question which-interval needs; use the "
+                         "question odd-one-out or same-different");
     }
   });
 }
 
-/// What follows from procedure and levels, before a file says otherwise.
+/// Sets defaults that depend on procedure and levels.
 void set_usual_rules(ThresholdOptions& options) {
   procedures::TrackSettings& track = options.track;
   track.up_down.first_level = track.levels.size() - 1;
@@ -212,7 +212,7 @@ void describe_procedure(ObjectIo& io, ThresholdOptions& options) {
   io.rule([&](const JsonValue& place, const JsonObject& /*object*/) {
     if (options.question == Question::same_different && track.procedure != "constant-stimuli") {
       place.refuse_below("/question",
-                         "has no fixed guess rate, which procedures that follow answers need; set "
+                         "has no fixed guess rate, which adaptive procedures need; set "
                          "/threshold/procedure to \"constant-stimuli\"");
     }
     set_usual_rules(options);
@@ -325,7 +325,7 @@ void check_section(const JsonValue& file, const Study& study) {
   const std::vector<Standard> standards = standards_of(study);
   const auto tracks = standards.size() * static_cast<std::size_t>(options.tracks_each);
   if (tracks > procedures::kMaxTracks) {
-    refuse("/tracks", fmt::format("makes {} tracks for a participant, more than {}; give fewer "
+    refuse("/tracks", fmt::format("makes {} tracks for a participant, more than {}; use fewer "
                                   "classes, standards or tracks",
                                   tracks, procedures::kMaxTracks));
   }
@@ -334,21 +334,21 @@ void check_section(const JsonValue& file, const Study& study) {
     const bool may_clip = options.task == Task::discrimination;
     if (own < (may_clip ? 1 : options.track.levels.size())) {
       refuse("/levels",
-             fmt::format("exceed the pack's gain, the stiffness ceiling, for {}{}; lower "
+             fmt::format("exceed the pack's gain, which is the maximum, for {}{}; lower "
                          "them{}",
                          words_of(study, standard), options.rove_db > 0.0 ? " with its rove" : "",
                          may_clip ? " or the standard" : ""));
     }
-    const double most = comparison_at(options, standard, options.track.levels.back());
-    if (options.along == Along::order && most >= 1.0) {
-      refuse("/levels", fmt::format("reach order {:.3f}; orders are below 1: lower the highest "
-                                    "level or the standard",
-                                    most));
+    const double max = comparison_at(options, standard, options.track.levels.back());
+    if (options.along == Along::order && max >= 1.0) {
+      refuse("/levels", fmt::format("reach order {:.3f}, but orders must be below 1; lower the "
+                                    "highest level or the standard",
+                                    max));
     }
-    if (options.along == Along::blend && most > 1.0 + 1e-9) {
-      refuse("/levels", "reach more than the whole of the second texture; end at 0 dB");
+    if (options.along == Along::blend && max > 1.0 + 1e-9) {
+      refuse("/levels", "exceed a share of 1 of the second texture; end at 0 dB");
     }
-    if (options.along == Along::pitch && most > 10.0) {
+    if (options.along == Along::pitch && max > 10.0) {
       refuse("/levels", "reach more than ten times the pitch; lower the highest level");
     }
   }
@@ -359,7 +359,7 @@ void check_section(const JsonValue& file, const Study& study) {
                         static_cast<double>(options.track.grid.lapses.size());
   if (tables > kMaxTables) {
     refuse("/grid", fmt::format("needs tables of {:.0f} million numbers for all tracks, more than "
-                                "{:.0f}; give fewer levels or values",
+                                "{:.0f}; use fewer levels or values",
                                 tables / 1e6, kMaxTables / 1e6));
   }
   try {
@@ -368,24 +368,29 @@ void check_section(const JsonValue& file, const Study& study) {
     refuse("", std::string(error.what()) + "; change the section's numbers");
   }
   if (options.along == Along::blend && study.classes.size() != 2) {
-    file.refuse_below("/classes", "must be two textures, of which one is blended into the other");
+    file.refuse_below("/classes",
+                      fmt::format("has {} entries, but levels along blend need two textures",
+                                  study.classes.size()));
   }
   if (options.along == Along::blend) {
     const auto mixtures = study.classes.front().images.size() * study.classes.back().images.size() *
                           options.track.levels.size();
     if (mixtures > kMaxValues) {
-      refuse("/levels", fmt::format("and images make {} mixtures, more than {}; give fewer",
-                                    mixtures, kMaxValues));
+      refuse("/levels",
+             fmt::format("make {} mixtures with the images, more than {}; use fewer levels "
+                         "or images",
+                         mixtures, kMaxValues));
     }
   }
   if (study.level) {
-    file.refuse_below("/rendering/gains",
-                      "states a level, which a threshold study is there to find; give \"budget\", "
-                      "the largest gains");
+    file.refuse_below(
+        "/rendering/gains",
+        "states a level, which a threshold study itself measures; use \"budget\", the "
+        "largest gains");
   }
   if (study.rendering.reference_grey != 128.0) {
     file.refuse_below("/rendering/reference_grey",
-                      "must be 128: with another one the wall of a texture lies elsewhere than the "
+                      "must be 128, because otherwise the wall of a texture is displaced from the "
                       "blank one, which could be felt");
   }
   const TrialOptions& trials = study.trials;
@@ -401,19 +406,18 @@ void check_section(const JsonValue& file, const Study& study) {
   if (trials.rove_db > 0.0) {
     refuse_trials("/rove_db", "belongs to other protocols; use /threshold/rove_db");
   }
-  if (trials.lead_in > 0) refuse_trials("/lead_in", "must be 0: a track has no lead-in");
+  if (trials.lead_in > 0) refuse_trials("/lead_in", "must be 0, because tracks have no lead-in");
   if (trials.on_interruption != OnInterruption::repeat) {
     refuse_trials("/on_interruption",
-                  "must be \"repeat\": a track needs every answer that it asks for");
+                  "must be \"repeat\", because a track needs the answer to every trial");
   }
   if (trials.on_timeout != OnTimeout::fade) {
     refuse_trials("/on_timeout",
-                  "must be \"fade\": a trial whose interval takes too long comes "
-                  "again");
+                  "must be \"fade\", because a trial whose interval takes too long is repeated");
   }
   if (trials.explore_limit_s < options.interval_s) {
     refuse_trials("/explore_limit_s",
-                  fmt::format("is shorter than an interval, {} s; raise it, for instance to four "
+                  fmt::format("is shorter than an interval of {} s; raise it, for instance to four "
                               "times that",
                               options.interval_s));
   }

@@ -8,13 +8,14 @@
 
 namespace touchtrial::study::threshold {
 
+/// Reads the section.
 /// \throws StudyError with the place of a value that is not accepted
 [[nodiscard]] ThresholdOptions read_section(const JsonValue& section);
 
-/// \return as annotated_section() makes it
+/// The schema in the form of annotated_section().
 [[nodiscard]] std::string section_schema();
 
-/// What the reader sees only with the whole study: classes, methods, trials, ceilings.
+/// Checks the section against the rest of the study: classes, methods, trials, limits.
 /// \throws StudyError with the place and the remedy
 void check_section(const JsonValue& file, const Study& study);
 

@@ -60,10 +60,10 @@ constexpr const char* kRules[] = {R"({"order": "de-bruijn", "repeats": 3})",
 }  // namespace
 
 TEST_CASE("The order of a study says how chance is dealt") {
-  CHECK(dealt_order(study_with("{}")) == analysis::DealtOrder::permuted);
-  CHECK(dealt_order(study_with(R"({"order": "uniform"})")) == analysis::DealtOrder::independent);
+  CHECK(dealt_order(study_with("{}")) == analysis::OrderRule::permuted);
+  CHECK(dealt_order(study_with(R"({"order": "uniform"})")) == analysis::OrderRule::independent);
   for (const char* rule : kRules)
-    CHECK(dealt_order(study_with(rule)) == analysis::DealtOrder::redrawn);
+    CHECK(dealt_order(study_with(rule)) == analysis::OrderRule::redrawn);
 }
 
 TEST_CASE("What came before is expected by the study's own rule") {

@@ -96,10 +96,10 @@ TEST_CASE("one who hears everything is found among many who guess, whom the pool
   made.right_of(20, 20);
   const AgainstGuessing answers = guessing_of(made);
   CHECK(answers.pooled.p.value() > 0.1);
-  const Anybody anybody = anybody_better(answers, 0.5);
+  const GlobalNullResult anybody = test_anyone_above_chance(answers, 0.5);
   CHECK(anybody.found());
   CHECK(anybody.alone == 1);
-  CHECK(those_better(answers, anybody) == std::vector<std::string>{"P12"});
+  CHECK(people_above_chance(answers, anybody) == std::vector<std::string>{"P12"});
 }
 
 TEST_CASE("whoever stands out by Holm makes it found") {
@@ -108,9 +108,9 @@ TEST_CASE("whoever stands out by Holm makes it found") {
   made.right_of(17, 20);
   const AgainstGuessing answers = guessing_of(made);
   CHECK(answers.people.back().p_holm.value() == Approx(0.0386524200439454).epsilon(1e-9));
-  const Anybody anybody = anybody_better(answers, 0.5);
+  const GlobalNullResult anybody = test_anyone_above_chance(answers, 0.5);
   CHECK(anybody.p <= answers.people.back().p_holm.value());
-  CHECK(those_better(answers, anybody) == std::vector<std::string>{"P30"});
+  CHECK(people_above_chance(answers, anybody) == std::vector<std::string>{"P30"});
 }
 
 TEST_CASE("three of twelve with 15 of 20 are found, though none stands out") {
@@ -119,30 +119,30 @@ TEST_CASE("three of twelve with 15 of 20 are found, though none stands out") {
   for (int i = 0; i < 3; ++i) made.right_of(15, 20);
   const AgainstGuessing answers = guessing_of(made);
   CHECK(answers.people.back().p_holm.value() > 0.2);
-  const Anybody anybody = anybody_better(answers, 0.5);
+  const GlobalNullResult anybody = test_anyone_above_chance(answers, 0.5);
   CHECK(anybody.found());
   CHECK(anybody.alone == 3);
   CHECK(anybody.alone_by_chance == Approx(12 * 0.0206947).margin(0.02));
-  CHECK(those_better(answers, anybody).size() == 3);
+  CHECK(people_above_chance(answers, anybody).size() == 3);
 }
 
 TEST_CASE("everybody a little better than guessing is found, and nobody is named") {
   MadePeople made;
   for (int i = 0; i < 40; ++i) made.right_of(12, 20);
   const AgainstGuessing answers = guessing_of(made);
-  const Anybody anybody = anybody_better(answers, 0.5);
+  const GlobalNullResult anybody = test_anyone_above_chance(answers, 0.5);
   CHECK(anybody.p < 0.001);
-  CHECK(those_better(answers, anybody).empty());
+  CHECK(people_above_chance(answers, anybody).empty());
 }
 
 TEST_CASE("people who guess are not found, and the same answers give the same p") {
   MadePeople made;
   for (int i = 0; i < 12; ++i) made.right_of(8 + i % 5, 20);
   const AgainstGuessing answers = guessing_of(made);
-  const Anybody anybody = anybody_better(answers, 0.5);
+  const GlobalNullResult anybody = test_anyone_above_chance(answers, 0.5);
   CHECK(anybody.p > 0.2);
-  CHECK(anybody == anybody_better(answers, 0.5));
-  CHECK(those_better(answers, anybody).empty());
+  CHECK(anybody == test_anyone_above_chance(answers, 0.5));
+  CHECK(people_above_chance(answers, anybody).empty());
 }
 
 TEST_CASE("a block says what it could have found") {

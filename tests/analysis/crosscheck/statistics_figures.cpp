@@ -185,9 +185,8 @@ Numbers chance(const json& c) {
       block.answered.push_back(answer.is_null() ? std::nullopt : std::optional(answer.get<int>()));
     }
   }
-  const analysis::DealtOrder order = c.at("order") == "permuted"
-                                         ? analysis::DealtOrder::permuted
-                                         : analysis::DealtOrder::independent;
+  const analysis::OrderRule order = c.at("order") == "permuted" ? analysis::OrderRule::permuted
+                                                                : analysis::OrderRule::independent;
   const std::optional<analysis::ChanceTest> test =
       analysis::chance_test(c.at("classes"), blocks, order);
   if (!test) return {std::nullopt, std::nullopt};
@@ -251,7 +250,7 @@ Numbers label_swap(const json& c) {
 }
 
 Numbers discovery(const json& c) {
-  const std::vector<double> adjusted = analysis::discovery_adjusted(numbers(c.at("p")));
+  const std::vector<double> adjusted = analysis::benjamini_hochberg_adjusted(numbers(c.at("p")));
   return {adjusted.begin(), adjusted.end()};
 }
 

@@ -10,6 +10,7 @@
 #include "core/version.hpp"
 #include "protocols/identification/analysis/report.hpp"
 #include "support/catch.hpp"
+#include "support/names.hpp"
 
 #include <algorithm>
 #include <array>
@@ -330,7 +331,7 @@ TEST_CASE("A dataset names the program that exported it, and the one that record
         nlohmann::json::parse(text_of_file(folder / "dataset_description.json"));
     CHECK(description["GeneratedBy"][0]["Version"] == exporter);
   }
-  CHECK(contains(text_of_file(psych / "CHANGES.md"), "Exported by Touchtrial " + exporter + "."));
+  CHECK(names(text_of_file(psych / "CHANGES.md"), exporter));
   const std::string recorder =
       "recorded with Touchtrial " + open.source.store.commitment().program_version;
   CHECK(contains(text_of_file(bids / "README"), recorder));

@@ -20,7 +20,8 @@ FakeSession of_somebody(const std::string& participant, int enrolment) {
           .enrolment = enrolment,
           .answers = FakeStudy::always_right(),
           .before_trials = [](record::SessionRecorder& recorder) {
-            recorder.remarked(milliseconds(50), record::EventKind::noted, "came late");
+            recorder.add(milliseconds(50), record::EventKind::noted,
+                         record::RemarkBody{.text = "came late"});
             recorder.presented(milliseconds(100), 1, 0);
             recorder.interrupted(milliseconds(1500), 1, "device lost", kDetail);
           }};

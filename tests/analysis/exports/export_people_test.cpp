@@ -22,11 +22,14 @@ FakeSession with_a_cramp(const std::string& participant, int enrolment) {
           .complete = false,
           .stop_after = 0,
           .before_trials = [](record::SessionRecorder& recorder) {
-            recorder.deviated(milliseconds(10), {.code = "no-curtain", .text = "in the wash"});
-            recorder.remarked(milliseconds(50), record::EventKind::noted, "tall");
+            recorder.add(milliseconds(10), record::EventKind::deviated,
+                         record::DeviationBody{.code = "no-curtain", .text = "in the wash"});
+            recorder.add(milliseconds(50), record::EventKind::noted,
+                         record::RemarkBody{.text = "tall"});
             recorder.presented(milliseconds(100), 1, 0);
             recorder.interrupted(milliseconds(1500), 1, "device fault", kOverspeed);
-            recorder.stopped(milliseconds(2500), {.code = "", .text = "a cramp"});
+            recorder.add(milliseconds(2500), record::EventKind::stopped,
+                         record::StopBody{.code = "", .text = "a cramp"});
           }};
 }
 

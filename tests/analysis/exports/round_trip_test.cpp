@@ -111,13 +111,18 @@ TEST_CASE("How a study was collected is the same from its CSV files, in words an
                                        {1.0, 1.25, 0.8}, {1.0, 1.0, 1.5}};
   felt.servo = record::ServoHealth{999.75, 1.5, 40.25, 80.125, 1e3 / 3.0, 2, 17};
   felt.before_trials = [](record::SessionRecorder& recorder) {
-    recorder.practised(milliseconds(10),
-                       {.round = 1, .presentation = 1, .answer = Chosen{0}, .correct = false});
-    recorder.practised(milliseconds(20),
-                       {.round = 2, .presentation = 1, .answer = Chosen{0}, .correct = true});
-    recorder.deviated(milliseconds(40), {"no-masking-noise", "no \"sound\" card,\nnone"});
-    recorder.deviated(milliseconds(45), {"practice-not-passed", ""});
-    recorder.resumed(milliseconds(70), {.after = "program-ended", .away_s = 60.0});
+    recorder.add(
+        milliseconds(10), record::EventKind::practised,
+        record::PracticeBody{.round = 1, .presentation = 1, .answer = Chosen{0}, .correct = false});
+    recorder.add(
+        milliseconds(20), record::EventKind::practised,
+        record::PracticeBody{.round = 2, .presentation = 1, .answer = Chosen{0}, .correct = true});
+    recorder.add(milliseconds(40), record::EventKind::deviated,
+                 record::DeviationBody{"no-masking-noise", "no \"sound\" card,\nnone"});
+    recorder.add(milliseconds(45), record::EventKind::deviated,
+                 record::DeviationBody{"practice-not-passed", ""});
+    recorder.add(milliseconds(70), record::EventKind::resumed,
+                 record::ResumedBody{.after = "program-ended", .away_s = 60.0});
   };
   study.add(felt);
   study.store().note(7, milliseconds(800), "moved-hand", "during trial 3");

@@ -48,7 +48,7 @@ TEST_CASE("load_collection tells what the study prescribes") {
 TEST_CASE("A prescription has the validity rule that the study sets") {
   FakeStudy study({.trials = R"({"validity": {"contact_s": 2.5, "saturated_share": 0.5}})"});
   CHECK(analysis::load_collection(study.store()).prescription.validity ==
-        study::ValidityRule{.least_contact_s = 2.5, .saturated_share = 0.5});
+        study::ValidityRule{.min_contact_s = 2.5, .saturated_share = 0.5});
 }
 
 TEST_CASE("A prescription follows the section on sessions where there is one") {
@@ -69,15 +69,20 @@ TEST_CASE("A session's record holds practice, deviations, resumptions and statio
   session.servo = record::ServoHealth{.rate_hz = 998.0, .lateness_p99_us = 40.0};
   session.before_trials = [](record::SessionRecorder& recorder) {
     const auto practise = [&](milliseconds at, int round, int presentation, bool correct) {
-      recorder.practised(at, {round, presentation, Chosen{0}, correct});
+      recorder.add(at, record::EventKind::practised,
+                   record::PracticeBody{round, presentation, Chosen{0}, correct});
     };
     practise(milliseconds(10), 1, 1, false);
     practise(milliseconds(20), 2, 1, true);
     practise(milliseconds(30), 2, 2, true);
-    recorder.deviated(milliseconds(40), {"no-masking-noise", "no sound card"});
-    recorder.deviated(milliseconds(50), {"no-masking-noise", "no sound card"});
-    recorder.resumed(milliseconds(60), {.after = "pause", .away_s = 3.0});
-    recorder.resumed(milliseconds(70), {.after = "program-ended", .away_s = 60.0});
+    recorder.add(milliseconds(40), record::EventKind::deviated,
+                 record::DeviationBody{"no-masking-noise", "no sound card"});
+    recorder.add(milliseconds(50), record::EventKind::deviated,
+                 record::DeviationBody{"no-masking-noise", "no sound card"});
+    recorder.add(milliseconds(60), record::EventKind::resumed,
+                 record::ResumedBody{.after = "pause", .away_s = 3.0});
+    recorder.add(milliseconds(70), record::EventKind::resumed,
+                 record::ResumedBody{.after = "program-ended", .away_s = 60.0});
   };
   study.add(session);
   study.store().note(1, milliseconds(100), "moved-hand", "during trial 3");
@@ -126,8 +131,10 @@ TEST_CASE("Without the key a record lacks what a session's people said and answe
   FakeStudy study(study::identification::classification());
   FakeSession session = session_of("P01", 1);
   session.before_trials = [](record::SessionRecorder& recorder) {
-    recorder.practised(milliseconds(10), {1, 1, Chosen{0}, true});
-    recorder.deviated(milliseconds(40), {"no-masking-noise", "no sound card"});
+    recorder.add(milliseconds(10), record::EventKind::practised,
+                 record::PracticeBody{1, 1, Chosen{0}, true});
+    recorder.add(milliseconds(40), record::EventKind::deviated,
+                 record::DeviationBody{"no-masking-noise", "no sound card"});
   };
   study.add(session);
   const analysis::Collection collection = analysis::load_collection(study.store());
@@ -146,8 +153,10 @@ TEST_CASE("Practice that did not reach its criterion is reported") {
   FakeStudy study(study::identification::classification());
   FakeSession session = session_of("P01", 1);
   session.before_trials = [](record::SessionRecorder& recorder) {
-    recorder.practised(milliseconds(10), {1, 1, Chosen{0}, false});
-    recorder.deviated(milliseconds(20), {"practice-not-passed", "0 of 1"});
+    recorder.add(milliseconds(10), record::EventKind::practised,
+                 record::PracticeBody{1, 1, Chosen{0}, false});
+    recorder.add(milliseconds(20), record::EventKind::deviated,
+                 record::DeviationBody{"practice-not-passed", "0 of 1"});
   };
   study.add(session);
   study.add(session_of("P02", 2));
@@ -162,7 +171,8 @@ TEST_CASE("Every participant is counted once, by the session that stands") {
   FakeSession stopped = session_of("stopped", 2);
   stopped.complete = false;
   stopped.before_trials = [](record::SessionRecorder& recorder) {
-    recorder.remarked(milliseconds(10), record::EventKind::stopped, "felt unwell");
+    recorder.add(milliseconds(10), record::EventKind::stopped,
+                 record::StopBody{.text = "felt unwell"});
   };
   study.add(stopped);
   study.add(session_of("asleep", 3));
@@ -210,7 +220,8 @@ TEST_CASE("A collection holds nothing about an erased participant except the wit
   session.station = falcon();
   session.servo = record::ServoHealth{};
   session.before_trials = [](record::SessionRecorder& recorder) {
-    recorder.deviated(milliseconds(40), {"no-curtain", "told a name"});
+    recorder.add(milliseconds(40), record::EventKind::deviated,
+                 record::DeviationBody{"no-curtain", "told a name"});
   };
   study.add(session);
   study.store().exclude(1, milliseconds(10), "told a name");

@@ -5,6 +5,7 @@
 #include "analysis/text_matching.hpp"
 #include "core/errors.hpp"
 #include "support/catch.hpp"
+#include "support/names.hpp"
 
 #include <algorithm>
 
@@ -108,7 +109,7 @@ TEST_CASE("A look at one participant shows that participant's sessions alone") {
   }
   record::StudyStore& store = study.store();
   CHECK_THROWS_WITH(analysis::load_outcomes(store, study.key(), "P01"),
-                    holds_text("unblind DB --participant P01"));
+                    names("unblind --participant P01"));
   store.look_at("P01", std::chrono::milliseconds(10), "asked for the data");
   CHECK(analysis::load_outcomes(store, study.key(), "P01").trials.size() == 12);
   CHECK(analysis::load_outcomes(store, study.key(), "P01").sessions.size() == 1);

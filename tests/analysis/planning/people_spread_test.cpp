@@ -21,7 +21,7 @@ double right_at(double log_noise) {
 planning::NoiseAnswers noise_answers() {
   planning::NoiseAnswers all{-4.0, 0.25, kClasses, {}};
   for (int k = 0; k <= 32; ++k) {
-    const double right = right_at(all.least_log_noise + k * all.step);
+    const double right = right_at(all.min_log_noise + k * all.step);
     std::vector<double> cells;
     for (int i = 0; i < kClasses * kClasses; ++i) {
       cells.push_back(i / kClasses == i % kClasses ? right : (1.0 - right) / (kClasses - 1));
@@ -61,8 +61,8 @@ TEST_CASE("the spread between people is found, and its interval holds it") {
   CHECK(found.interval.lower.value() > 0.3);
   CHECK(found.interval.upper.value() > 0.7);
   CHECK(found.log_noise == Approx(0.0).margin(0.3));
-  CHECK(found.alike_p < 1e-6);
-  CHECK(found.given_p == found.alike_p);
+  CHECK(found.equal_p < 1e-6);
+  CHECK(found.assumed_p == found.equal_p);
 }
 
 TEST_CASE("a given spread is tested too, and fixed numbers stay") {
@@ -75,11 +75,11 @@ TEST_CASE("a given spread is tested too, and fixed numbers stay") {
   const auto found = planning::people_spread(noise_answers(), people, start).value();
   CHECK(found.log_noise == 0.25);
   CHECK(found.lapse == 0.1);
-  CHECK(found.given_p > 0.05);
-  CHECK(found.alike_p < 0.01);
+  CHECK(found.assumed_p > 0.05);
+  CHECK(found.equal_p < 0.01);
   planning::SpreadStart too_much = start;
   too_much.spread = 2.5;
-  CHECK(planning::people_spread(noise_answers(), people, too_much)->given_p < 0.01);
+  CHECK(planning::people_spread(noise_answers(), people, too_much)->assumed_p < 0.01);
 }
 
 TEST_CASE("one person has no spread, and impossible arguments are refused") {

@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "protocols/session/tiny_study.hpp"
 #include "support/catch.hpp"
+#include "support/names.hpp"
 
 #include <string_view>
 #include <vector>
@@ -24,8 +25,7 @@ TEST_CASE("a planner without tracks or thresholds refuses them with the place") 
   CHECK(planner.study_with_tracks().empty());
   CHECK_THROWS_AS(planner.procedure(tiny.key().study, 1, {}), UsageError);
   CHECK_THROWS_WITH(planner.pilot_thresholds({}, "s.json: /rendering/gains/curve: pilots.db"),
-                    "s.json: /rendering/gains/curve: pilots.db: is no detection study along gain "
-                    "that asks which interval");
+                    names("s.json /rendering/gains/curve pilots.db"));
 }
 
 }  // namespace

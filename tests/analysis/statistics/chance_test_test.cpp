@@ -87,7 +87,7 @@ AnsweredBlock with_right(int right) {
 
 TEST_CASE(
     "what chance_test can reach is the largest p within its level that the answers can have") {
-  for (const DealtOrder order : {DealtOrder::permuted, DealtOrder::independent}) {
+  for (const OrderRule order : {OrderRule::permuted, OrderRule::independent}) {
     // Every order of the presentations under the same answers: every number of right answers.
     AnsweredBlock block{{0, 0, 0, 1, 1, 1, 2, 2}, {0, 0, 1, 1, 2, 2, 0, 1}};
     const double said = analysis::chance_test(3, std::vector{block}, order)->attainable;
@@ -106,7 +106,7 @@ TEST_CASE(
 
 TEST_CASE("Independent presentations need 9 right of 25 at chance 1/5") {
   const std::vector<AnsweredBlock> nine{with_right(9)};
-  const ChanceTest test = *analysis::chance_test(5, nine, DealtOrder::independent);
+  const ChanceTest test = *analysis::chance_test(5, nine, OrderRule::independent);
   CHECK(test.correct == 9);
   CHECK(test.trials == 25);
   CHECK(test.expected == Approx(5.0));
@@ -114,7 +114,7 @@ TEST_CASE("Independent presentations need 9 right of 25 at chance 1/5") {
   // SciPy 1.10, binom.sf(8, 25, 0.2) and binom.sf(7, 25, 0.2).
   CHECK(test.p == Approx(0.04677424217777292).epsilon(1e-12));
   const std::vector<AnsweredBlock> eight{with_right(8)};
-  CHECK(analysis::chance_test(5, eight, DealtOrder::independent)->p ==
+  CHECK(analysis::chance_test(5, eight, OrderRule::independent)->p ==
         Approx(0.10912279599503055).epsilon(1e-12));
 }
 
@@ -160,7 +160,7 @@ TEST_CASE("chance_test equals the listing of all orders, also with missing respo
     const AnsweredBlock first = random_block(classes, 2 + round % 6, random);
     const AnsweredBlock second = random_block(classes, 1 + round % 5, random);
     const std::vector<AnsweredBlock> blocks{first, second};
-    const ChanceTest test = *analysis::chance_test(classes, blocks, DealtOrder::permuted);
+    const ChanceTest test = *analysis::chance_test(classes, blocks, OrderRule::permuted);
     const std::vector<double> all = convolved(by_listing(first.presented, first.answered),
                                               by_listing(second.presented, second.answered));
     double mean = 0.0;
@@ -181,7 +181,7 @@ TEST_CASE("A card-counter who is told the answers averages 8.7 of 25 without fee
     const AnsweredBlock block{presented, card_counter(presented)};
     right += right_in(presented, block.answered);
     const std::vector<AnsweredBlock> one{block};
-    if (analysis::chance_test(5, one, DealtOrder::permuted)->p <= 0.05) ++found;
+    if (analysis::chance_test(5, one, OrderRule::permuted)->p <= 0.05) ++found;
   }
   CHECK(right / sessions == Approx(8.7).margin(0.1));
   CHECK(found > 0.2 * sessions);  // no test of counts can tell that from feeling
@@ -189,12 +189,12 @@ TEST_CASE("A card-counter who is told the answers averages 8.7 of 25 without fee
 
 TEST_CASE("chance_test by redrawing comes near the exact p, and says that it is not exact") {
   const std::vector<AnsweredBlock> blocks{with_right(8), with_right(7)};
-  const double exact = analysis::chance_test(5, blocks, DealtOrder::permuted)->p;
+  const double exact = analysis::chance_test(5, blocks, OrderRule::permuted)->p;
   const auto redraw = [&](std::size_t block, int deal) {
     RandomStream random(7, "chance test test", 2 * static_cast<std::uint64_t>(deal) + block);
     return balanced_25(random);
   };
-  const ChanceTest test = *analysis::chance_test(5, blocks, DealtOrder::redrawn, redraw, 4000);
+  const ChanceTest test = *analysis::chance_test(5, blocks, OrderRule::redrawn, redraw, 4000);
   CHECK_FALSE(test.exact);
   CHECK(test.deals == 4000);
   CHECK(std::abs(test.p - exact) < 4.0 * std::sqrt(exact * (1.0 - exact) / 4000.0) + 1.0 / 4000.0);
@@ -204,17 +204,17 @@ TEST_CASE("chance_test by redrawing comes near the exact p, and says that it is 
 TEST_CASE("A Monte Carlo p is never 0") {
   const std::vector<AnsweredBlock> all{with_right(25)};
   const auto wrong = [](std::size_t, int) { return std::vector<int>(25, 0); };
-  CHECK(analysis::chance_test(5, all, DealtOrder::redrawn, wrong, 99)->p == 0.01);
+  CHECK(analysis::chance_test(5, all, OrderRule::redrawn, wrong, 99)->p == 0.01);
 }
 
 TEST_CASE("chance_test of a block too long to count shuffles it") {
   RandomStream random(8, "chance test test");
   const std::vector<AnsweredBlock> blocks{random_block(3, 401, random)};
-  const ChanceTest test = *analysis::chance_test(3, blocks, DealtOrder::permuted, {}, 199);
+  const ChanceTest test = *analysis::chance_test(3, blocks, OrderRule::permuted, {}, 199);
   CHECK_FALSE(test.exact);
   CHECK(test.deals == 199);
   CHECK(test.p >= 1.0 / 200.0);
-  CHECK(test.p == analysis::chance_test(3, blocks, DealtOrder::permuted, {}, 199)->p);
+  CHECK(test.p == analysis::chance_test(3, blocks, OrderRule::permuted, {}, 199)->p);
 }
 
 TEST_CASE("chance_test of a thousand participants nears the normal limit") {
@@ -228,7 +228,7 @@ TEST_CASE("chance_test of a thousand participants nears the normal limit") {
     variance += 25.0 * 25.0 / 24.0 * 0.2 * 0.8;  // n^2 / (n - 1) (1/K) (1 - 1/K)
     blocks.push_back(block);
   }
-  const ChanceTest test = *analysis::chance_test(5, blocks, DealtOrder::permuted);
+  const ChanceTest test = *analysis::chance_test(5, blocks, OrderRule::permuted);
   CHECK(test.exact);
   CHECK(test.expected == Approx(5000.0));
   const double z = (test.correct - 0.5 - test.expected) / std::sqrt(variance);
@@ -237,42 +237,42 @@ TEST_CASE("chance_test of a thousand participants nears the normal limit") {
 
 TEST_CASE("chance_test at the ends: all right, all wrong, nothing answered, nothing presented") {
   const std::vector<AnsweredBlock> right{with_right(25)};
-  CHECK(analysis::chance_test(5, right, DealtOrder::permuted)->p == Approx(1.6042075331639573e-15));
-  CHECK(analysis::chance_test(5, right, DealtOrder::independent)->p == Approx(std::pow(0.2, 25)));
+  CHECK(analysis::chance_test(5, right, OrderRule::permuted)->p == Approx(1.6042075331639573e-15));
+  CHECK(analysis::chance_test(5, right, OrderRule::independent)->p == Approx(std::pow(0.2, 25)));
   const std::vector<AnsweredBlock> wrong{with_right(0)};
-  CHECK(analysis::chance_test(5, wrong, DealtOrder::permuted)->p == Approx(1.0).epsilon(1e-14));
-  CHECK(analysis::chance_test(5, wrong, DealtOrder::independent)->p == 1.0);
+  CHECK(analysis::chance_test(5, wrong, OrderRule::permuted)->p == Approx(1.0).epsilon(1e-14));
+  CHECK(analysis::chance_test(5, wrong, OrderRule::independent)->p == 1.0);
   const std::vector<AnsweredBlock> silent{{{0, 1, 1}, Answers(3)}};
-  const ChanceTest none = *analysis::chance_test(2, silent, DealtOrder::permuted);
+  const ChanceTest none = *analysis::chance_test(2, silent, OrderRule::permuted);
   CHECK(none.p == 1.0);
   CHECK(none.expected == 0.0);
   CHECK(none.trials == 3);
-  CHECK(analysis::chance_test(2, silent, DealtOrder::independent)->p == 1.0);
-  CHECK_FALSE(analysis::chance_test(5, {}, DealtOrder::permuted).has_value());
+  CHECK(analysis::chance_test(2, silent, OrderRule::independent)->p == 1.0);
+  CHECK_FALSE(analysis::chance_test(5, {}, OrderRule::permuted).has_value());
   CHECK_FALSE(
-      analysis::chance_test(5, std::vector<AnsweredBlock>(2), DealtOrder::permuted).has_value());
+      analysis::chance_test(5, std::vector<AnsweredBlock>(2), OrderRule::permuted).has_value());
 }
 
 TEST_CASE("With a single class nobody can do better than chance") {
   const std::vector<AnsweredBlock> one{{{1, 1, 1}, {1, 1, 0}}};
-  CHECK(analysis::chance_test(2, one, DealtOrder::permuted)->p == 1.0);
+  CHECK(analysis::chance_test(2, one, OrderRule::permuted)->p == 1.0);
 }
 
 TEST_CASE("chance_test refuses impossible arguments") {
   const std::vector<AnsweredBlock> uneven{{{0, 1}, {0}}};
-  CHECK_THROWS_AS(analysis::chance_test(2, uneven, DealtOrder::permuted), std::invalid_argument);
+  CHECK_THROWS_AS(analysis::chance_test(2, uneven, OrderRule::permuted), std::invalid_argument);
   const std::vector<AnsweredBlock> unknown{{{0, 2}, {0, 1}}};
-  CHECK_THROWS_AS(analysis::chance_test(2, unknown, DealtOrder::permuted), std::invalid_argument);
+  CHECK_THROWS_AS(analysis::chance_test(2, unknown, OrderRule::permuted), std::invalid_argument);
   const std::vector<AnsweredBlock> answered{{{0, 1}, {0, 2}}};
-  CHECK_THROWS_AS(analysis::chance_test(2, answered, DealtOrder::independent),
+  CHECK_THROWS_AS(analysis::chance_test(2, answered, OrderRule::independent),
                   std::invalid_argument);
   const std::vector<AnsweredBlock> good{{{0, 1}, {0, 1}}};
-  CHECK_THROWS_AS(analysis::chance_test(2, good, DealtOrder::redrawn), std::invalid_argument);
+  CHECK_THROWS_AS(analysis::chance_test(2, good, OrderRule::redrawn), std::invalid_argument);
   const auto shorter = [](std::size_t, int) { return std::vector<int>{0}; };
-  CHECK_THROWS_AS(analysis::chance_test(2, good, DealtOrder::redrawn, shorter),
+  CHECK_THROWS_AS(analysis::chance_test(2, good, OrderRule::redrawn, shorter),
                   std::invalid_argument);
   const auto longer = [](std::size_t, int) { return std::vector<int>{0, 1}; };
-  CHECK_THROWS_AS(analysis::chance_test(2, good, DealtOrder::redrawn, longer, 0),
+  CHECK_THROWS_AS(analysis::chance_test(2, good, OrderRule::redrawn, longer, 0),
                   std::invalid_argument);
   CHECK_THROWS_AS(analysis::match_probabilities({{2, 1}}, 3), std::invalid_argument);
   CHECK_THROWS_AS(analysis::match_probabilities({{2, 3}}, 2), std::invalid_argument);
@@ -287,8 +287,8 @@ TEST_CASE("A p against chance is never 0, however many were right") {
       block.answered.emplace_back(i % 5);
     }
   }
-  CHECK(analysis::chance_test(5, blocks, DealtOrder::permuted)->p == 1e-280);
-  CHECK(analysis::chance_test(5, blocks, DealtOrder::independent)->p == 1e-280);
+  CHECK(analysis::chance_test(5, blocks, OrderRule::permuted)->p == 1e-280);
+  CHECK(analysis::chance_test(5, blocks, OrderRule::independent)->p == 1e-280);
 }
 
 }  // namespace touchtrial

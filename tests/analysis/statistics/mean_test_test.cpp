@@ -32,7 +32,7 @@ TEST_CASE("t and the effect size with its interval are SciPy's, by stats.nct") {
   CHECK(found.d == Approx(0.9520304654623503).epsilon(1e-12));
   CHECK(found.interval->low == Approx(0.0821891084103069).epsilon(1e-8));
   CHECK(found.interval->high == Approx(1.7782941156843195).epsilon(1e-8));
-  CHECK_FALSE(bare_t_statistic(kShares, 0.2)->interval);
+  CHECK_FALSE(t_statistic_without_interval(kShares, 0.2)->interval);
   CHECK_FALSE(t_statistic(std::vector{0.5}));
   CHECK_FALSE(t_statistic(std::vector{0.5, 0.5, 0.5}));
   CHECK_FALSE(t_statistic(std::vector{0.5, 0.5 + 1e-6})->interval);

@@ -288,23 +288,24 @@ TEST_CASE("holm_adjusted refuses numbers that are not probabilities") {
 }
 
 // Expected values: statsmodels 0.13, multipletests with "fdr_bh".
-TEST_CASE("discovery_adjusted gives Benjamini and Hochberg's values, in the order given") {
+TEST_CASE("benjamini_hochberg_adjusted gives Benjamini and Hochberg's values, in the order given") {
   const std::vector<double> adjusted =
-      analysis::discovery_adjusted(std::vector<double>{0.01, 0.04, 0.03, 0.5});
+      analysis::benjamini_hochberg_adjusted(std::vector<double>{0.01, 0.04, 0.03, 0.5});
   CHECK(adjusted[0] == Approx(0.04));
   CHECK(adjusted[1] == Approx(0.16 / 3.0));
   CHECK(adjusted[2] == Approx(0.16 / 3.0));
   CHECK(adjusted[3] == Approx(0.5));
-  CHECK(analysis::discovery_adjusted({}).empty());
-  CHECK_THROWS_AS(analysis::discovery_adjusted(std::vector<double>{1.1}), std::invalid_argument);
+  CHECK(analysis::benjamini_hochberg_adjusted({}).empty());
+  CHECK_THROWS_AS(analysis::benjamini_hochberg_adjusted(std::vector<double>{1.1}),
+                  std::invalid_argument);
 }
 
-TEST_CASE("discovery_adjusted is never above Holm's adjustment, and never below p") {
+TEST_CASE("benjamini_hochberg_adjusted is never above Holm's adjustment, and never below p") {
   RandomStream random(1, "discovery");
   for (int round = 0; round < 50; ++round) {
     std::vector<double> p(1 + random.below(12));
     for (double& one : p) one = random.uniform() * random.uniform();
-    const std::vector<double> discovery = analysis::discovery_adjusted(p);
+    const std::vector<double> discovery = analysis::benjamini_hochberg_adjusted(p);
     const std::vector<double> holm = analysis::holm_adjusted(p);
     for (std::size_t i = 0; i < p.size(); ++i) {
       CHECK(discovery[i] >= p[i]);

@@ -95,7 +95,7 @@ class Script final : public session::Participant,
     ++polls_;
     if (std::holds_alternative<session::PauseStep>(step)) return std::nullopt;
     if (const auto* const notice = std::get_if<session::NoticeStep>(&step)) {
-      if (!notice->may_go_on) return std::nullopt;
+      if (!notice->can_resume) return std::nullopt;
     }
     if (const auto* const asked = std::get_if<session::AnswerStep>(&step); asked && polls_ == 1) {
       write({{"is", "asked"}, {"practice", asked->practice}});
@@ -141,7 +141,7 @@ class Script final : public session::Participant,
         if (++waits % 10 == 0) person.exploring(control);
       }
     };
-    session::TraceBuilder builder(trace, options.rate_hz, session::most_samples(options));
+    session::TraceBuilder builder(trace, options.rate_hz, session::max_samples(options));
     device::HapticDevice& device = participant.begin_exploring(plane);
     Sink sink(builder);
     Clock clock(participant);

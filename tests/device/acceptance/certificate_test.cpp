@@ -4,6 +4,7 @@
 #include "core/files.hpp"
 #include "study/refusal.hpp"
 #include "support/catch.hpp"
+#include "support/names.hpp"
 #include "support/temp_folder.hpp"
 
 #include <string>
@@ -94,7 +95,7 @@ TEST_CASE("a certificate belongs to the scales with which it was made") {
   const auto soon = certificate.made + std::chrono::days(30);
   CHECK_THAT(message_of<DeviceError>(
                  [&] { return device::check_certificate(certificate, the_falcon(), soon); }),
-             holds_text("force_scale 1, 1.25, 1") && holds_text("device accept falcon"));
+             names("1.25 falcon"));
   device::DeviceInfo scaled = the_falcon();
   scaled.scale = certificate.scale;
   CHECK(device::check_certificate(certificate, scaled, soon).empty());
@@ -105,8 +106,7 @@ TEST_CASE("a force that is off names the scale that puts it right") {
   certificate.scale.force = {1.0, 1.25, 1.0};
   certificate.axes[0].weight = device::WeighResult{1.2, 1.0, 0.02};  // y is the first
   REQUIRE(certificate.failures().size() == 1);
-  CHECK_THAT(certificate.failures().front(),
-             holds_text("axis y") && holds_text("force_scale") && holds_text("1.50"));
+  CHECK_THAT(certificate.failures().front(), names("y force_scale 1.50"));
 }
 
 TEST_CASE("a certificate of the former format is refused with the command that makes a new one") {
@@ -114,7 +114,7 @@ TEST_CASE("a certificate of the former format is refused with the command that m
   const auto path = folder.path() / "certificate.json";
   replace_file(path, R"({"kind": "touchtrial device acceptance 2", "observed": []})");
   CHECK_THAT(message_of<StudyError>([&] { return device::read_certificate(path); }),
-             holds_text("touchtrial device accept"));
+             names("touchtrial device accept"));
 }
 
 TEST_CASE("an acceptance is valid for its own device only, if it passed and was no rehearsal") {
@@ -126,16 +126,16 @@ TEST_CASE("an acceptance is valid for its own device only, if it passed and was 
   };
   device::DeviceInfo other = the_falcon();
   other.serial = "F2";
-  CHECK_THAT(refusal(certificate, other), holds_text("F2") && holds_text("device accept falcon"));
+  CHECK_THAT(refusal(certificate, other), names("F2 falcon"));
   other = the_falcon();
   other.model = "Novint Falcon 2";
-  CHECK_THAT(refusal(certificate, other), holds_text("Falcon 2"));
+  CHECK_THAT(refusal(certificate, other), holds_text("Novint Falcon 2"));
   Certificate emulated = certificate;
   emulated.emulated = "falcon";
-  CHECK_THAT(refusal(emulated, the_falcon()), holds_text("proves no device"));
+  CHECK_THAT(refusal(emulated, the_falcon()), names("falcon"));
   Certificate failed = certificate;
   failed.axes[1].plus->along_mm = -2.0;
-  CHECK_THAT(refusal(failed, the_falcon()), holds_text("the sign is wrong"));
+  CHECK_THAT(refusal(failed, the_falcon()), names(std::string(name_of(failed.axes[1].axis))));
   failed = certificate;
   failed.axes.pop_back();
   CHECK_FALSE(failed.passed());
@@ -151,12 +151,13 @@ TEST_CASE("a delay must be shown to be below its limit by all of its interval") 
   };
   CHECK(first_failure(device::Measured{4.0, 0.9}).empty());
   CHECK(first_failure(device::Measured{3.0, 2.0}).empty());
-  CHECK_THAT(first_failure(device::Measured{4.8, 1.2}), holds_text("not shown to be at most 5 ms"));
-  CHECK_THAT(first_failure(device::Measured{-1.25, 5.5}), holds_text("too unclear"));
-  CHECK_THAT(first_failure(device::Measured{13.0, 9.0}), holds_text("too unclear"));
-  CHECK_THAT(first_failure(device::Measured{8.0, 0.6}), holds_text("more than 5 ms"));
-  CHECK_THAT(first_failure(std::nullopt),
-             holds_text("axis y: the delay was not measured: no bend"));
+  CHECK_THAT(first_failure(device::Measured{4.8, 1.2}), names("y 4.8 5"));
+  CHECK_THAT(first_failure(device::Measured{-1.25, 5.5}), names("y 5"));
+  CHECK(device::verdict_on_delay({-1.25, 5.5}) == device::DelayVerdict::unclear);
+  CHECK_THAT(first_failure(device::Measured{13.0, 9.0}), names("y 5"));
+  CHECK(device::verdict_on_delay({13.0, 9.0}) == device::DelayVerdict::unclear);
+  CHECK_THAT(first_failure(device::Measured{8.0, 0.6}), names("y 5"));
+  CHECK_THAT(first_failure(std::nullopt), names("y") && holds_text("no bend"));
   Certificate left_out = passed_certificate();
   left_out.axes[0].delay_ms.reset();
   left_out.axes[0].delay_left_out = true;
@@ -180,7 +181,7 @@ TEST_CASE("a device whose softest wall swings fails") {
   Certificate certificate = passed_certificate();
   certificate.wall = device::WallResult{0.0, 0.1, "oscillation"};
   REQUIRE(certificate.failures().size() == 1);
-  CHECK_THAT(certificate.failures().front(), holds_text("0.1 N/mm, swings"));
+  CHECK_THAT(certificate.failures().front(), names("0.1 N/mm"));
 }
 
 TEST_CASE("an acceptance that is half a year old or of another firmware causes a warning") {
@@ -189,10 +190,10 @@ TEST_CASE("an acceptance that is half a year old or of another firmware causes a
     return device::check_certificate(certificate, info, certificate.made + std::chrono::days(days));
   };
   CHECK(check(180, the_falcon()).empty());
-  CHECK_THAT(check(200, the_falcon()), holds_text("200 days"));
+  CHECK_THAT(check(200, the_falcon()), names("200"));
   device::DeviceInfo newer = the_falcon();
   newer.firmware = "2";
-  CHECK_THAT(check(1, newer), holds_text("firmware"));
+  CHECK_FALSE(check(1, newer).empty());
 }
 
 TEST_CASE("a certificate from the future is refused beyond the tolerance of clocks") {
@@ -201,7 +202,7 @@ TEST_CASE("a certificate from the future is refused beyond the tolerance of cloc
   CHECK(device::check_certificate(certificate, the_falcon(), before(23)).empty());
   CHECK_THAT(message_of<DeviceError>(
                  [&] { return device::check_certificate(certificate, the_falcon(), before(25)); }),
-             holds_text("2026-02-28") && holds_text("clock"));
+             names("2026-02-28T09:00:05Z"));
 }
 
 TEST_CASE("long names of a certificate are cut in its refusals") {
@@ -223,10 +224,10 @@ TEST_CASE("a study's wall must be softer than one that swung in the acceptance")
   };
   device::require_stable(certificate, 0.6);
   device::require_stable(certificate, 0.7);
-  CHECK_THAT(refusal(0.8), holds_text("0.78") && holds_text("at most 0.6"));
+  CHECK_THAT(refusal(0.8), names("0.78 0.6"));
   // Where even the softest wall swung there is no advice.
   certificate.wall = device::WallResult{0.0, 0.1, "oscillation"};
-  CHECK_THAT(refusal(0.4), holds_text("even the softest") && !holds_text("at most"));
+  CHECK_THAT(refusal(0.4), names("0.1") && !names("0.0"));
 }
 
 }  // namespace touchtrial

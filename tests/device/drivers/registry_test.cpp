@@ -4,6 +4,7 @@
 #include "core/files.hpp"
 #include "study/refusal.hpp"
 #include "support/catch.hpp"
+#include "support/names.hpp"
 
 #include <filesystem>
 #include <set>
@@ -58,11 +59,9 @@ TEST_CASE(
   CHECK(driver_of_model("") == nullptr);
   CHECK(model_of_device("omega").name == "omega_3");
   for (const char* name : {"sigma", "theremin", ""}) {
-    CHECK(refuses<UsageError>([=] { static_cast<void>(model_of_device(name)); },
-                              "known are falcon, ideal,"));
+    CHECK(refuses<UsageError>([=] { static_cast<void>(model_of_device(name)); }, "falcon ideal"));
   }
-  CHECK(refuses<UsageError>([] { static_cast<void>(model_of_device("omgea")); },
-                            "did you mean omega?"));
+  CHECK(refuses<UsageError>([] { static_cast<void>(model_of_device("omgea")); }, "omgea omega"));
   CHECK_THROWS_AS(model_of_device("gone/mine.json"), FileError);
 }
 
@@ -106,11 +105,9 @@ TEST_CASE("every driver is listed whether it has a device or not") {
 
 TEST_CASE("a driver that does not exist is refused with the nearest name") {
   const auto opened = [](const char* name) { return [=] { return open_device(name, {}); }; };
-  CHECK(refuses<UsageError>(opened("simulatd"),
-                            "simulatd: there is no such device or driver; did "
-                            "you mean simulated?"));
-  CHECK(refuses<UsageError>(opened("omgea"), "did you mean omega?"));
-  CHECK(refuses<UsageError>(opened("theremin"), "device list"));
+  CHECK(refuses<UsageError>(opened("simulatd"), "simulatd simulated"));
+  CHECK(refuses<UsageError>(opened("omgea"), "omgea omega"));
+  CHECK(refuses<UsageError>(opened("theremin"), "theremin"));
 }
 
 }  // namespace touchtrial

@@ -5,6 +5,7 @@
 #include "device/fakes/fake_lsl.hpp"
 #include "device/platform/dynamic_library.hpp"
 #include "support/catch.hpp"
+#include "support/names.hpp"
 
 namespace touchtrial {
 namespace {
@@ -68,7 +69,7 @@ TEST_CASE("the Lab Streaming Layer gets a stream of markers and one of position 
 
 TEST_CASE("a layer that is absent or makes no outlet is refused with the remedy") {
   CHECK_THROWS_WITH(device::LabStreaming({.library = "libno-such-lsl.so"}, 1000.0),
-                    holds_text("libno-such-lsl.so") && holds_text("install liblsl"));
+                    names("libno-such-lsl.so liblsl"));
   const LoadedLsl lsl;
   lsl->makes_outlets = false;
   CHECK_THROWS_AS(device::LabStreaming({.library = TOUCHTRIAL_FAKE_LSL}, 1000.0), DeviceError);

@@ -3,6 +3,7 @@
 #include "core/files.hpp"
 #include "device/model/device_model.hpp"
 #include "support/catch.hpp"
+#include "support/names.hpp"
 #include "support/temp_folder.hpp"
 
 #include <filesystem>
@@ -71,25 +72,23 @@ TEST_CASE("a model round-trips through its file") {
 
 TEST_CASE("parameters that contradict each other are refused, in files and in code") {
   const std::vector<std::pair<json, std::string>> cases = {
-      {{{"coulomb_n", 0.3}, {"static_n", 0.2}}, "/static_n: is less than coulomb_n"},
-      {{{"stribeck_mm_s", 5}}, "/stribeck_mm_s: has no static friction"},
-      {{{"max_force_n", 2}, {"continuous_force_n", 3}}, "/continuous_force_n: is more than"},
-      {{{"velocity_readings", 1}}, "/velocity_readings: is 1, which has no slope"},
-      {{{"structure", {{"stiffness_n_per_mm", 1}, {"tip_share", 0.5}}}},
-       "/structure: needs a mass"},
-      {{{"mass_kg", 0.1}, {"structure", {{"stiffness_n_per_mm", 1}}}},
-       "/structure/tip_share: leaves one of the two"},
+      {{{"coulomb_n", 0.3}, {"static_n", 0.2}}, "/static_n coulomb_n"},
+      {{{"stribeck_mm_s", 5}}, "/stribeck_mm_s"},
+      {{{"max_force_n", 2}, {"continuous_force_n", 3}}, "/continuous_force_n"},
+      {{{"velocity_readings", 1}}, "/velocity_readings 1"},
+      {{{"structure", {{"stiffness_n_per_mm", 1}, {"tip_share", 0.5}}}}, "/structure"},
+      {{{"mass_kg", 0.1}, {"structure", {{"stiffness_n_per_mm", 1}}}}, "/structure/tip_share"},
       {{{"workspace", {{"least_mm", {0, 0, 0}}, {"greatest_mm", {1, 0, 1}}}}},
-       "/workspace/greatest_mm: must be greater than least_mm"},
+       "/workspace/greatest_mm least_mm"},
       {{{"mass_kg", -0.1}}, "/mass_kg"},
       {{{"delay_tick", 1}}, "delay_ticks"},
       {{{"provenance", {{"mass_kg", {{"source", "a book"}}}}}}, "/provenance/mass_kg"}};
-  for (const auto& [parameters, message] : cases) {
+  for (const auto& [parameters, places] : cases) {
     json model = parameters;
     model["name"] = "test";
-    CHECK_THAT(refusal_of(model), holds_text(message));
+    CHECK_THAT(refusal_of(model), names(places));
   }
-  CHECK_THAT(refusal_of({{"name", ""}}), holds_text("/name: is empty"));
+  CHECK_THAT(refusal_of({{"name", ""}}), names("/name"));
   CHECK_THROWS_AS(parse_device_model(R"({"name": "x", "mass_kg": 1e999})", "model.json"),
                   StudyError);
   CHECK_THROWS_AS(parse_device_model(R"({"name": "x", "mass_kg": NaN})", "model.json"), StudyError);
@@ -169,7 +168,7 @@ TEST_CASE(
 
 TEST_CASE("a model is found by name or by file, and a misspelt one by the nearest name") {
   CHECK(device_model("falcon").title == "Novint Falcon");
-  CHECK_THROWS_WITH(device_model("flacon"), holds_text("did you mean falcon?"));
+  CHECK_THROWS_WITH(device_model("flacon"), names("flacon falcon"));
   CHECK_THROWS_AS(device_model("flacon"), UsageError);
   CHECK_THROWS_WITH(device_model("zzzzzzzzz"), holds_text("touchtrial device models"));
   const TempFolder folder;

@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "support/catch.hpp"
+#include "support/names.hpp"
 #include "support/temp_folder.hpp"
 
 #include <string_view>
@@ -15,8 +16,8 @@ TEST_CASE("a missing library is named with the remedy, on one line") {
     device::DynamicLibrary("/nowhere/lib\nHD.so", device::Unload::when_closed, "do this");
   };
   CHECK_THROWS_AS(load(), DeviceError);
-  CHECK_THROWS_WITH(load(), holds_text("/nowhere/lib HD.so: cannot be loaded") &&
-                                holds_text("; do this") && !holds_text("\n"));
+  CHECK_THROWS_WITH(load(),
+                    names("/nowhere/lib HD.so") && holds_text("do this") && !holds_text("\n"));
 }
 
 TEST_CASE("a file that is not a library is refused with the linker's reason") {
@@ -27,13 +28,12 @@ TEST_CASE("a file that is not a library is refused with the linker's reason") {
   const auto file = folder.path() / "no-library.so";
   replace_file(file, content);
   CHECK_THROWS_WITH(device::DynamicLibrary(file, device::Unload::when_closed, "do this"),
-                    holds_text(file.string() + ": cannot be loaded") && holds_text("do this"));
+                    names(file.string()) && holds_text("do this"));
   std::filesystem::remove(file);
 }
 
 TEST_CASE("an empty name is refused, and does not mean the program itself") {
-  CHECK_THROWS_WITH(device::DynamicLibrary("", device::Unload::when_closed, "do this"),
-                    holds_text("no library is named"));
+  CHECK_THROWS_AS(device::DynamicLibrary("", device::Unload::when_closed, "do this"), DeviceError);
 }
 
 TEST_CASE("functions are found by name, and a missing one is named") {
@@ -45,7 +45,7 @@ TEST_CASE("functions are found by name, and a missing one is named") {
   library.find_if_any("hdNoSuchThing", found);
   CHECK(found == nullptr);
   CHECK_THROWS_WITH(library.function<void()>("hdNoSuchThing"),
-                    holds_text("has no function hdNoSuchThing; do this"));
+                    names("hdNoSuchThing") && holds_text("do this"));
 }
 
 TEST_CASE("a reference that no library has refuses a library, unless it is resolved as needed") {

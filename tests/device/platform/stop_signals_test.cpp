@@ -4,6 +4,7 @@
 
 #include "device/servo_fakes.hpp"
 #include "support/catch.hpp"
+#include "support/names.hpp"
 
 #include <atomic>
 #include <chrono>
@@ -208,7 +209,7 @@ TEST_CASE("a program that was asked to end reports the signal") {
   const StopOnSignals stop(device, control);
   std::raise(SIGTERM);
   CHECK(StopOnSignals::asked());
-  CHECK(StopOnSignals::message() == "stopped by SIGTERM; the force is zero");
+  CHECK_THAT(StopOnSignals::message(), names("SIGTERM"));
   CHECK(control.emergency_stop_asked());
   CHECK(device.halts == 1);
 }

@@ -5,6 +5,7 @@
 #include "engine/rendering/sample_fields.hpp"
 #include "support/catch.hpp"
 #include "support/guarded_bytes.hpp"
+#include "support/names.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -99,15 +100,11 @@ TEST_CASE("the header says how high a field reaches") {
 
 TEST_CASE("decode_field refuses a field of the former version, and a height that is not a number") {
   const Bytes file = engine::encode_field(random_field(2, 3, 4).view());
-  CHECK(refusal_of(with_value(file, 8, std::uint32_t{2})) ==
-        kFieldPath.string() +
-            ": has field version 2, not 3; copy the pack again or rebuild it with `touchtrial "
-            "prepare`");
-  CHECK(refusal_of(with_value(file, 32, std::nan("")))
-            .find("has a highest point that is not a finite number") != std::string::npos);
+  CHECK_THAT(refusal_of(with_value(file, 8, std::uint32_t{2})),
+             names(kFieldPath.string() + " 2 3 touchtrial prepare"));
+  CHECK_THAT(refusal_of(with_value(file, 32, std::nan(""))), names(kFieldPath.string()));
   for (const std::uint32_t side : {0U, 1U, 4U, 33U, 0xffffffffU}) {
-    CHECK(refusal_of(with_value(file, 40, side)).find("which is not odd and 3 to 31") !=
-          std::string::npos);
+    CHECK_THAT(refusal_of(with_value(file, 40, side)), names("3 31"));
   }
 }
 
@@ -133,7 +130,7 @@ TEST_CASE("decode_field refuses a file that is cut anywhere or too long") {
   }
   Bytes longer = file;
   longer.push_back(0);
-  CHECK(refusal_of(longer).find("truncated or overlong") != std::string::npos);
+  CHECK_THAT(refusal_of(longer), names(kFieldPath.string()));
 }
 
 TEST_CASE("decode_field refuses any other magic, version, layout and reserved byte") {
@@ -152,19 +149,19 @@ TEST_CASE("decode_field refuses dimensions that are absurd, overflow or do not f
   const auto sized = [&](std::uint32_t height, std::uint32_t width) {
     return refusal_of(with_value(with_value(file, 16, height), 20, width));
   };
-  CHECK(sized(0, 3).find("impossible size 3 x 0") != std::string::npos);
-  CHECK(sized(0xffffffffU, 0xffffffffU).find("impossible size") != std::string::npos);
-  CHECK(sized(0x80000000U, 2).find("impossible size") != std::string::npos);
-  CHECK(sized((1U << 28U) + 1U, 1).find("impossible size") != std::string::npos);
-  CHECK(sized(1U << 28U, 1).find("truncated") != std::string::npos);
-  CHECK(sized(3, 3).find("truncated") != std::string::npos);
+  CHECK_THAT(sized(0, 3), names("3 0"));
+  CHECK_THAT(sized(0xffffffffU, 0xffffffffU), names("4294967295"));
+  CHECK_THAT(sized(0x80000000U, 2), names("2 2147483648"));
+  CHECK_THAT(sized((1U << 28U) + 1U, 1), names("1 268435457"));
+  CHECK_THAT(sized(1U << 28U, 1), names(kFieldPath.string()) && !names("268435456"));
+  CHECK_THAT(sized(3, 3), names(kFieldPath.string()));
 }
 
 TEST_CASE("decode_field refuses a pitch that is not a finite number above zero") {
   const Bytes file = engine::encode_field(random_field(2, 3, 6).view());
   const double pitch_mm = GENERATE(0.0, -0.2, std::numeric_limits<double>::infinity(),
                                    std::numeric_limits<double>::quiet_NaN());
-  CHECK(refusal_of(with_value(file, 24, pitch_mm)).find("pitch") != std::string::npos);
+  CHECK_THAT(refusal_of(with_value(file, 24, pitch_mm)), names(kFieldPath.string()));
 }
 
 const std::filesystem::path kManifestPath = "study.pack/pack.json";
@@ -205,11 +202,11 @@ std::string refusal_of(const std::string& text) {
   return "accepted";
 }
 
-/// Whether a text is refused with these words.
-bool is_refused(const std::string& text, const std::string& words) {
+/// Whether a text is refused at these places.
+bool is_refused(const std::string& text, const std::string& places) {
   const std::string message = refusal_of(text);
   UNSCOPED_INFO(message);
-  return message.find(words) != std::string::npos;
+  return names(message, places);
 }
 
 TEST_CASE("a manifest's text has sorted keys and every key once") {
@@ -260,71 +257,67 @@ TEST_CASE("manifest_from_json names the place of what it refuses") {
   struct Case {
     std::string part;
     std::string other;
-    std::string expected;
+    std::string places;
   };
   const auto tried = GENERATE(values<Case>({
-      {"touchtrial-pack", "zip", "/format: must be"},
-      {"\"version\": 5", "\"version\": 4", "/version: is not 5"},
-      {"\"version\": 5", "\"version\": \"3\"", "/version: must be a whole number"},
-      {"\"version\": 5", "\"version\": 5, \"note\": 0", "/note: is not a known key"},
-      {"\"version\": 5", "\"version\": 5, \"a/b~c\": 0", "/a~1b~0c: is not a known key"},
-      {",\n  \"version\": 5", "", "/version: is missing"},
-      {"\"00ff\"", "\"bark\"", "/study_id: must be hexadecimal"},
-      {"\"00ff\"", "17", "/study_id: must be text"},
-      {"aaaaaaaaaaaaaaaa", "../aaaaaaaaaaaaa", "/fields/0/code: must be 16"},
-      {"aaaaaaaaaaaaaaaa", "aaaaaaa/aaaaaaaa", "/fields/0/code: must be 16"},
-      {"aaaaaaaaaaaaaaaa", "AAAAAAAAAAAAAAAA", "/fields/0/code: must be 16"},
-      {"aaaaaaaaaaaaaaaa", "aaaaaaaaaaaaaaa", "/fields/0/code: must be 16"},
-      {"aaaaaaaaaaaaaaaa", "aaaaaaaaaaaaaa\\u0000a", "/fields/0/code: must be 16"},
-      {"aaaaaaaaaaaaaaaa", "bbbbbbbbbbbbbbb2", "/fields/1/code: is in the manifest twice"},
-      {"0101", "01", "/fields/0/checksum: must be 64"},
-      {"0101", "01xx", "/fields/0/checksum: must be 64"},
-      {"\"0202", "\"", "/fields/0/input_tag: must be 64"},
-      {"\"input_tag\"", "\"label\"", "/fields/0/label: is not a known key"},
-      {"0.1", "-0.1", "/fields/0/gains/tangential_n: is -0.1, must be from 0"},
-      {"0.1", "null", "/fields/0/gains/tangential_n: must be a number, not null"},
-      {"0.1", "true", "/fields/0/gains/tangential_n: must be a number, not true"},
-      {"\"height_mm\": 0.0", "\"height_mm\": -1.0",
-       "/fields/0/gains/height_mm: is -1, must be from 0"},
-      {"\"height_mm\": 0.0,", "", "/fields/0/gains/height_mm: is missing"},
-      {"0.1", "0.1, \"spring_n\": 1", "/fields/0/gains/spring_n: is not a known key"},
-      {"\"ab00", "\"ab", "/seal: must be 64"},
-      {"\"cd00", "\"cd", "/investigator_box: must be 64"},
-      {"\"ef00", "\"ef", "/signature: must be 128"},
-      {"\"pictures\": [", "\"pictures\": [\"00\", ", "/pictures/0: must be 64"},
-      {"\"ab00", "\"AB00", "is altered since"},
-      {"\"ef00", "\"eF00", "is altered since"},
-      {"0.1", "1e-1", "is altered since"},
-      {"0.1", "0.10000000000000000001", "is altered since"},
-      {"\"fields\": [", "\"fields\":  [", "is altered since"},
-      {"\"00ff\"", "\"00\\u0066f\"", "is altered since"},
+      {"touchtrial-pack", "zip", "/format"},
+      {"\"version\": 5", "\"version\": 4", "/version 5"},
+      {"\"version\": 5", "\"version\": \"3\"", "/version"},
+      {"\"version\": 5", "\"version\": 5, \"note\": 0", "/note"},
+      {"\"version\": 5", "\"version\": 5, \"a/b~c\": 0", "/a~1b~0c"},
+      {",\n  \"version\": 5", "", "/version"},
+      {"\"00ff\"", "\"bark\"", "/study_id"},
+      {"\"00ff\"", "17", "/study_id"},
+      {"aaaaaaaaaaaaaaaa", "../aaaaaaaaaaaaa", "/fields/0/code 16"},
+      {"aaaaaaaaaaaaaaaa", "aaaaaaa/aaaaaaaa", "/fields/0/code 16"},
+      {"aaaaaaaaaaaaaaaa", "AAAAAAAAAAAAAAAA", "/fields/0/code 16"},
+      {"aaaaaaaaaaaaaaaa", "aaaaaaaaaaaaaaa", "/fields/0/code 16"},
+      {"aaaaaaaaaaaaaaaa", "aaaaaaaaaaaaaa\\u0000a", "/fields/0/code 16"},
+      {"aaaaaaaaaaaaaaaa", "bbbbbbbbbbbbbbb2", "/fields/1/code"},
+      {"0101", "01", "/fields/0/checksum 64"},
+      {"0101", "01xx", "/fields/0/checksum 64"},
+      {"\"0202", "\"", "/fields/0/input_tag 64"},
+      {"\"input_tag\"", "\"label\"", "/fields/0/label"},
+      {"0.1", "-0.1", "/fields/0/gains/tangential_n -0.1 0"},
+      {"0.1", "null", "/fields/0/gains/tangential_n"},
+      {"0.1", "true", "/fields/0/gains/tangential_n"},
+      {"\"height_mm\": 0.0", "\"height_mm\": -1.0", "/fields/0/gains/height_mm -1 0"},
+      {"\"height_mm\": 0.0,", "", "/fields/0/gains/height_mm"},
+      {"0.1", "0.1, \"spring_n\": 1", "/fields/0/gains/spring_n"},
+      {"\"ab00", "\"ab", "/seal 64"},
+      {"\"cd00", "\"cd", "/investigator_box 64"},
+      {"\"ef00", "\"ef", "/signature 128"},
+      {"\"pictures\": [", "\"pictures\": [\"00\", ", "/pictures/0 64"},
+      {"\"ab00", "\"AB00", ""},
+      {"\"ef00", "\"eF00", ""},
+      {"0.1", "1e-1", ""},
+      {"0.1", "0.10000000000000000001", ""},
+      {"\"fields\": [", "\"fields\":  [", ""},
+      {"\"00ff\"", "\"00\\u0066f\"", ""},
   }));
   const std::string message = refusal_of(with(tried.part, tried.other));
-  CAPTURE(message, tried.expected);
-  CHECK(message.find("study.pack/pack.json: " + tried.expected) == 0);
-  CHECK(message.find("touchtrial prepare") != std::string::npos);
+  CAPTURE(message, tried.places);
+  CHECK_THAT(message, names("study.pack/pack.json touchtrial prepare " + tried.places));
 }
 
 TEST_CASE("manifest_from_json refuses texts that are not manifests") {
-  CHECK(is_refused("", "line 1, column 1: "));
-  CHECK(is_refused("[]", "must be an object"));
-  CHECK(is_refused("null", "must be an object"));
-  CHECK(is_refused("{} {}", "line 1, column 4: "));
-  CHECK(is_refused("{\"version\": 1e999}", "is a number too large to hold"));
-  CHECK(is_refused("{\"\xff\": 1}", "line 1, column 3: "));
-  CHECK(
-      is_refused(with("\"fields\": [", "\"fields\": 7, \"more\": ["), "/more: is not a known key"));
+  CHECK(is_refused("", "1"));
+  CHECK(is_refused("[]", "study.pack/pack.json"));
+  CHECK(is_refused("null", "study.pack/pack.json"));
+  CHECK(is_refused("{} {}", "1 4"));
+  CHECK(is_refused("{\"version\": 1e999}", "/version"));
+  CHECK(is_refused("{\"\xff\": 1}", "1 3"));
+  CHECK(is_refused(with("\"fields\": [", "\"fields\": 7, \"more\": ["), "/more"));
 }
 
 TEST_CASE("manifest_from_json refuses a key that is twice in one object") {
-  CHECK(is_refused(with("\"version\": 5", "\"version\": 5, \"version\": 5"),
-                   "/version: is there twice"));
+  CHECK(is_refused(with("\"version\": 5", "\"version\": 5, \"version\": 5"), "/version"));
   CHECK(is_refused(with("\"normal_n\"", "\"tangential_n\": 9, \"normal_n\""),
-                   "/fields/0/gains/tangential_n: is there twice"));
+                   "/fields/0/gains/tangential_n"));
 }
 
 TEST_CASE("manifest_from_json survives endless nesting") {
-  CHECK(is_refused(std::string(1000000, '['), "nested too deeply"));
+  CHECK(is_refused(std::string(1000000, '['), "study.pack/pack.json"));
 }
 
 TEST_CASE("manifest_from_json keeps its message on one line") {

@@ -6,6 +6,7 @@
 #include "engine/rendering/texture_field.hpp"
 #include "engine/stability/extreme_cases.hpp"
 #include "support/catch.hpp"
+#include "support/names.hpp"
 
 #include <functional>
 #include <limits>
@@ -33,12 +34,13 @@ TEMPLATE_TEST_CASE("a plane with one sample that is not finite is refused by nam
                    double) {
   for (const double value : kNotFinite) {
     with_each_sample<TestType>(value, [](const Plane<TestType>& plane) {
-      CHECK(refusal_of([&] { (void)engine::tangential_force(plane, 3); }) ==
-            "tangential_force: the surface has samples that are not finite");
-      CHECK(refusal_of([&] { (void)engine::texture_picture(plane); }) ==
-            "texture_picture: the texture has samples that are not finite");
-      CHECK(refusal_of([&] { (void)engine::texture_picture(plane, engine::Mapping::stretch); }) ==
-            "texture_picture: the texture has samples that are not finite");
+      CHECK_THAT(refusal_of([&] { (void)engine::tangential_force(plane, 3); }),
+                 names("tangential_force"));
+      CHECK_THAT(refusal_of([&] { (void)engine::texture_picture(plane); }),
+                 names("texture_picture"));
+      CHECK_THAT(
+          refusal_of([&] { (void)engine::texture_picture(plane, engine::Mapping::stretch); }),
+          names("texture_picture"));
     });
   }
 }
@@ -46,10 +48,10 @@ TEMPLATE_TEST_CASE("a plane with one sample that is not finite is refused by nam
 TEST_CASE("a field of a texture that is not finite is refused by name") {
   for (const double value : kNotFinite) {
     with_each_sample<double>(value, [](const Plane<double>& plane) {
-      CHECK(refusal_of([&] { (void)engine::make_texture_field(plane, {}); }) ==
-            "make_texture_field: the texture has samples that are not finite");
-      CHECK(refusal_of([&] { (void)engine::gaussian_filtered(plane, 2.0); }) ==
-            "gaussian_filtered: the plane has samples that are not finite");
+      CHECK_THAT(refusal_of([&] { (void)engine::make_texture_field(plane, {}); }),
+                 names("make_texture_field"));
+      CHECK_THAT(refusal_of([&] { (void)engine::gaussian_filtered(plane, 2.0); }),
+                 names("gaussian_filtered"));
     });
   }
 }

@@ -119,16 +119,14 @@ TEST_CASE("a limit that no run can reach leaves the order as it was") {
 
 TEST_CASE("options that cannot be combined with a limit of runs are refused with the reason") {
   CHECK(refused(study_of(3), {{"order", "de-bruijn"}, {"repeats", 3}, {"max_run", 1}},
-                "/trials/max_run: is 1, but in the order de-bruijn every class follows itself"));
+                "/trials/max_run 1"));
   const study::Study kept =
       study_with(study_of(3), {{"order", "de-bruijn"}, {"repeats", 3}, {"max_run", 2}});
   CHECK(longest_run(schedule_of(kept, 1).trials) == 2);
-  CHECK(refused(study_of(2), {{"order", "williams"}, {"max_run", 1}},
-                "/trials/max_run: is 1, which no order williams of 2 classes keeps"));
-  CHECK(refused(study_of(64), {{"repeats", 100}, {"max_run", 2}},
-                "/trials/max_run: is 2, but the orders of 64 classes presented 100 times"));
+  CHECK(refused(study_of(2), {{"order", "williams"}, {"max_run", 1}}, "/trials/max_run 1 2"));
+  CHECK(refused(study_of(64), {{"repeats", 100}, {"max_run", 2}}, "/trials/max_run 2 64 100"));
   CHECK(refused(comparison_of(3), {{"order", "williams"}, {"blocks", "mixed"}},
-                "/trials/blocks: must be \"by-method\": the order williams"));
+                "/trials/blocks by-method"));
 }
 
 TEST_CASE("a Williams block is permutations, balanced over places with as many as classes") {

@@ -197,8 +197,8 @@ TEST_CASE("expected entropies and weights equal those of the definitions in long
 }
 
 TEST_CASE("of levels that tell equally much, the smallest is taken") {
-  CHECK(first_least(std::array{2.0, 1.0 + 5e-10, 1.0, 3.0}) == 1);
-  CHECK(first_least(std::array{2.0, 1.0 + 2e-9, 1.0, 1.0}) == 2);
+  CHECK(first_min(std::array{2.0, 1.0 + 5e-10, 1.0, 3.0}) == 1);
+  CHECK(first_min(std::array{2.0, 1.0 + 2e-9, 1.0, 1.0}) == 2);
   // Nothing is to be learned: every level ties.
   TrackSettings known = watson_track({3.5}, {0.02});
   known.grid.thresholds = {-20.0};

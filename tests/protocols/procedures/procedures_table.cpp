@@ -336,7 +336,7 @@ void print_fit(const char* shape, const std::vector<LevelCounts>& counts,
       "{{\"shape\": \"{}\", \"lapse\": {}, \"most_lapse\": {}, \"counts\": {}, "
       "\"fit\": {{\"threshold\": {:.17g}, \"slope\": {:.17g}, \"lapse\": {:.17g}, "
       "\"log_likelihood\": {:.17g}, \"deviance\": {:.17g}}}}}\n",
-      shape, options.lapse ? fmt::format("{}", *options.lapse) : "null", options.most_lapse,
+      shape, options.lapse ? fmt::format("{}", *options.lapse) : "null", options.max_lapse,
       counts_json(counts), fit.observer.threshold, fit.observer.slope, fit.observer.lapse,
       fit.log_likelihood, fit.deviance);
 }

@@ -15,6 +15,7 @@
 #include "study/protocol.hpp"
 #include "support/as_recorded.hpp"
 #include "support/catch.hpp"
+#include "support/names.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -212,83 +213,81 @@ TEST_CASE("scales are those of the section, in the study's language") {
 }
 
 TEST_CASE("what of the section is impossible is refused with its place") {
-  const auto refused = [](const json& section, const std::string& text) {
+  const auto refused = [](const json& section, const std::string& places) {
     json file = rating_file();
     file["rating"] = section;
     INFO(section.dump());
-    CHECK_THAT(refusal_of(file), holds_text("s.json: " + text));
+    CHECK_THAT(refusal_of(file), names("s.json " + places));
   };
   const auto refused_scale = [&](const std::string& key, const json& value,
-                                 const std::string& text) {
+                                 const std::string& places) {
     json scale = rough_scale();
     scale[key] = value;
-    refused({{"scales", json::array({{{"id", "fit"}}, scale})}}, "/rating/scales/1" + text);
+    refused({{"scales", json::array({{{"id", "fit"}}, scale})}}, "/rating/scales/1" + places);
   };
   json seven = json::array();
   for (int i = 0; i < 7; ++i) {
     seven.push_back(rough_scale());
     seven.back()["id"] = "scale" + std::to_string(i);
   }
-  refused(json::array(), "/rating: must be an object");
-  refused({{"scale", 1}}, "/rating/scale: is not a known key");
-  refused({{"anchors", "yes"}}, "/rating/anchors: must be true or false");
-  refused({{"scales", "fit"}}, "/rating/scales: must be a list");
-  refused({{"scales", json::array()}}, "/rating/scales: has 0 entries, must have from 1 to 6");
-  refused({{"scales", seven}}, "/rating/scales: has 7 entries, must have from 1 to 6");
+  refused(json::array(), "/rating");
+  refused({{"scale", 1}}, "/rating/scale");
+  refused({{"anchors", "yes"}}, "/rating/anchors");
+  refused({{"scales", "fit"}}, "/rating/scales");
+  refused({{"scales", json::array()}}, "/rating/scales 0 1 6");
+  refused({{"scales", seven}}, "/rating/scales 7 1 6");
   seven.erase(6);
   json six = rating_file();
   six["rating"] = {{"scales", seven}};
   CHECK(refusal_of(six).empty());
-  refused({{"scales", json::array({rough_scale(), rough_scale()})}},
-          "/rating/scales/1/id: \"rough\" is the id of another scale");
-  refused({{"scales", json::array({json::object()})}}, "/rating/scales/0/id: is missing");
-  refused_scale("id", "so rough", "/id: \"so rough\" must have");
-  refused_scale("point", 7, "/point: is not a known key");
-  refused_scale("points", 1, "/points: must be 0, a line, or at least 2");
-  refused_scale("points", 12, "/points: is 12, must be from 0 to 11");
-  refused_scale("points", -1, "/points: is -1, must be from 0 to 11");
-  refused_scale("points", 2.5, "/points: must be a whole number");
+  refused({{"scales", json::array({rough_scale(), rough_scale()})}}, "/rating/scales/1/id rough");
+  refused({{"scales", json::array({json::object()})}}, "/rating/scales/0/id");
+  refused_scale("id", "so rough", "/id so rough");
+  refused_scale("point", 7, "/point");
+  refused_scale("points", 1, "/points 0 2");
+  refused_scale("points", 12, "/points 12 0 11");
+  refused_scale("points", -1, "/points -1 0 11");
+  refused_scale("points", 2.5, "/points");
   for (const char* key : {"text", "low", "high"}) {
     const std::string place = std::string("/") + key;
-    refused_scale(key, {{"de", "nichts"}}, place + "/en: is missing, the study's language");
-    refused_scale(key, json::object(), place + "/en: is missing, the study's language");
-    refused_scale(key, {{"xx", "nichts"}}, place + "/xx: is not a known key");
+    refused_scale(key, {{"de", "nichts"}}, place + "/en");
+    refused_scale(key, json::object(), place + "/en");
+    refused_scale(key, {{"xx", "nichts"}}, place + "/xx");
     json scale = rough_scale();
     scale.erase(key);
-    refused({{"scales", json::array({scale})}}, "/rating/scales/0" + place + ": is missing");
+    refused({{"scales", json::array({scale})}}, "/rating/scales/0" + place + " ");
     refused({{"scales", json::array({{{"id", "fit"}, {key, {{"de", "nichts"}}}}})}},
-            "/rating/scales/0" + place + "/en: is missing, the study's language");
+            "/rating/scales/0" + place + "/en");
   }
 }
 
 TEST_CASE("what of other sections does not suit ratings is refused with its place") {
-  const auto refused = [](const std::string& pointer, const json& value, const std::string& text) {
+  const auto refused = [](const std::string& pointer, const json& value,
+                          const std::string& places) {
     json file = rating_file();
     file[json::json_pointer(pointer)] = value;
     INFO(pointer << " = " << value.dump());
-    CHECK_THAT(refusal_of(file), holds_text("s.json: " + text));
+    CHECK_THAT(refusal_of(file), names("s.json " + places));
   };
   for (const char* order : {"de-bruijn", "uniform", "williams"}) {
-    refused("/trials/order", order, "/trials/order: must be \"shuffled\"");
+    refused("/trials/order", order, "/trials/order shuffled");
   }
-  refused("/trials/lead_in", 1, "/trials/lead_in: must be 0");
-  refused("/trials/max_run", 1, "/trials/max_run: must be 0");
+  refused("/trials/lead_in", 1, "/trials/lead_in 0");
+  refused("/trials/max_run", 1, "/trials/max_run 0");
   json divided = rating_file();
   divided["trials"]["blocks"] = "by-method";
   divided["visits"] = {{"count", 2}, {"methods", "divided"}};
-  CHECK_THAT(refusal_of(divided), holds_text("s.json: /visits/methods: must be \"all\""));
+  CHECK_THAT(refusal_of(divided), names("s.json /visits/methods all"));
   divided["visits"]["methods"] = "all";
   CHECK(refusal_of(divided).empty());
-  refused("/registration/estimand", "difference",
-          "/registration/estimand: \"difference\" is no question that the protocol rating answers; "
-          "leave");
-  refused("/session/confidence", 5, "/session/confidence: must be 0");
-  refused("/session/sight", "blindfold", "/session/sight: must be \"curtain\"");
+  refused("/registration/estimand", "difference", "/registration/estimand difference");
+  refused("/session/confidence", 5, "/session/confidence 0");
+  refused("/session/sight", "blindfold", "/session/sight curtain");
   json other = rating_file();
   other["rating"] = json::object();
   CHECK(refusal_of(other).empty());
   other["protocol"] = "classification";
-  CHECK_THAT(refusal_of(other), holds_text("s.json: /rating: belongs to the protocol rating"));
+  CHECK_THAT(refusal_of(other), names("s.json /rating"));
 }
 
 TEST_CASE("one texture by one method can be rated") {
@@ -451,12 +450,12 @@ TEST_CASE("an answer is one rating on each scale, between its ends") {
   json file = rating_file();
   file["rating"] = {{"scales", {{{"id", "fit"}}, rough_scale()}}};
   const study::Ask ask = study::ask_of(study_of(file));
-  CHECK(study::misfit_of(Rated{{0.0, 1.0}}, ask).empty());
-  CHECK(study::misfit_of(Rated{{1.0, 7.0}}, ask).empty());
-  CHECK_THAT(study::misfit_of(Rated{{0.5}}, ask), holds_text("1 ratings on 2 scales"));
-  CHECK_THAT(study::misfit_of(Rated{{1.1, 7.0}}, ask), holds_text("scale fit"));
-  CHECK_THAT(study::misfit_of(Rated{{0.5, 0.0}}, ask), holds_text("scale rough"));
-  CHECK_THAT(study::misfit_of(Chosen{0}, ask), holds_text("position 0 of 0"));
+  CHECK(study::mismatch_of(Rated{{0.0, 1.0}}, ask).empty());
+  CHECK(study::mismatch_of(Rated{{1.0, 7.0}}, ask).empty());
+  CHECK_THAT(study::mismatch_of(Rated{{0.5}}, ask), names("1 2"));
+  CHECK_THAT(study::mismatch_of(Rated{{1.1, 7.0}}, ask), names("fit"));
+  CHECK_THAT(study::mismatch_of(Rated{{0.5, 0.0}}, ask), names("rough"));
+  CHECK_THAT(study::mismatch_of(Chosen{0}, ask), names("0 0"));
 }
 
 TEST_CASE("practice begins with the scale's ends, and no answer of it is right") {
@@ -505,7 +504,7 @@ TEST_CASE("a simulated rating study passes every check, and catch trials are rat
   int caught = 0;
   for (const analysis::TrialOutcome& trial : outcomes.trials) {
     REQUIRE(trial.row.answer.has_value());
-    CHECK(study::misfit_of(*trial.row.answer, ask).empty());
+    CHECK(study::mismatch_of(*trial.row.answer, ask).empty());
     CHECK_FALSE(trial.response.has_value());
     REQUIRE(trial.picture.has_value());
     const double fit = ratings_of(trial.row.answer).at(0);
@@ -549,7 +548,7 @@ TEST_CASE("ratings are stored as they were given, and take the place of those be
   lab.session.confirm(lab.now += seconds(1));
   CHECK(lab.session.presentations_left() == kScored + kCatch - 1);
   const record::AnswerBody body =
-      record::answer_from_json(as_recorded(lab.sink.events.back(), SecretKey{}).body);
+      record::from_json<record::AnswerBody>(as_recorded(lab.sink.events.back(), SecretKey{}).body);
   CHECK(body.trial == 1);
   CHECK(body.answer == Answer{Rated{{0.125}}});
   CHECK_FALSE(body.confidence.has_value());

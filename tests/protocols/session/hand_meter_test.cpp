@@ -53,9 +53,9 @@ TEST_CASE("levels of the hand are relative to the instructions") {
 }
 
 TEST_CASE("a study's own window of force holds where it is narrower, or another one") {
-  study::ValidityRule rule{.largest_median_n = 0.6};
+  study::ValidityRule rule{.max_median_n = 0.6};
   CHECK(levels_after(0.7, 100.0, rule)->force == HandLevel::high);
-  rule = {.least_median_n = 1.5, .largest_median_n = 3.0};
+  rule = {.min_median_n = 1.5, .max_median_n = 3.0};
   CHECK(levels_after(0.7, 100.0, rule)->force == HandLevel::low);
   CHECK(levels_after(2.0, 100.0, rule)->force == HandLevel::right);
 }

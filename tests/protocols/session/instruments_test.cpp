@@ -114,7 +114,7 @@ TEST_CASE("a session records the times of marks by both clocks, sealed") {
   CHECK(stored.kind == record::EventKind::marked);
   CHECK(stored.body == "{}");
   const record::MarksBody read =
-      record::marks_from_json(record::unsealed(stored, course.key).value());
+      record::from_json<record::MarksBody>(record::unsealed(stored, course.key).value());
   CHECK(read.codes == std::vector<std::int64_t>{1, 10});
   CHECK(read.trials == std::vector<std::int64_t>{0, body->trials[1]});
   CHECK(read.at_ns == body->at_ns);
@@ -139,9 +139,9 @@ TEST_CASE("without instruments a session records nothing of them") {
 }
 
 TEST_CASE("marks whose lists differ in length are refused") {
-  CHECK_THROWS_AS(
-      record::marks_from_json(R"({"at_ns":[1],"codes":[1,2],"latency_ns":[0],"trials":[0]})"),
-      StoreError);
+  CHECK_THROWS_AS(record::from_json<record::MarksBody>(
+                      R"({"at_ns":[1],"codes":[1,2],"latency_ns":[0],"trials":[0]})"),
+                  StoreError);
 }
 
 TEST_CASE("every mark has a name, and a code of none is unknown") {

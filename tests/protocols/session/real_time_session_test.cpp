@@ -113,12 +113,13 @@ TEST_CASE("a real-time session stores every answer, every sample and the servo's
   REQUIRE(answers.size() == 5);
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const record::Event answer = as_recorded(answers[i], lab.participant_key);
-    CHECK(position_of(record::answer_from_json(answer.body).answer) == lab.person.named[i]);
+    CHECK(position_of(record::from_json<record::AnswerBody>(answer.body).answer) ==
+          lab.person.named[i]);
   }
   REQUIRE(lab.events.traces.size() == 5);
   for (const record::Event& stored : lab.all(record::EventKind::trace_stored)) {
     const record::TraceBody body =
-        record::trace_body_from_json(as_recorded(stored, lab.participant_key).body);
+        record::from_json<record::TraceBody>(as_recorded(stored, lab.participant_key).body);
     CHECK(body.samples == 500);
     REQUIRE(body.servo);
     CHECK(body.servo->lost == 0);
@@ -131,7 +132,8 @@ TEST_CASE("a real-time session stores every answer, every sample and the servo's
   CHECK(lab.person.samples() == 500);
   CHECK(lab.cable.last_was_zero);
   CHECK(lab.cable.strong_writes > 5 * 300);
-  const record::SessionOpening opening = record::opening_from_json(lab.events.events.front().body);
+  const record::SessionOpening opening =
+      record::from_json<record::SessionOpening>(lab.events.events.front().body);
   REQUIRE(opening.station);
   CHECK(opening.station->model == "Fake One");
   CHECK(opening.station->scheduling == "other, memory not locked");
@@ -150,10 +152,10 @@ TEST_CASE("unplugging the cable interrupts a trial, which is repeated at the end
   CHECK(lab.all(record::EventKind::paused).size() == 1);
   const std::vector<record::Event> interrupted = lab.all(record::EventKind::interrupted);
   REQUIRE(interrupted.size() == 1);
-  const record::TrialBody body = record::trial_from_json(interrupted.front().body);
+  const auto body = record::from_json<record::InterruptedBody>(interrupted.front().body);
   CHECK(body.reason == "device lost");
-  CHECK(record::trial_from_json(lab.all(record::EventKind::presented).back().body).trial ==
-        body.trial);
+  CHECK(record::from_json<record::TrialBody>(lab.all(record::EventKind::presented).back().body)
+            .trial == body.trial);
 }
 
 TEST_CASE("the flight record of an interruption is sealed and holds the ticks before it") {
@@ -164,8 +166,8 @@ TEST_CASE("the flight record of an interruption is sealed and holds the ticks be
   CHECK(event.body.find("link") != std::string::npos);
   CHECK(event.body.find("flight") == std::string::npos);
   CHECK_FALSE(record::unsealed(event, SecretKey{}));
-  const record::InterruptionDetail detail =
-      record::interruption_from_json(record::unsealed(event, lab.participant_key).value());
+  const record::InterruptionDetail detail = record::from_json<record::InterruptionDetail>(
+      record::unsealed(event, lab.participant_key).value());
   CHECK(detail.safety_fault == "device");
   CHECK(detail.device_fault == "link_lost");
   CHECK(detail.ticks == 201);
@@ -181,7 +183,7 @@ TEST_CASE("a session ends when the attendant gives up on the device") {
   CHECK(lab.session.phase() == session::SessionPhase::closed);
   CHECK(lab.all(record::EventKind::stopped).size() == 1);
   CHECK(lab.all(record::EventKind::answered).empty());
-  CHECK_FALSE(record::closed_from_json(lab.events.events.back().body).complete);
+  CHECK_FALSE(record::from_json<record::ClosedBody>(lab.events.events.back().body).complete);
 }
 
 /// Servo time that stands still from one tick on until it is told to go on.
@@ -242,7 +244,7 @@ TEST_CASE("a participant who is done ends the exploration before its time is up"
   CHECK(lab.all(record::EventKind::timed_out).empty());
   for (const record::Event& stored : lab.all(record::EventKind::trace_stored)) {
     const record::Event recorded = as_recorded(stored, lab.participant_key);
-    CHECK(record::trace_body_from_json(recorded.body).samples <= 201);
+    CHECK(record::from_json<record::TraceBody>(recorded.body).samples <= 201);
   }
 }
 
@@ -253,7 +255,8 @@ TEST_CASE("a comfort stop interrupts the trial, and force requires new consent")
   lab.run(person);
   const std::vector<record::Event> interrupted = lab.all(record::EventKind::interrupted);
   REQUIRE(interrupted.size() == 1);
-  CHECK(record::trial_from_json(interrupted.front().body).reason == "comfort stop");
+  CHECK(record::from_json<record::InterruptedBody>(interrupted.front().body).reason ==
+        "comfort stop");
   CHECK(lab.cable.opened == 1);
   CHECK(lab.helper.consents == 2);
   CHECK(lab.cable.writes_unarmed == 0);
@@ -306,11 +309,11 @@ TEST_CASE("a pause while a plane is on repeats the trial, and is not counted as 
   CHECK(lab.helper.consents == 1);
   const std::vector<record::Event> interrupted = lab.all(record::EventKind::interrupted);
   REQUIRE(interrupted.size() == 1);
-  const record::TrialBody body = record::trial_from_json(interrupted.front().body);
+  const auto body = record::from_json<record::InterruptedBody>(interrupted.front().body);
   CHECK(body.reason == record::kPauseReason);
   const std::vector<record::Event> presented = lab.all(record::EventKind::presented);
-  CHECK(record::trial_from_json(presented[0].body).trial == body.trial);
-  CHECK(record::trial_from_json(presented[1].body).trial == body.trial);
+  CHECK(record::from_json<record::TrialBody>(presented[0].body).trial == body.trial);
+  CHECK(record::from_json<record::TrialBody>(presented[1].body).trial == body.trial);
   CHECK(lab.all(record::EventKind::answered).size() == 5);
   CHECK(lab.events.traces.size() == 5);
 }
@@ -321,7 +324,7 @@ TEST_CASE("an emergency stop between two explorations applies to the next") {
   lab.run();
   const std::vector<record::Event> interrupted = lab.all(record::EventKind::interrupted);
   REQUIRE(interrupted.size() == 1);
-  const record::TrialBody body = record::trial_from_json(interrupted.front().body);
+  const auto body = record::from_json<record::InterruptedBody>(interrupted.front().body);
   CHECK(body.trial == 1);
   CHECK(body.reason == "emergency stop");
   CHECK(lab.helper.consents == 2);
@@ -366,7 +369,7 @@ TEST_CASE("a real-time session on the machine's own clock records how late its t
   for (const record::Event& event : events.events) {
     if (event.kind != record::EventKind::trace_stored) continue;
     const record::TraceBody body =
-        record::trace_body_from_json(as_recorded(event, SecretKey{}).body);
+        record::from_json<record::TraceBody>(as_recorded(event, SecretKey{}).body);
     ++traces;
     REQUIRE(body.servo);
     CHECK(body.servo->rate_hz > 0.0);

@@ -98,21 +98,23 @@ record::InterruptionDetail WholeSession::check(const std::vector<int>& named, in
   std::vector<int> stored;
   for (const record::Event& event : all(record::EventKind::answered)) {
     const record::Event answer = as_recorded(event, participant_key);
-    stored.push_back(position_of(record::answer_from_json(answer.body).answer).value());
+    stored.push_back(
+        position_of(record::from_json<record::AnswerBody>(answer.body).answer).value());
   }
   CHECK(stored == named);
 
   const std::vector<record::Event> interrupted = all(record::EventKind::interrupted);
   REQUIRE(interrupted.size() == 1);
-  const record::TrialBody body = record::trial_from_json(interrupted[0].body);
+  const auto body = record::from_json<record::InterruptedBody>(interrupted[0].body);
   CHECK(body.trial == unlucky);
   CHECK(body.reason == "device lost");
-  CHECK(record::trial_from_json(all(record::EventKind::presented).back().body).trial == unlucky);
+  CHECK(record::from_json<record::TrialBody>(all(record::EventKind::presented).back().body).trial ==
+        unlucky);
   CHECK(all(record::EventKind::paused).size() == 1);
   check_codes(unlucky);
 
-  record::InterruptionDetail detail =
-      record::interruption_from_json(analysis::whole_event(interrupted[0], participant_key).secret);
+  record::InterruptionDetail detail = record::from_json<record::InterruptionDetail>(
+      analysis::whole_event(interrupted[0], participant_key).secret);
   CHECK(detail.device_fault == "link_lost");
   return detail;
 }
@@ -122,7 +124,7 @@ void WholeSession::check_codes(int unlucky) {
   std::string expected = "E1 T0\n";
   bool is_lost = false;
   for (const record::Event& event : all(record::EventKind::presented)) {
-    const int trial = record::trial_from_json(event.body).trial;
+    const int trial = record::from_json<record::TrialBody>(event.body).trial;
     const std::string of_trial = " T" + std::to_string(trial) + "\n";
     expected += "E10" + of_trial + "E11" + of_trial;
     const bool is_answered = trial != unlucky || std::exchange(is_lost, true);
@@ -138,7 +140,7 @@ std::string WholeSession::codes_recorded() const {
   std::string codes;
   for (const record::Event& event : all(record::EventKind::marked)) {
     const record::MarksBody marks =
-        record::marks_from_json(record::unsealed(event, participant_key).value());
+        record::from_json<record::MarksBody>(record::unsealed(event, participant_key).value());
     for (std::size_t i = 0; i < marks.codes.size(); ++i) {
       codes += "E" + std::to_string(marks.codes[i]) + " T" + std::to_string(marks.trials[i]) + "\n";
       CHECK(marks.latency_ns.at(i) > 0);

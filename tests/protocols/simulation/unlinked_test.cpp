@@ -148,7 +148,7 @@ Truth opened(const record::StudyStore& store, const study::StudyKey& key) {
     for (const record::Event& stored : store.events(session.session)) {
       if (stored.kind != record::EventKind::trace_stored) continue;
       const record::OpenedEvent event = record::opened_event(stored, own).value();
-      const record::TraceBody body = record::trace_body_from_json(event.event.body);
+      const record::TraceBody body = record::from_json<record::TraceBody>(event.event.body);
       const record::TrialMeasures measures = record::measures_from_json(event.secret);
       truth.leaks["exact length"].push_back(static_cast<double>(body.samples));
       const double length_s = static_cast<double>(body.samples) / 1e3;

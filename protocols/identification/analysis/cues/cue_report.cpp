@@ -130,7 +130,7 @@ void put_participants(MethodCues& cues, const std::vector<ParticipantAnswers>& a
   cues.human_mean = participant_mean(cues.human_accuracy);
 }
 
-int fewest_of_a_class(const std::vector<ParticipantAnswers>& all) {
+int min_per_class(const std::vector<ParticipantAnswers>& all) {
   int fewest = all.front().trials;
   for (const ParticipantAnswers& one : all) {
     fewest = std::min(fewest, std::ranges::min(one.presented));
@@ -177,9 +177,9 @@ MethodCues method_cues(const FeltStudy& study, int method, const std::string& la
   }
   cues.match = statistics.match;
   if (cues.match && !observer_of(cues, cues.match->best).is_as_uncertain()) {
-    cues.match->told_apart = false;
+    cues.match->is_distinct = false;
   }
-  cues.fewest_of_a_class = fewest_of_a_class(all);
+  cues.min_per_class = min_per_class(all);
   return cues;
 }
 
@@ -219,7 +219,7 @@ void warn_of_numbers(const MethodCues& cues, Warnings& warnings) {
     warnings.push_back(cues.method + ": no trial can be judged by the observers.");
     return;
   }
-  if (cues.fewest_of_a_class < kMinTrials) {
+  if (cues.min_per_class < kMinTrials) {
     warnings.push_back(
         fmt::format("{}: somebody has fewer than {} trials of a class, so the observers know what "
                     "that hand feels of it only from other hands, and the available accuracy is "

@@ -1,6 +1,6 @@
-/// \file Which cue did participants use? The answers that ideal observers would have given from
-/// what each hand felt, beside the answers of the participants. Source: docs/statistics.md. Format
-/// of the JSON: docs/data-dictionary.md, "Cues".
+/// \file Which cue did participants use? Compares their answers with those of ideal observers that
+/// feel what each hand felt. Source: docs/statistics.md. Format of the JSON:
+/// docs/data-dictionary.md, "Cues".
 #pragma once
 
 #include "analysis/outcomes/outcomes.hpp"
@@ -28,7 +28,6 @@ inline constexpr std::array<Cue, 3> kCues{Cue::rms, Cue::spectrum, Cue::everythi
 /// The name in tables and legends: "force strength (rms)", "spectrum's shape" or "everything felt".
 [[nodiscard]] std::string_view title_of(Cue cue) noexcept;
 
-/// A number with its interval over participants.
 struct CueFigure {
   std::optional<double> value;
   std::optional<Interval> interval;  ///< none with fewer than two participants
@@ -38,12 +37,13 @@ struct CueFigure {
 /// need not be whole numbers.
 using AnswerCounts = std::vector<std::vector<double>>;
 
-/// The noise that makes an observer right as often as participants.
+/// The noise that makes an observer as accurate as the participants.
 struct MatchingNoise {
-  /// Of each felt log intensity; 0 if the observer is not right more often even without noise.
+  /// SD on each felt log intensity; 0 if the observer is no more accurate even without noise.
   double matched_noise = 0.0;
-  double matched_accuracy = 0.0;  ///< share right with it, of the trials that set it
-  double wanted_accuracy = 0.0;   ///< participants' share right in these trials
+  double matched_accuracy =
+      0.0;  ///< the observer's accuracy with it, on the trials that determine it
+  double wanted_accuracy = 0.0;  ///< the participants' accuracy on these trials
 };
 
 /// One observer's answers to one method's trials.
@@ -55,44 +55,44 @@ struct ObserverFigures : MatchingNoise {
   CueFigure efficiency;            ///< participants' mean accuracy divided by this observer's
   CueFigure corrected_efficiency;  ///< the same ratio of the accuracies above chance
   /// Mean over presented classes of the Jensen-Shannon divergence between participants' and
-  /// observer's answers, bits: 0 if they confuse alike, at most 1. By the jackknife.
+  /// observer's answers, bits: 0 if confusions are the same, at most 1. By the jackknife.
   CueFigure divergence;
   AnswerCounts matched_confusion;  ///< confusion with that noise
   CueFigure matched_divergence;    ///< divergence with that noise
 
-  /// Whether noise made the observer as uncertain as the participants: right as often, to within
-  /// one percentage point.
+  /// Whether noise made the observer as accurate as the participants, to within one percentage
+  /// point.
   [[nodiscard]] bool is_as_uncertain() const noexcept {
     return std::abs(matched_accuracy - wanted_accuracy) <= 0.01;
   }
 };
 
-/// With fewer participants there is no verdict on which observer confuses classes as they do,
-/// because a bootstrap over so few participants gives intervals that are too narrow.
+/// The minimum number of participants for a verdict on the best observer; with fewer, intervals
+/// over participants are too narrow.
 inline constexpr int kMinForVerdict = 6;
 
-/// The observer whose confusions are nearest to the participants'. Each observer is made as
-/// uncertain as the participants if noise can do that, because an observer that is never wrong has
-/// no confusions to compare.
+/// The observer whose confusions are nearest to the participants'. Noise makes each observer as
+/// uncertain as the participants if possible, because an observer without errors has no confusions
+/// to compare.
 struct CueMatch {
-  Cue best = Cue::rms;    ///< with the least matched divergence
-  Cue second = Cue::rms;  ///< with the second least matched divergence
+  Cue best = Cue::rms;    ///< with the smallest matched divergence
+  Cue second = Cue::rms;  ///< with the second smallest matched divergence
   CueFigure difference;   ///< matched divergence of second minus that of best, bits
   /// The difference's interval excludes 0, with kMinForVerdict participants or more, and the
   /// best observer can be as uncertain as the participants.
-  bool told_apart = false;
+  bool is_distinct = false;
 };
 
 /// One method: the counted trials that every observer could judge, and the participants' answers.
 struct MethodCues {
   std::string method;
-  int trials = 0;                         ///< number of judged trials
-  int without_trace = 0;                  ///< counted, but left out because no trace can be read
-  int unjudged = 0;                       ///< left out because no other trial had the same class
+  int trials = 0;         ///< number of judged trials
+  int without_trace = 0;  ///< counted trials left out because they have no trace
+  int unjudged = 0;       ///< trials left out because no other trial has the same class
   std::vector<std::string> participants;  ///< with a judged trial, in the order of sessions
   std::vector<int> participant_trials;    ///< number of judged trials, by participant
   std::vector<double> human_accuracy;     ///< by participant, on the same trials
-  int fewest_of_a_class = 0;  ///< the least number of judged trials of a class and a participant
+  int min_per_class = 0;  ///< minimum number of judged trials over classes and participants
   MeanEstimate human_mean;
   AnswerCounts human_confusion;  ///< of judged trials with a response
   /// By presented class. Trials without a response are wrong in accuracy, and left out of
@@ -102,7 +102,7 @@ struct MethodCues {
   std::optional<CueMatch> match;           ///< nothing without a trial with a response
 };
 
-/// CueReport::plane_source if the size of the plane is known only from traces.
+/// CueReport::plane_source if the plane's size comes from traces only.
 inline constexpr const char* kPlaneFromTraces = "the farthest that hands had contact";
 
 struct CueReport {
@@ -111,12 +111,12 @@ struct CueReport {
   std::vector<std::string> classes;   ///< labels
   std::vector<MethodCues> methods;    ///< the methods that the study presents
   std::string plane_source;           ///< source of the plane's size
-  std::vector<std::string> warnings;  ///< sentences against misreadings of the numbers
+  std::vector<std::string> warnings;  ///< sentences that warn against misreading the numbers
 };
 
 struct CueOptions {
   int jobs = 0;                  ///< threads; 0: one for each core
-  std::filesystem::path pack{};  ///< gives the plane's size; empty: where the key says
+  std::filesystem::path pack{};  ///< gives the plane's size; empty: the path in the key
   /// Called on the calling thread with the number of traces read so far.
   std::function<void(int done, int of)> progress{};
 };

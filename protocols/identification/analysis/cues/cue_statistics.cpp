@@ -65,7 +65,7 @@ class Sums {
   [[nodiscard]] double corrected(std::size_t observer) const noexcept {
     const double by_chance = static_cast<double>(participants_) / classes_;
     const double available = values_[1 + observer] - by_chance;
-    // A difference that rounding alone can cause counts as none.
+    // A difference within rounding counts as 0.
     return available > 1e-12 * participants_ ? (values_[0] - by_chance) / available : kUndefined;
   }
 
@@ -79,7 +79,7 @@ class Sums {
   }
 
  private:
-  /// The place of the first matched observer's answers.
+  /// Index of the first matched observer's answers.
   static constexpr std::size_t kFirstMatched = 1 + kObservers;
 
   [[nodiscard]] std::ptrdiff_t answers_at(std::size_t whose) const noexcept {
@@ -130,7 +130,7 @@ struct Draws {
   std::vector<Numbers> numbers{};  ///< empty with fewer than two participants
 };
 
-/// Draws efficiencies alone: divergences of drawn participants are too large.
+/// Draws only efficiencies; divergences of bootstrap samples are biased upward.
 Draws drawn(const std::vector<Sums>& participants, int classes, std::uint64_t index, int jobs) {
   if (participants.size() < 2) return {participants.size()};
   std::vector<Numbers> draws(kBootstrapDraws);
@@ -181,11 +181,11 @@ std::vector<Numbers> without_each(const std::vector<Sums>& participants, int cla
 }
 
 constexpr Interval kBits{0.0, 1.0};
-/// Of differences, and of what is to be ranked, which is not cut at 0.
+/// The range for differences and for numbers to rank, which are not cut at 0.
 constexpr Interval kAnySign{-2.0, 2.0};
 
-/// The jackknife's estimate of a number, or of one number less another.
-/// \param without  of the same numbers, without each participant
+/// The jackknife estimate of a number, or of the difference of two.
+/// \param without  the same numbers without each participant
 CueFigure jackknifed(const Numbers& observed, const std::vector<Numbers>& without,
                      const Interval& range, std::size_t at, std::optional<std::size_t> less = {}) {
   const auto number_of = [&](const Numbers& numbers) {
@@ -202,7 +202,7 @@ CueFigure jackknifed(const Numbers& observed, const std::vector<Numbers>& withou
   return {found.value, found.interval};
 }
 
-/// The two matched observers with the least divergences.
+/// The two matched observers with the smallest divergences.
 std::optional<CueMatch> match_of(const Numbers& observed, const std::vector<Numbers>& without) {
   std::array<std::size_t, kObservers> order{};
   std::array<double, kObservers> divergence{};
@@ -218,8 +218,8 @@ std::optional<CueMatch> match_of(const Numbers& observed, const std::vector<Numb
   match.second = kCues[order[1]];
   match.difference =
       jackknifed(observed, without, kAnySign, kMatchedAt + order[1], kMatchedAt + order[0]);
-  match.told_apart = without.size() >= kMinForVerdict && match.difference.interval &&
-                     match.difference.interval->low > 0.0;
+  match.is_distinct = without.size() >= kMinForVerdict && match.difference.interval &&
+                      match.difference.interval->low > 0.0;
   return match;
 }
 

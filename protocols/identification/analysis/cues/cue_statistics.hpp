@@ -46,13 +46,14 @@ struct ParticipantAnswers {
   int classes;
   int trials = 0;
   std::vector<int> presented;    ///< trials of each class
-  std::vector<int> no_response;  ///< those of them without a response
+  std::vector<int> no_response;  ///< of them, trials without a response
   double human_right = 0.0;
   std::array<double, kCues.size()> right{};
-  FlatCounts human;                                        ///< in the trials with a response
-  std::array<FlatCounts, kCues.size()> ideal;              ///< in all trials
-  std::array<FlatCounts, kCues.size()> matched;            ///< in all trials
-  std::array<FlatCounts, kCues.size()> ideal_of_answered;  ///< in those with a response, to compare
+  FlatCounts human;                              ///< in the trials with a response
+  std::array<FlatCounts, kCues.size()> ideal;    ///< in all trials
+  std::array<FlatCounts, kCues.size()> matched;  ///< in all trials
+  std::array<FlatCounts, kCues.size()>
+      ideal_of_answered;  ///< in the trials with a response, for comparison
   std::array<FlatCounts, kCues.size()> matched_of_answered;
 };
 
@@ -81,11 +82,10 @@ struct CueStatistics {
 
 /// Computes the numbers and their 95 % intervals over participants. Efficiencies have
 /// expanded_percentiles of 9,999 draws of whole participants with replacement, the same draws for
-/// all. Divergences, and the difference of two, are those of the jackknife: confusions of few
-/// answers lie farther from any observer's than those of many, and drawn ones farther still. A
-/// number that is undefined in a draw, or without a participant, has no interval (for example, a
-/// corrected efficiency when the observer is at chance or below). With one participant, divergences
-/// are those of the answers as they are.
+/// all. Divergences, and differences of two, are jackknife estimates, because few answers bias a
+/// divergence upward and resampling adds to the bias. A number that is undefined in a draw, or
+/// without a participant, has no interval (for example, a corrected efficiency when the observer is
+/// at chance or below). With one participant, divergences are not corrected for bias.
 /// \param participants  of the same number of classes, each with at least one trial
 /// \param index  chooses the stream of random numbers
 /// \param jobs  threads; 0: one for each core. The result does not depend on it.

@@ -22,7 +22,7 @@ Json mean_json(const MeanEstimate& mean) {
 }
 
 Json participants_json(const MethodCues& cues) {
-  // By name, because the order of sessions would tell who a participant of a public report is.
+  // Sorted by name, because the order of sessions could identify participants of a public report.
   std::map<std::string, std::size_t> places;
   for (std::size_t i = 0; i < cues.participants.size(); ++i) places[cues.participants[i]] = i;
   Json all = Json::array();
@@ -60,7 +60,7 @@ Json match_json(const std::optional<CueMatch>& match) {
   return {{"best", name_of(match->best)},
           {"second", name_of(match->second)},
           {"difference_bits", cue_figure_json(match->difference)},
-          {"told_apart", match->told_apart}};
+          {"told_apart", match->is_distinct}};
 }
 
 Json method_json(const MethodCues& cues) {
@@ -77,7 +77,7 @@ Json method_json(const MethodCues& cues) {
           {"per_participant", participants_json(cues)}};
 }
 
-/// How each kind of number is computed.
+/// The method by which each kind of number is computed.
 Json by_json() {
   return {
       {"available",

@@ -8,8 +8,8 @@
 
 namespace touchtrial::analysis::identification {
 
-/// The value of "cues" in the report, stamped if simulated. Its key "by" tells how each kind of
-/// number is computed. Numbers that do not exist are null.
+/// The value of "cues" in the report, stamped if simulated. Its key "by" states the method of each
+/// kind of number. Undefined numbers are null.
 [[nodiscard]] nlohmann::ordered_json cues_object(const CueReport& report);
 
 }  // namespace touchtrial::analysis::identification

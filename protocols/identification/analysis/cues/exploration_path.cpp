@@ -62,7 +62,7 @@ PathTexture texture_of(const study::StudyKey& key, const study::StimulusIndex& s
   try {
     if (pack) return texture_in_pack(*pack, key.code_of(stimulus));
   } catch (const FileError&) {
-    // The image serves instead.
+    // Fall back to the image.
   }
   try {
     return texture_in_image(key.study, stimulus);
@@ -71,7 +71,7 @@ PathTexture texture_of(const study::StudyKey& key, const study::StimulusIndex& s
   }
 }
 
-/// The plane as far as the hand came on it, where nothing tells its size.
+/// The part of the plane that the hand reached, if the plane's size is unknown.
 PlaneGeometry explored_plane(std::span<const PathPoint> points, double pitch_mm) {
   Vec2 furthest{};
   for (const PathPoint& point : points) {

@@ -1,5 +1,5 @@
-/// \file The path of the hand in one trial, with its forces, over the texture that was felt. These
-/// are the data of the figure of an exploration. Also chooses the trials that a report draws.
+/// \file The path of the hand in one trial, with forces, over the texture that was felt: the data
+/// for the figure of an exploration. Also selects the trials that a report draws.
 #pragma once
 
 #include "analysis/outcomes/outcomes.hpp"
@@ -18,7 +18,7 @@ namespace touchtrial::analysis::identification {
 
 inline constexpr int kMaxPathPoints = 2000;
 
-/// One sample of the trace. It also stands for the samples up to the next point.
+/// One sample of the trace, which also represents the samples up to the next point.
 struct PathPoint {
   Vec2 position_mm;  ///< from the top-left corner of the plane; y runs downwards
   Vec2 force_n;      ///< tangential, as sent to the device: texture and friction, if any
@@ -33,8 +33,8 @@ struct PathTexture {
   std::string source;  ///< in words: "the field in the study's pack", "the study's image"
 };
 
-/// In a public report it names neither participant (empty) nor session (0) nor trial (the number of
-/// the method, from 1).
+/// In a public report, participant is empty, session is 0, and trial is the number of the method,
+/// from 1.
 struct ExplorationPath {
   bool simulated = false;  ///< the figure needs the stamp
   int session = 0;
@@ -51,15 +51,15 @@ struct ExplorationPath {
 
 /// The path of one trial. The texture comes from the study's pack if it is available, otherwise
 /// from the image of the stimulus.
-/// \param pack  folder; empty: where the key says
-/// \throws StoreError if the outcomes hold no such scored trial, or the trial has no trace
+/// \param pack  folder; empty: the path in the key
+/// \throws StoreError if the outcomes have no such scored trial, or the trial has no trace
 /// \throws VerificationError if the trace does not open
 [[nodiscard]] ExplorationPath exploration_path(const record::StudyStore& store,
                                                const study::StudyKey& key, const Outcomes& outcomes,
                                                int session, int trial,
                                                const std::filesystem::path& pack = {});
 
-/// A trial in the words of the user.
+/// A trial as named by the user.
 struct TrialName {
   std::string participant;
   int trial = 0;  ///< from 1, among all trials of the session

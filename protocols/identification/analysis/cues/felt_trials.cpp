@@ -35,8 +35,8 @@ std::string refusal(const record::TrialRow& row, const std::string& why) {
       row.session, row.trial, why);
 }
 
-/// Keeps an error instead of throwing it, so that the error of the first trial is reported,
-/// whichever thread finds one first.
+/// Stores an error instead of throwing it, so that the first trial's error is reported whichever
+/// thread finishes first.
 void open_and_visit(WaitingTrace& sealed, const TraceVisitor& visit) {
   try {
     const std::optional<record::Trace> trace = record::unsealed_trace(sealed.box, *sealed.own);
@@ -109,7 +109,7 @@ std::optional<StudyPlane> if_readable(const char* source, Make make) {
     const PlaneGeometry geometry = make();
     if (geometry.height_px > 0) return StudyPlane{geometry, source};
   } catch (const FileError&) {
-    // Without the file the caller tries another source.
+    // The caller tries another source.
   }
   return std::nullopt;
 }

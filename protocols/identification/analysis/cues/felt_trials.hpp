@@ -1,5 +1,5 @@
-/// \file Opens the traces of many trials, and computes the felt features of each; and the plane on which
-/// they were felt, from the files of the study that still exist. Source: docs/method.md, "Felt
+/// \file Opens the traces of many trials and computes their felt features. Also finds the plane on
+/// which they were felt, from the study's files that still exist. Source: docs/method.md, "Felt
 /// features".
 #pragma once
 
@@ -24,13 +24,12 @@ namespace touchtrial::analysis::identification {
 /// \param place  place of its trial in the list of trials
 using TraceVisitor = std::function<void(std::size_t place, const record::Trace& trace)>;
 
-/// Called from time to time on the calling thread with the number of traces that are done; may be
-/// empty.
+/// Called occasionally on the calling thread with the number of finished traces; may be empty.
 using TraceProgress = std::function<void(int done, int of)>;
 
 /// Reads the trials' traces on the calling thread in batches. Opens and visits the traces of one
-/// batch on several threads, in no particular order. The visitor may write only to data that belong
-/// to its place. At most 64 sealed traces, and one open trace for each thread, are in memory.
+/// batch on several threads, in no particular order. The visitor may write only to data of its
+/// place. At most 64 sealed traces, and one open trace for each thread, are in memory.
 /// \param jobs  threads, >= 1; 0: one for each core
 /// \return the places of trials that have no trace
 /// \throws VerificationError, naming the first trial, if a trace does not open
@@ -42,13 +41,13 @@ std::vector<std::size_t> visit_traces(const record::StudyStore& store, const stu
 /// The felt features of each trial in a list.
 struct FeltTrials {
   std::vector<engine::FeltFeatures> felt;
-  std::vector<bool> has_trace;  ///< without a trace, the features mean nothing
+  std::vector<bool> has_trace;  ///< features are meaningless without a trace
 };
 
 /// Computes the felt features of every trial from its trace, for a hand with the movements and
 /// forces of the trace. The explorations of one trial count as one. The result does not depend on
 /// the number of threads.
-/// \param plane  the plane whose parts are told apart; traces are in its coordinates
+/// \param plane  the plane, in whose coordinates traces are
 /// \param jobs  threads; 0: one for each core
 /// \throws VerificationError, naming the first trial, if a trace does not open
 [[nodiscard]] FeltTrials feel_traces(const record::StudyStore& store, const study::StudyKey& key,
@@ -68,8 +67,8 @@ struct StudyPlane {
   std::string source;  ///< in words: "the study's pack"
 };
 
-/// The part of the plane that all stimuli share; a session asks its participant to explore it. The
-/// size comes from the pack's headers, otherwise from the study's images.
+/// The part of the plane that all stimuli share, which participants are asked to explore. The size
+/// comes from the pack's headers, otherwise from the study's images.
 /// \return nothing if neither can be read
 [[nodiscard]] std::optional<StudyPlane> study_plane(const study::StudyKey& key,
                                                     const std::optional<engine::Pack>& pack);

@@ -1,5 +1,5 @@
-/// \file Ideal observers: they feel what a hand felt, use a part of it as well as possible, and
-/// answer, either with certainty or with the participants' uncertainty. Source: docs/statistics.md.
+/// \file Ideal observers: they make optimal use of one cue in what a hand felt, and answer without
+/// noise or with noise that matches the participants' accuracy. Source: docs/statistics.md.
 #pragma once
 
 #include "engine/perception/felt_classifier.hpp"
@@ -20,11 +20,10 @@ struct ObservedTrial {
   engine::FeltFeatures felt{};
 };
 
-/// The features that an observer may use.
-/// `rms`: the logarithm of the lateral force's intensity in all five bands together.
-/// `spectrum`: the five lateral and the five normal bands, each relative to all five bands of its
-/// kind. A stronger force adds a constant to all features and so changes nothing.
-/// `everything`: the features as they are.
+/// The features that an observer may use. `rms`: the logarithm of the lateral force's intensity in
+/// all five bands together. `spectrum`: the five lateral and the five normal bands, each relative
+/// to all five bands of its kind. A stronger force adds a constant to all features and so changes
+/// nothing. `everything`: all features.
 [[nodiscard]] std::vector<double> cue_features(Cue cue, const engine::FeltFeatures& felt);
 
 /// The share of each class in an observer's answer. The shares add up to 1; they are empty if the
@@ -48,14 +47,14 @@ class Observer {
   /// Cost: about 10 us with 23 features and 5 stimuli.
   [[nodiscard]] AnswerShares ideal_answer(std::size_t trial) const;
 
-  /// The mean answer over kNoisyPercepts draws of noise, which is added to every feature. Like a
-  /// simulated participant, the observer knows the size of the noise. Each trial has its own draws,
-  /// which are the same for any noise. Cost: about 50 us.
+  /// The mean answer over kNoisyPercepts draws of noise, which is added to every feature. The
+  /// observer accounts for the size of the noise, as simulated participants do. Each trial has its
+  /// own draws, which are the same for any noise. Cost: about 50 us.
   /// \param noise  standard deviation, > 0
   [[nodiscard]] AnswerShares noisy_answer(std::size_t trial, double noise) const;
 
  private:
-  /// Tells whether another trial has this trial's class.
+  /// Whether another trial has this trial's class.
   [[nodiscard]] bool can_judge(std::size_t trial) const {
     return trials_of_class_[class_of_label_[label_[trial]]] >= 2;
   }
@@ -64,7 +63,7 @@ class Observer {
   [[nodiscard]] AnswerShares answer(const engine::FeltClassifier& classifier,
                                     std::span<const double> percept) const;
 
-  // The trials as a classifier learns them, with stimuli as its labels.
+  // The training data of the classifier, with stimuli as labels.
   std::vector<int> label_;                     ///< by trial
   std::vector<std::vector<double>> features_;  ///< by trial
   std::vector<int> class_of_label_;
@@ -78,9 +77,9 @@ struct ObserverAnswers : MatchingNoise {
   std::vector<AnswerShares> matched;  ///< answers with that noise
 };
 
-/// The answers of an ideal observer, and of one whose noise makes it right as often as the
-/// participants were. Bisection finds that noise to within 1e-3, on at most 2,000 evenly chosen
-/// trials with a response.
+/// The answers of an ideal observer, and of one whose noise makes it as accurate as the
+/// participants. Bisection finds that noise to within 1e-3, on at most 2,000 evenly chosen trials
+/// with a response.
 /// \param responses  by trial; nothing: no response
 /// \param jobs  threads; 0: one for each core. The result does not depend on it.
 /// \throws std::invalid_argument as Observer does, or if there are not as many responses as trials

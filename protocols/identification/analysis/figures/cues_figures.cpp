@@ -72,7 +72,7 @@ constexpr int kMaxPixels = 250;
 constexpr double kWidth_cm = 9.5;
 constexpr double kArrows = 14.0;  ///< along a path
 /// A shorter way would hide below its arrow's head; in lengths of the plane's longer side.
-constexpr double kLeastWay = 0.02;
+constexpr double kMinStrokeShare = 0.02;
 
 /// Every n-th grey value of the texture, brightened, so that the path stands out.
 GreyImage backdrop(const GreyImage& grey) {
@@ -113,7 +113,7 @@ Layer arrows_on(const Layer& path, double longer_mm) {
     const Datum& from = path.rows[i];
     for (std::size_t k = i + 1; k < path.rows.size() && path.rows[k].text == from.text; ++k) {
       const Datum& to = path.rows[k];
-      if (std::hypot(to.x - from.x, to.y - from.y) < kLeastWay * longer_mm) continue;
+      if (std::hypot(to.x - from.x, to.y - from.y) < kMinStrokeShare * longer_mm) continue;
       arrows.rows.push_back({.x = from.x, .y = from.y, .low = to.x, .high = to.y});
       break;
     }

@@ -28,7 +28,7 @@ std::vector<Cell> observer_row(const ObserverFigures& observer) {
 Table cue_table(const StudyReport& report, const MethodCues& method, std::size_t index) {
   Table table{
       "cues-" + std::to_string(index + 1),
-      method_prefix(report, index) + "what ideal observers would have made of what each hand felt",
+      method_prefix(report, index) + "accuracy of ideal observers, given what each hand felt",
       columns_of(
           {"observer uses", "accuracy", "95% (%)", "efficiency", "95%", "above chance", "95%"})};
   table.rows.push_back({"(participants)", Cell(share_figure(method.human_mean.mean), true),
@@ -104,7 +104,7 @@ std::string verdict_of(const MethodCues& method, const CueMatch& match) {
   if (match.difference.interval->low <= 0.0) {
     return interval + ", which contains 0, so the two are not told apart";
   }
-  return interval + (match.told_apart ? ", so the two are told apart" : "");
+  return interval + (match.is_distinct ? ", so the two are told apart" : "");
 }
 
 Cited match_of(const MethodCues& method) {
@@ -162,7 +162,7 @@ void add_observers(const StudyReport& report, const CueReport& cues, Section& se
 }  // namespace
 
 Section cues_section(const StudyReport& report, bool explores) {
-  Section section{"cues", "Which cue was it?", {}};
+  Section section{"cues", "Ideal observers of cues", {}};
   if (report.cues) {
     add_observers(report, *report.cues, section);
   } else {

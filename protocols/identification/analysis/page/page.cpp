@@ -64,10 +64,9 @@ void add_method_heading(const StudyReport& report, std::size_t method, Section& 
       Subheading{section.id + "-of-" + method_slug(report, method), report.methods[method].method});
 }
 
-Table method_table(const StudyReport& report, std::size_t method, const std::string& id,
-                   const std::string& caption, std::vector<Column> columns) {
-  return {id + "-" + method_slug(report, method), method_prefix(report, method) + caption,
-          std::move(columns)};
+TableName method_table_name(const StudyReport& report, std::size_t method, const std::string& id,
+                            const std::string& caption) {
+  return {id + "-" + method_slug(report, method), method_prefix(report, method) + caption};
 }
 
 Section result_section(const StudyReport& report) {
@@ -85,17 +84,6 @@ Section result_section(const StudyReport& report) {
     section.blocks.emplace_back(Cited{mean_sentence(report, method), {Source::student}});
   }
   return section;
-}
-
-std::vector<Cell> pooled_and_mean_row(const std::string& name, const Proportion& pooled,
-                                      const MeanEstimate& mean) {
-  return {name,
-          std::to_string(pooled.n),
-          std::to_string(pooled.correct),
-          share_figure(pooled.share()),
-          std::to_string(mean.participants),
-          share_figure(mean.mean),
-          share_range(mean.known_interval())};
 }
 
 std::string method_prefix(const StudyReport& report, std::size_t method) {

@@ -4,10 +4,13 @@
 #include "analysis/report/page/document.hpp"
 #include "analysis/report/page/study_document.hpp"
 #include "protocols/identification/analysis/figures/figures.hpp"
+#include "protocols/identification/analysis/measures.hpp"
 #include "protocols/identification/analysis/report.hpp"
 
 #include <cstddef>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace touchtrial::analysis::identification {
 
@@ -39,15 +42,21 @@ namespace touchtrial::analysis::identification {
 /// Adds a subheading with the method's name if the report has several methods.
 /// \param section  its id begins the id of the heading
 void add_method_heading(const StudyReport& report, std::size_t method, Section& section);
-/// An empty table of one method, whose id and caption tell which if the report has several.
+/// Which method a table is of, if the report has several.
+struct TableName {
+  std::string id;
+  std::string caption;
+};
+[[nodiscard]] TableName method_table_name(const StudyReport& report, std::size_t method,
+                                          const std::string& id, const std::string& caption);
+/// The table of a list of measures, with that name.
+template <typename Row>
 [[nodiscard]] Table method_table(const StudyReport& report, std::size_t method,
                                  const std::string& id, const std::string& caption,
-                                 std::vector<Column> columns);
-/// Cells on trials: how many, how many right and their share, pooled; and the mean over
-/// participants.
-[[nodiscard]] std::vector<Cell> pooled_and_mean_row(const std::string& name,
-                                                    const Proportion& pooled,
-                                                    const MeanEstimate& mean);
+                                 const std::vector<Row>& rows, const MeasureList<Row>& measures) {
+  TableName name = method_table_name(report, method, id, caption);
+  return table_of(std::move(name.id), std::move(name.caption), rows, measures);
+}
 /// The beginning of captions: for example "adaptive: " if the report has several methods, otherwise
 /// empty.
 [[nodiscard]] std::string method_prefix(const StudyReport& report, std::size_t method);

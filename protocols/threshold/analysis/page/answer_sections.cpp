@@ -1,7 +1,10 @@
 #include "analysis/choices/people_report.hpp"
 #include "analysis/report/page/wording.hpp"
 #include "core/text.hpp"
+#include "protocols/threshold/analysis/measures.hpp"
 #include "protocols/threshold/analysis/page/sections.hpp"
+
+#include <algorithm>
 
 #include <fmt/format.h>
 
@@ -9,38 +12,37 @@ namespace touchtrial::analysis::threshold {
 namespace {
 
 Table control_table(const AgainstGuessing& control) {
-  Table table{"control-block", "Right answers with the hand off the device",
-              columns_of({"participant", "n", "right", "share", "p", "p by Holm"})};
-  const auto add = [&](const std::string& name, const RightAnswers& one) {
-    table.rows.push_back({name, std::to_string(one.answers.n), std::to_string(one.answers.correct),
-                          share_figure(one.answers.share()), p_figure(one.p),
-                          p_figure(one.p_holm)});
-  };
-  for (const RightAnswers& one : control.people) add(one.participant, one);
-  add("all, pooled", control.pooled);
-  table.notes = {
-      {"p: exact binomial probability of as many right answers or more by guessing; by Holm: "
-       "adjusted over participants. Targets are drawn trial by trial, so under guessing trials are "
-       "independent, whoever answers.",
-       {Source::holm}}};
-  return table;
+  std::vector<RightAnswers> rows = control.people;
+  rows.push_back(control.pooled);
+  return table_of("control-block", "Right answers with the hand off the device", rows,
+                  right_measures(true));
 }
 
+/// A standard, and the mean without those who could hear.
+struct Without {
+  const StandardReport* all;
+  const CensoredMean* others;
+};
+
 Table without_table(const ThresholdReport& report) {
-  Table table{"thresholds-without-hearers",
-              "Thresholds without those who could hear, means over participants",
-              columns_of({"standard", "n", "all (dB)", "n, without", "without (dB)"})};
+  using Row = Without;
+  std::vector<Row> rows;
   for (std::size_t i = 0; i < report.control->without.size(); ++i) {
-    const StandardReport& one = report.standards[i];
-    const CensoredMean& without = report.control->without[i];
-    table.rows.push_back({one.words, std::to_string(one.mean.participants),
-                          threshold_text(mean_threshold(one.mean), one.levels),
-                          std::to_string(without.participants),
-                          threshold_text(mean_threshold(without), one.levels)});
+    rows.push_back({&report.standards[i], &report.control->without[i]});
   }
-  table.notes = {{fmt::format("Left out: {}. The result keeps them.",
-                              listed(report.control->hearers, " and "))}};
-  return table;
+  const auto threshold = [](const CensoredMean& mean, const Row& row) {
+    return threshold_text(mean_threshold(mean), row.all->levels);
+  };
+  return table_of(
+      "thresholds-without-hearers",
+      "Thresholds without those who could hear, means over participants", rows,
+      {column_of<Row>("standard", [](const Row& one) { return one.all->words; }),
+       count_of<Row>("", "n", [](const Row& one) { return one.all->mean.participants; }),
+       column_of<Row>("all (dB)", [=](const Row& one) { return threshold(one.all->mean, one); }),
+       count_of<Row>("", "n, without", [](const Row& one) { return one.others->participants; }),
+       column_of<Row>("without (dB)", [=](const Row& one) { return threshold(*one.others, one); })
+           .with(fmt::format("Left out: {}. The result includes them.",
+                             listed(report.control->hearers, " and ")))});
 }
 
 /// What the control block could have found.
@@ -76,7 +78,7 @@ std::string control_meaning(const ThresholdReport& report) {
   return fmt::format(
       "In the control block the hand was off the device, which moved by itself: only its sound was "
       "left. Guessing gives {} right. More than that means that people could hear which plane it "
-      "was, and thresholds may be of the ear.",
+      "was, and thresholds may reflect hearing.",
       share_figure(report.guess));
 }
 
@@ -87,17 +89,12 @@ std::string test_words(bool alike) {
 }
 
 Table choices_table(const ThresholdReport& report) {
-  Table table{"named-choices",
-              "How often each answer was given, and how often it was right; trials of tracks",
-              columns_of({"answer", "given", "right answer", "difference (points)", "t 95%", "p"})};
-  bool alike = false;
-  for (const ChoiceUse& one : report.choice_use) {
-    alike = alike || one.excess.alike;
-    const std::optional<Interval> interval = one.excess.mean.known_interval();
-    table.rows.push_back({one.choice, std::to_string(one.named), std::to_string(one.targets),
-                          points_figure(one.excess.mean.mean), share_range(interval),
-                          p_figure(one.excess.p)});
-  }
+  Table table =
+      table_of("named-choices",
+               "How often each answer was given, and how often it was right; trials of tracks",
+               report.choice_use, choice_measures());
+  const bool alike =
+      std::ranges::any_of(report.choice_use, [](const ChoiceUse& one) { return one.excess.alike; });
   table.notes = {
       {"Difference: mean over participants of the share given less the share right, in "
        "percentage points; " +
@@ -106,20 +103,8 @@ Table choices_table(const ThresholdReport& report) {
   return table;
 }
 
-Table own_preferences_table(const ThresholdReport& report) {
-  Table table = choices::preferences_table(report.preferences, report.choices, "answer");
-  table.notes = {
-      {fmt::format(
-           "Without a preference somebody is right as often wherever the right answer is. p: right "
-           "answers keep their places and targets are drawn anew, {} times; by Holm: adjusted over "
-           "participants.",
-           report.preferences.anybody.deals),
-       {Source::holm, Source::phipson_smyth}}};
-  return table;
-}
-
 std::string preferences_sentence(const ThresholdReport& report) {
-  const choices::Anybody& anybody = report.preferences.anybody;
+  const choices::GlobalNullResult& anybody = report.preferences.anybody;
   const std::string who = choices::preference_words(report.preferences, report.choices);
   if (who.empty()) {
     return fmt::format("Preferences of participants' own: no sign ({}, by people).",
@@ -127,31 +112,6 @@ std::string preferences_sentence(const ThresholdReport& report) {
   }
   return fmt::format("Preferences of participants' own ({}, by people): {}.", p_phrase(anybody.p),
                      who);
-}
-
-std::vector<Cell> repetition_row(const std::string& name, const Repetition& one) {
-  return {name,
-          std::to_string(one.repeats.n),
-          share_figure(one.repeats.share()),
-          share_figure(one.expected),
-          points_figure(one.excess.mean.mean),
-          share_range(one.excess.mean.known_interval()),
-          p_figure(one.excess.p)};
-}
-
-Table repetitions_table(const ThresholdReport& report) {
-  Table table{
-      "repeated-answers", "How often an answer repeated the one before it",
-      columns_of({"after", "n", "repeated", "in any order", "difference (points)", "t 95%", "p"})};
-  table.rows.push_back(repetition_row("a right answer", report.after_right));
-  table.rows.push_back(repetition_row("a wrong answer", report.after_wrong));
-  table.notes = {
-      {"In any order: what participants' own shares of answers give if answers do not "
-       "depend on the one before. Targets are drawn trial by trial and depend on "
-       "nothing; " +
-           test_words(report.after_right.excess.alike || report.after_wrong.excess.alike),
-       {Source::student}}};
-  return table;
 }
 
 std::string learning_sentence(const ThresholdReport& report) {
@@ -194,11 +154,11 @@ std::string sound_sentence(const ThresholdReport& report) {
   if (control.hearers.empty()) {
     return fmt::format(
         "{}: more than by guessing ({}, by people), though nobody stands out. Participants could "
-        "hear something, and every threshold may be of the ear.",
+        "hear something, and every threshold may reflect hearing.",
         counts, p);
   }
   return fmt::format(
-      "{}. Somebody could hear it ({}, by people): {}. Their thresholds may be of the ear{}.",
+      "{}. Somebody could hear it ({}, by people): {}. Their thresholds may reflect hearing{}.",
       counts, p, hearers_words(control), without_words(report));
 }
 
@@ -222,11 +182,7 @@ Section habits_section(const ThresholdReport& report) {
   const std::string learning = learning_sentence(report);
   if (!learning.empty()) add(Cited{learning});
   add(choices_table(report));
-  if (!report.preferences.people.empty()) {
-    add(Cited{preferences_sentence(report)});
-    add(own_preferences_table(report));
-  }
-  add(repetitions_table(report));
+  if (!report.preferences.people.empty()) add(Cited{preferences_sentence(report)});
   return section;
 }
 

@@ -15,6 +15,8 @@ namespace touchtrial::analysis::threshold {
 /// \param levels  of the track
 [[nodiscard]] std::string threshold_text(const procedures::Threshold& threshold,
                                          const std::vector<double>& levels);
+/// "−12.5", "above 0.0" or "between −5.0 and −2.5"; empty if nothing is known of it.
+[[nodiscard]] std::string median_text(const CensoredMean& mean);
 /// "11.5% [9.8, 13.4]", or the change of an order: "0.120 [0.101, 0.140]"
 [[nodiscard]] std::string quantity_text(const Quantity& quantity,
                                         const study::threshold::ThresholdOptions& options);
@@ -23,7 +25,7 @@ namespace touchtrial::analysis::threshold {
 
 /// \return a section without blocks if the question is another one
 [[nodiscard]] Section same_different_section(const ThresholdReport& report);
-/// Whether anybody could hear it with the hand off the device: then thresholds may be of the ear.
+/// Whether anybody could hear it with the hand off the device: then thresholds may reflect hearing.
 [[nodiscard]] bool was_heard(const ThresholdReport& report);
 /// Whether anybody could hear it with the hand off the device, who, and the means without them; or
 /// what the block could have found.

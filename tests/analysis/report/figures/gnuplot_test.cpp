@@ -4,6 +4,7 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "support/catch.hpp"
+#include "support/names.hpp"
 #include "support/temp_folder.hpp"
 
 #include <cstdlib>
@@ -63,7 +64,7 @@ std::string complaint_about(const std::string& script) {
 }  // namespace
 
 TEST_CASE("a script that gnuplot refuses is named in one line") {
-  CHECK_THROWS_WITH(printed_by("plot nonsense(\n"), holds_text("gnuplot: failed ("));
+  CHECK_THROWS_WITH(printed_by("plot nonsense(\n"), names("gnuplot"));
   CHECK_THROWS_WITH(printed_by("plot nonsense(\n"), !holds_text("\n"));
 }
 
@@ -77,22 +78,21 @@ TEST_CASE("an older gnuplot is told from one that fails for another reason") {
   const std::string version = "[ \"$2\" = --version ] && { echo gnuplot ";
   const std::string end = " patchlevel 1; exit 0; }\n";
   CHECK_THAT(complaint_about(version + "5.0" + end + "echo 'unknown option' >&2; exit 1"),
-             holds_text("unknown option); it is version 5.0, and 5.2 or later is needed"));
+             names("5.0 5.2") && holds_text("unknown option"));
   for (const std::string newer : {"5.4", "6.0", "10.1"}) {
     const std::string said = complaint_about(version + newer + end + "echo oh >&2; exit 1");
-    CHECK_THAT(said, holds_text("failed (oh)"));
-    CHECK_THAT(said, !holds_text("5.2 or later"));
+    CHECK_THAT(said, names("oh"));
+    CHECK_THAT(said, !names("5.2"));
   }
-  CHECK_THAT(complaint_about(version + "5.4" + end + "exit 0"), holds_text("drew nothing; see"));
-  CHECK_THAT(complaint_about("kill -9 $$"), holds_text("was ended (Killed); see that memory"));
+  CHECK_THAT(complaint_about(version + "5.4" + end + "exit 0"), names("gnuplot"));
+  CHECK_THAT(complaint_about("kill -9 $$"), names("Killed"));
 }
 
 TEST_CASE("gnuplot's temporary files lie where TMPDIR says") {
   const TempFolder folder;
   {
     const Variable nowhere("TMPDIR", (folder.path() / "nowhere").string());
-    CHECK_THROWS_WITH(printed_by("plot x\n"), holds_text("temporary folder: cannot be written") &&
-                                                  holds_text("set TMPDIR"));
+    CHECK_THROWS_WITH(printed_by("plot x\n"), names("TMPDIR"));
   }
   const Variable own("TMPDIR", folder.path().string());
   CHECK_THAT(printed_by("plot x\n"), holds_text("*"));

@@ -12,6 +12,7 @@
 #include "device/servo/placed_device.hpp"
 #include "support/catch.hpp"
 #include "support/environment.hpp"
+#include "support/names.hpp"
 #include "support/temp_folder.hpp"
 
 #include <chrono>
@@ -112,43 +113,43 @@ TEST_CASE("a plug-in that needs no enabling gets its forces, and zeros, all the 
 }
 
 TEST_CASE("an incomplete plug-in library is refused with the missing part") {
-  const auto [how, words] = GENERATE(table<const char*, const char*>(
-      {{"nothing", "touchtrial_device_v1 returned nothing"},
-       {"version", "has version 2 of the interface, this program has 1"},
-       {"size", "has an interface of 24 bytes, not "},
-       {"function", "has no function force"},
-       {"no_name", "has no name of 1 to 32 letters"},
-       {"control_name", "has no name of 1 to 32 letters"},
-       {"long_name", "has no name of 1 to 32 letters"}}));
+  const auto [how, places] =
+      GENERATE(table<const char*, const char*>({{"nothing", "touchtrial_device_v1"},
+                                                {"version", "2 1"},
+                                                {"size", "24"},
+                                                {"function", "force"},
+                                                {"no_name", "1 32"},
+                                                {"control_name", "1 32"},
+                                                {"long_name", "1 32"}}));
   const EnvironmentVariable broken("BROKEN_DEVICE", how);
   CHECK_THROWS_AS(device::PluginDevice({TOUCHTRIAL_BROKEN_PLUGIN, "{}"}), DeviceError);
-  CHECK_THROWS_WITH(
-      device::PluginDevice({TOUCHTRIAL_BROKEN_PLUGIN, "{}"}),
-      holds_text(TOUCHTRIAL_BROKEN_PLUGIN) && holds_text(words) && holds_text("plugin.library"));
+  CHECK_THROWS_WITH(device::PluginDevice({TOUCHTRIAL_BROKEN_PLUGIN, "{}"}),
+                    names(TOUCHTRIAL_BROKEN_PLUGIN) && names(places) && names("plugin.library"));
 }
 
 TEST_CASE("a library without the entry, or none, is refused with the setting that names it") {
   CHECK_THROWS_WITH(device::PluginDevice({TOUCHTRIAL_FAKE_DHD, "{}"}),
-                    holds_text("has no function touchtrial_device_v1"));
+                    names("touchtrial_device_v1"));
   CHECK_THROWS_WITH(device::PluginDevice({"/nowhere/driver.so", "{}"}),
-                    holds_text("/nowhere/driver.so: cannot be loaded"));
-  CHECK_THROWS_WITH(device::open_device("plugin", {}),
-                    holds_text("no plug-in is named") && holds_text("plugin.library"));
+                    names("/nowhere/driver.so"));
+  CHECK_THROWS_WITH(device::open_device("plugin", {}), names("plugin.library"));
 }
 
 TEST_CASE("a device that does not open, or describes itself wrongly, is refused in words") {
-  const auto [fault, words] = GENERATE(table<const char*, const char*>(
-      {{"opening", "does not open: xxxx"},
-       {"description", "max_force_n is no number, must be above 0 to 100"},
-       {"no_serial", "serial is empty"},
-       {"inverted_workspace", "a side of the workspace in mm is -10"},
-       {"describe_writes_past", "wrote beyond the size of a structure"},
-       {"describe_fails", "describe: it returned 17"}}));
+  const auto [fault, places] =
+      GENERATE(table<const char*, const char*>({{"opening", "broken-example"},
+                                                {"description", "max_force_n 0 100"},
+                                                {"no_serial", "serial"},
+                                                {"inverted_workspace", "-10"},
+                                                {"describe_writes_past", "broken-example"},
+                                                {"describe_fails", "describe 17"}}));
   CHECK_THROWS_AS(device::PluginDevice(broken_by(fault)), DeviceError);
   CHECK_THROWS_WITH(device::PluginDevice(broken_by(fault)),
-                    holds_text("plugin broken-example: ") && holds_text(words));
+                    names("broken-example") && names(places));
+  // Of a long text of the library, the beginning is printed.
+  CHECK_THROWS_WITH(device::PluginDevice(broken_by("opening")), holds_text("xxxxxxxx"));
   CHECK_THROWS_WITH(device::PluginDevice(example_with(R"({"mass_kg":7})")),
-                    "plugin example: does not open: mass_kg is 7; give 0.01 to 1");
+                    names("example mass_kg 7 0.01 1"));
 }
 
 TEST_CASE("a plug-in's text without an end ends where its room does") {
@@ -222,7 +223,7 @@ TEST_CASE("a plug-in that kills the process that loads it is found without loadi
   replace_file(settings.plugin.library, ByteView(whole).first(whole.size() / 4));
   const auto listing = device::device_driver("plugin").list(settings).at(0);
   CHECK_FALSE(listing.present);
-  CHECK_THAT(listing.missing.at(0), holds_text("crashes while it is loaded"));
+  CHECK(listing.missing.size() == 1);
   CHECK_THROWS_AS(device::open_device("plugin", settings), DeviceError);
 }
 
@@ -230,7 +231,7 @@ TEST_CASE("the list of plug-ins shows the one in the settings, or its problem") 
   device::DeviceSettings settings;
   const auto listed = [&] { return device::device_driver("plugin").list(settings).at(0); };
   CHECK_FALSE(listed().present);
-  CHECK_THAT(listed().missing.at(0), holds_text("no plug-in is named"));
+  CHECK_THAT(listed().missing.at(0), names("plugin.library"));
   settings.plugin = example_with();
   CHECK(listed().present);
   CHECK(listed().model == "example: simulated mass");
@@ -239,7 +240,7 @@ TEST_CASE("the list of plug-ins shows the one in the settings, or its problem") 
   CHECK(listed().missing.empty());
   settings.plugin = broken_by("opening");
   CHECK_FALSE(listed().present);
-  CHECK_THAT(listed().missing.at(0), holds_text("does not open"));
+  CHECK_THAT(listed().missing.at(0), names("broken-example"));
 }
 
 TEST_CASE("a plug-in's settings are handed on as JSON, its library is relative to the file") {

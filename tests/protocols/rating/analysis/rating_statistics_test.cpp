@@ -282,7 +282,7 @@ TEST_CASE("somebody who repeats every answer counts as far as the cut, who says 
   CHECK(found.own[1] == 1.0);
   CHECK(found.participants == 1);
   CHECK(found.cut == 1);
-  check_near(found.mean.value(), own::kFurthestCorrelation);
+  check_near(found.mean.value(), own::kMaxCorrelation);
   CHECK_FALSE(found.interval);
   mixed.push_back(participant_of({{.1, .1}, {.8, .8}}, {}));
   CHECK_FALSE(own::retest_reliability(mixed, kItems).interval);

@@ -164,7 +164,7 @@ TEST_CASE("a whole session on the emulated Falcon loses no response, though it i
   CHECK(lab.falcon.emulator.loads() == 1);  // since its power came back
 
   for (const record::Event& event : lab.whole.all(record::EventKind::trace_stored)) {
-    const record::TraceBody trace = record::trace_body_from_json(event.body);
+    const record::TraceBody trace = record::from_json<record::TraceBody>(event.body);
     REQUIRE(trace.servo);
     CHECK(trace.servo->lost == 0);
     CHECK(trace.overruns == 0);
@@ -216,13 +216,13 @@ TEST_CASE("a pause on the emulated Falcon leaves no force, and its trial is repe
   CHECK(std::ranges::max(experimenter.force_n) == 0.0);
   const std::vector<record::Event> interrupted = lab.whole.all(record::EventKind::interrupted);
   REQUIRE(interrupted.size() == 1);
-  const record::TrialBody body = record::trial_from_json(interrupted.front().body);
+  const auto body = record::from_json<record::InterruptedBody>(interrupted.front().body);
   CHECK(body.reason == record::kPauseReason);
   CHECK(lab.whole.all(record::EventKind::answered).size() == 25);
   // The trial that was paused is the next one.
   const std::vector<record::Event> presented = lab.whole.all(record::EventKind::presented);
-  CHECK(record::trial_from_json(presented.at(2).body).trial == body.trial);
-  CHECK(record::trial_from_json(presented.at(3).body).trial == body.trial);
+  CHECK(record::from_json<record::TrialBody>(presented.at(2).body).trial == body.trial);
+  CHECK(record::from_json<record::TrialBody>(presented.at(3).body).trial == body.trial);
   CHECK(lab.experimenter.consents == 1);
   CHECK(lab.falcon.emulator.complaints().empty());
 }

@@ -5,9 +5,11 @@
 #include "protocols/threshold/analysis/exports.hpp"
 #include "protocols/threshold/analysis/figures.hpp"
 #include "protocols/threshold/analysis/hand_made_tracks.hpp"
+#include "protocols/threshold/analysis/measures.hpp"
 #include "protocols/threshold/analysis/page/sections.hpp"
 #include "protocols/threshold/analysis/threshold_analysis.hpp"
 #include "support/catch.hpp"
+#include "support/names.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -169,7 +171,8 @@ TEST_CASE("thresholds.csv says where each threshold lies, as the group's mean ta
     made.track(static_cast<int>(made.outcomes.sessions.size()), 1, observer(threshold), random);
   }
   const own::ThresholdReport report = own::make_report(made.outcomes);
-  const analysis::DataTable table = own::thresholds_table(report, false);
+  const analysis::DataTable table =
+      analysis::data_table_of(report.tracks, own::track_measures(report));
   REQUIRE(table.rows.size() == 2);
   const auto cell = [&](std::size_t row, const char* column) {
     return table.rows[row][column_of(table, column)];
@@ -199,7 +202,7 @@ TEST_CASE("a standard near the pack's gain has fewer levels, and is censored at 
   const std::string text = analysis::document_text(
       own::threshold_analysis().results(made.outcomes, {})->document({}, {}));
   // A guesser may be above the levels, or lapse at all of them.
-  CHECK_THAT(text, holds_text("above −12.0") || holds_text("not determined"));
+  CHECK_THAT(text, names("−12.0") || holds_text("not determined"));
 }
 
 TEST_CASE("wishes that a report of thresholds cannot fulfil are refused by their names") {

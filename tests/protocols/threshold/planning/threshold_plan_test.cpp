@@ -5,6 +5,7 @@
 #include "protocols/simulation/simulation.hpp"
 #include "protocols/threshold/threshold_study.hpp"
 #include "support/catch.hpp"
+#include "support/names.hpp"
 
 #include <cmath>
 #include <limits>
@@ -126,8 +127,7 @@ TEST_CASE("most samples of people beyond the levels have no interval, and the pl
   const auto& size = document.at("trials").at(0).at("sizes").at(0);
   CHECK(size.at("thresholds").at(0).at("half_width_median").is_null());
   CHECK(document.at("trials").at(0).at("thresholds").at(0).at("mean").is_null());
-  CHECK_THAT(threshold_plan_text(report),
-             holds_text("10 of 11 thresholds not known") && holds_text("there is no mean"));
+  CHECK_THAT(threshold_plan_text(report), names("10 11"));
 }
 
 TEST_CASE("people beyond the levels count in a plan, so the mean is not that of the others") {
@@ -198,14 +198,13 @@ TEST_CASE("impossible pools are refused") {
     const session::StimulusSource source(tiny.pack(), tiny.key());
     static_cast<void>(simulated_thresholds(tiny.key(), source, {}, trials, {.people = 1}));
   };
-  CHECK_THROWS_WITH(
-      pool_of(R"("task": "detection", "interval_s": 0.4, "trials": 4,
+  CHECK_THROWS_WITH(pool_of(R"("task": "detection", "interval_s": 0.4, "trials": 4,
                                "procedure": "constant-stimuli", "levels": [-20, -10])",
-              5),
-      holds_text("--trials: 5 are impossible") && holds_text("each level equally often"));
+                            5),
+                    names("--trials 5"));
   CHECK_THROWS_WITH(pool_of(R"("task": "discrimination", "question": "same-different",
                                "interval_s": 0.4, "trials": 4, "procedure": "constant-stimuli",
                                "levels": [-12, -6], "standards": [-6])",
                             4),
-                    holds_text("same or different") && holds_text("no threshold"));
+                    names("d'"));
 }

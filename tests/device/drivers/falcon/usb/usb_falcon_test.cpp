@@ -4,6 +4,7 @@
 #include "core/errors.hpp"
 #include "device/drivers/falcon/usbfs_shim/usbfs_shim.hpp"
 #include "support/catch.hpp"
+#include "support/names.hpp"
 
 #include <algorithm>
 #include <deque>
@@ -67,7 +68,7 @@ bool serve_until(FtdiTransport& transport, Condition holds) {
 
 TEST_CASE("an empty bus has no Falcon, and the error of opening one gives the remedy") {
   CHECK(find_usb_falcons().empty());
-  CHECK_THAT(refusal(), holds_text("none is plugged in"));
+  CHECK_THAT(refusal(), names("0403:cb48"));
 }
 
 TEST_CASE("a Falcon on the bus is found with its place and serial number") {
@@ -102,8 +103,8 @@ TEST_CASE("a Falcon that another program has claimed is busy, and nothing stays 
   Loopback model;
   ShimmedUsbDevice device(model);
   device.use_elsewhere(true);
-  CHECK_THAT(find_usb_falcons().at(0).trouble, holds_text("another program"));
-  CHECK_THAT(refusal(), holds_text("another program"));
+  CHECK_FALSE(find_usb_falcons().at(0).trouble.empty());
+  CHECK_THAT(refusal(), names(find_usb_falcons().at(0).where));
   CHECK(device.open_handles() == 0);
 }
 
@@ -137,8 +138,7 @@ TEST_CASE("the settings have to name one of several Falcons") {
 TEST_CASE("a Falcon without a serial number is reported as such if another number is requested") {
   Loopback model;
   const ShimmedUsbDevice device(model, {.serial = ""});
-  CHECK_THAT(refusal("A\nB"),
-             holds_text("number A B, but there is one without a serial number; correct"));
+  CHECK_THAT(refusal("A\nB"), names("A B falcon.serial"));
 }
 
 TEST_CASE("receiving from a silent device waits no longer than the limit") {
@@ -154,11 +154,11 @@ TEST_CASE("setting up an unplugged device says so") {
   ShimmedUsbDevice device(model);
   const auto transport = open_usb_falcon("");
   device.unplug();
-  CHECK_THROWS_WITH(transport->control(FtdiRequest::purge, 1), holds_text("unplugged"));
+  CHECK_THROWS_AS(transport->control(FtdiRequest::purge, 1), DeviceError);
   std::array<std::uint8_t, kUsbPacketSize> packet{};
-  CHECK_THROWS_WITH(transport->receive(packet, milliseconds(5)), holds_text("unplugged"));
+  CHECK_THROWS_AS(transport->receive(packet, milliseconds(5)), DeviceError);
   Collector collector;
-  CHECK_THROWS_WITH(transport->start_stream(collector), holds_text("unplugged"));
+  CHECK_THROWS_AS(transport->start_stream(collector), DeviceError);
 }
 
 TEST_CASE("the stream keeps a read queued: one packet after another arrives") {

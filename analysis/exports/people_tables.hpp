@@ -1,5 +1,5 @@
-/// \file Tables of what people said and of what happened to them: answers to questions, incidents,
-/// consents. Columns: docs/data-dictionary.md, "Exports".
+/// \file Tables of answers to questions, incidents, marks and consents. Columns:
+/// docs/data-dictionary.md, "Exports".
 #pragma once
 
 #include "analysis/exports/data_table.hpp"
@@ -16,12 +16,12 @@
 
 namespace touchtrial::analysis {
 
-/// Whether a table may have what people typed, which may name somebody.
+/// Whether a table may contain typed text, which may name people.
 enum class Typed { shown, left_out };
 
 /// One row for each answer, with the wording of its question and the text of the chosen option
 /// where they are known.
-/// \param typed  left_out: without answers in words, and without ages
+/// \param typed  left_out: without free-text answers and ages
 [[nodiscard]] DataTable answers_table(const Outcomes& outcomes, Typed typed = Typed::shown);
 
 /// participant, session, event, kind, at_s, trial, code, safety_fault, device_fault, text.
@@ -34,23 +34,22 @@ enum class Typed { shown, left_out };
                                         Typed typed = Typed::shown);
 
 /// One row for each consent of a participant who has a session and is not erased: the version that
-/// was signed, and how many came before. Neither the day nor anything else of the personal data.
+/// was signed, and the number of earlier consents. No date or other personal data.
 [[nodiscard]] DataTable consents_table(const record::StudyStore& store,
                                        const std::vector<record::PersonalRecord>& consents);
 
 /// A table as CSV.
-/// \param has_words  it has what people said: for its reader alone
+/// \param has_words  it contains people's words, so only the owner may read the file
 /// \param start  of the file, before the table
-[[nodiscard]] ExportFile said_file(const std::string& name, const DataTable& table, bool has_words,
-                                   const std::string& start = {});
+[[nodiscard]] ExportFile text_table_file(const std::string& name, const DataTable& table,
+                                         bool has_words, const std::string& start = {});
 
-/// What other instruments were told: each mark's time on the session's clock and, where the Lab
+/// The marks sent to other instruments: their times on the session's clock and, if the Lab
 /// Streaming Layer was used, on its clock.
 [[nodiscard]] DataTable marks_table(const Outcomes& outcomes);
 
-/// answers.csv (with outcomes), marks.csv where instruments were told of sessions, incidents.csv,
-/// and consents.csv if there are any.
-[[nodiscard]] std::vector<ResultTable> said_tables(
+/// answers.csv (with outcomes), incidents.csv, and marks.csv and consents.csv if there are any.
+[[nodiscard]] std::vector<ResultTable> people_tables(
     const record::StudyStore& store, const std::optional<Outcomes>& outcomes,
     const std::vector<record::PersonalRecord>& consents);
 

@@ -1,4 +1,4 @@
-#include "analysis/statistics/anybody.hpp"
+#include "analysis/statistics/global_null_test.hpp"
 
 #include "analysis/statistics/chance_test.hpp"
 #include "core/random.hpp"
@@ -26,8 +26,8 @@ std::vector<double> with_deals(double own, int person) {
 }
 
 /// What people together do says nothing.
-Anybody tested(const std::vector<double>& own) {
-  AnybodyTest test(static_cast<int>(own.size()), kDeals);
+GlobalNullResult tested(const std::vector<double>& own) {
+  GlobalNullTest test(static_cast<int>(own.size()), kDeals);
   for (std::size_t i = 0; i < own.size(); ++i) {
     test.add(with_deals(own[i], static_cast<int>(i)));
   }
@@ -45,7 +45,7 @@ TEST_CASE("the p of a statistic among others is the share that is as large") {
 TEST_CASE("who stands out by Holm is somebody, whatever all others do") {
   std::vector<double> own(12, 1.0);
   own[7] = 0.004;
-  const Anybody found = tested(own);
+  const GlobalNullResult found = tested(own);
   CHECK(found.found());
   CHECK(found.p <= 12 * 0.004);
   CHECK(found.people == 12);
@@ -58,13 +58,13 @@ TEST_CASE("who stands out by Holm is somebody, whatever all others do") {
 TEST_CASE("several of whom nobody stands out are found by their product") {
   std::vector<double> own(12, 0.5);
   std::fill(own.begin(), own.begin() + 4, 0.05);
-  const Anybody found = tested(own);
+  const GlobalNullResult found = tested(own);
   CHECK(found.p < 0.02);
   CHECK(found.alone == 4);
 }
 
 TEST_CASE("all together are found where everybody is a little better") {
-  AnybodyTest test(3, kDeals);
+  GlobalNullTest test(3, kDeals);
   for (int person = 0; person < 3; ++person) test.add(with_deals(0.4, person));
   std::vector<double> together(kDeals + 1);
   CHECK_FALSE(test.result(together).found());
@@ -77,7 +77,7 @@ TEST_CASE("one level holds for everything that is looked at") {
   int found = 0;
   for (int study = 0; study < kStudies; ++study) {
     RandomStream random(6, "anybody: level", static_cast<std::uint64_t>(study));
-    AnybodyTest test(8, 199);
+    GlobalNullTest test(8, 199);
     std::vector<double> together(200);
     for (int person = 0; person < 8; ++person) {
       std::vector<double> p;
@@ -95,9 +95,9 @@ TEST_CASE("one level holds for everything that is looked at") {
 }
 
 TEST_CASE("nobody is nobody, and what is no p is refused") {
-  CHECK(AnybodyTest(0, 9).result(std::vector<double>(10)).p == 1.0);
-  CHECK_THROWS_AS(AnybodyTest(1, 0), std::invalid_argument);
-  AnybodyTest test(1, 2);
+  CHECK(GlobalNullTest(0, 9).result(std::vector<double>(10)).p == 1.0);
+  CHECK_THROWS_AS(GlobalNullTest(1, 0), std::invalid_argument);
+  GlobalNullTest test(1, 2);
   CHECK_THROWS_AS(test.add(std::vector{0.5, 0.5}), std::invalid_argument);
   CHECK_THROWS_AS(test.add(std::vector{0.5, 0.0, 0.5}), std::invalid_argument);
   CHECK_THROWS_AS(test.add(std::vector{0.5, 1.5, 0.5}), std::invalid_argument);

@@ -1,4 +1,4 @@
-#include "analysis/statistics/anybody.hpp"
+#include "analysis/statistics/global_null_test.hpp"
 
 #include "analysis/statistics/chance_test.hpp"
 
@@ -14,12 +14,12 @@ namespace {
 
 void require_deals(std::span<const double> values, std::size_t wanted) {
   if (values.size() != wanted) {
-    throw std::invalid_argument("a test of anybody needs a value observed and one for each deal");
+    throw std::invalid_argument("a global null test needs an observed value and one for each deal");
   }
 }
 
-/// The largest rank that, with those who stand out by Holm, at most kSignificanceLevel of all
-/// reach. If those are too many, a rank that nobody reaches.
+/// The largest rank such that at most kSignificanceLevel of all deals reach it or are significant
+/// by Holm. If Holm alone exceeds that level, a rank that no deal reaches.
 double rank_at_level(std::span<const double> by_holm, std::span<const double> rank) {
   std::vector<double> others;
   for (std::size_t i = 0; i < rank.size(); ++i) {
@@ -33,14 +33,14 @@ double rank_at_level(std::span<const double> by_holm, std::span<const double> ra
   if (left < 1.0) return nobody;
   auto last = others.begin() + static_cast<std::ptrdiff_t>(left);
   if (last == others.end()) return others.back();
-  // A rank that others share must be reached by all of them.
+  // Deals that tie at a rank are counted together.
   last = std::ranges::lower_bound(others.begin(), last, *last);
   return last == others.begin() ? nobody : *std::prev(last);
 }
 
 }  // namespace
 
-bool Anybody::found() const noexcept {
+bool GlobalNullResult::found() const noexcept {
   return p <= kSignificanceLevel;
 }
 
@@ -62,20 +62,20 @@ std::vector<double> ranked_p(std::span<const double> statistics) {
   return p;
 }
 
-AnybodyTest::AnybodyTest(int people, int deals)
+GlobalNullTest::GlobalNullTest(int people, int deals)
     : people_(people),
       smallest_(static_cast<std::size_t>(std::max(deals, 0)) + 1, 1.0),
       product_(smallest_.size(), 0.0) {
   if (people < 0 || deals < 1) {
-    throw std::invalid_argument("a test of anybody needs a deal or more");
+    throw std::invalid_argument("a global null test needs at least one deal");
   }
 }
 
-void AnybodyTest::add(std::span<const double> p) {
+void GlobalNullTest::add(std::span<const double> p) {
   require_deals(p, smallest_.size());
   const auto possible = [](double one) { return one > 0.0 && one <= 1.0; };
   if (!std::ranges::all_of(p, possible)) {
-    throw std::invalid_argument("a p lies above 0 and is at most 1");
+    throw std::invalid_argument("a p must be in (0, 1]");
   }
   ++added_;
   for (std::size_t i = 0; i < p.size(); ++i) {
@@ -85,10 +85,11 @@ void AnybodyTest::add(std::span<const double> p) {
   }
 }
 
-Anybody AnybodyTest::result(std::span<const double> together) const {
+GlobalNullResult GlobalNullTest::result(std::span<const double> together) const {
   require_deals(together, smallest_.size());
   if (added_ != people_) {
-    throw std::invalid_argument("a test of anybody needs the people that it was made for");
+    throw std::invalid_argument(
+        "a global null test needs the number of people that it was constructed with");
   }
   std::vector<double> by_holm(smallest_.size());
   for (std::size_t i = 0; i < by_holm.size(); ++i) by_holm[i] = smallest_[i] * people_;
@@ -101,14 +102,15 @@ Anybody AnybodyTest::result(std::span<const double> together) const {
   for (std::size_t i = 0; i < against.size(); ++i) {
     against[i] = -std::log(std::min(by_holm[i], rank[i] / at_level));
   }
-  Anybody result;
+  GlobalNullResult result;
   result.deals = static_cast<int>(smallest_.size()) - 1;
   result.people = people_;
   result.alone = alone_;
   result.alone_by_chance = static_cast<double>(alone_in_deals_) / result.deals;
   if (people_ == 0) return result;
   result.p = ranked_p(against).front();
-  // Of somebody who stands out p is at most Holm's; the deals know it with an error only.
+  // If Holm alone is significant, p is at most Holm's: the exact value is better than the Monte
+  // Carlo one.
   if (by_holm.front() <= kSignificanceLevel) result.p = std::min(result.p, by_holm.front());
   return result;
 }

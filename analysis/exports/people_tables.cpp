@@ -1,4 +1,4 @@
-#include "analysis/exports/said_tables.hpp"
+#include "analysis/exports/people_tables.hpp"
 
 #include "core/named.hpp"
 #include "record/marks.hpp"
@@ -17,7 +17,7 @@ const char* name_of_kind(study::QuestionKind kind) {
   return name_in(kNames, kind).data();
 }
 
-/// Of an answer whose question nobody knows, whether it was typed is all that is known.
+/// The kind of an answer; if its question is unknown, only whether it was typed.
 DataCell kind_cell(const QuestionAnswer& answer, const study::Question* question) {
   if (question != nullptr) return std::string(name_of_kind(question->kind));
   return answer.number ? DataCell() : DataCell(std::string("text"));
@@ -100,15 +100,15 @@ DataTable consents_table(const record::StudyStore& store,
   return table;
 }
 
-ExportFile said_file(const std::string& name, const DataTable& table, bool has_words,
-                     const std::string& start) {
+ExportFile text_table_file(const std::string& name, const DataTable& table, bool has_words,
+                           const std::string& start) {
   return text_file(name, start + csv_text(table),
                    has_words ? FileMode::owner_only : FileMode::everyone);
 }
 
-std::vector<ResultTable> said_tables(const record::StudyStore& store,
-                                     const std::optional<Outcomes>& outcomes,
-                                     const std::vector<record::PersonalRecord>& consents) {
+std::vector<ResultTable> people_tables(const record::StudyStore& store,
+                                       const std::optional<Outcomes>& outcomes,
+                                       const std::vector<record::PersonalRecord>& consents) {
   std::vector<ResultTable> tables;
   if (outcomes) tables.push_back({"answers.csv", answers_table(*outcomes), true});
   if (outcomes && !outcomes->marks.empty()) {
