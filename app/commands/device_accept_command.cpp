@@ -87,7 +87,7 @@ AcceptanceFiles files_to_write(const AcceptArguments& arguments, const std::stri
   const fs::path path =
       arguments.certificate.empty() ? fs::path(name + "-certificate.json") : arguments.certificate;
   if (ending_of(path) != ".json") {
-    throw UsageError("--certificate " + in_quotes(path.string()) +
+    throw UsageError("--certificate " + in_quotes(path.filename().string()) +
                      ": the page with the plots is written beside it; give a name that ends in "
                      ".json");
   }

@@ -80,8 +80,8 @@ void check_writable(const fs::path& path, const ImportOptions& options, const st
 
 void check_places(const ImportOptions& options) {
   if (options.study.extension() != ".json" || options.study.stem().empty()) {
-    refuse("the study file must end in .json, not be " + in_quotes(options.study.string()) +
-           "; give another --study");
+    refuse("the study file must end in .json, not be " +
+           in_quotes(options.study.filename().string()) + "; give another --study");
   }
   for (const std::string& text :
        {options.study.string(), options.pictures.string(), options.licence, options.source}) {
