@@ -34,13 +34,13 @@ constexpr int kOtherSizes_px[] = {64, 128, 256, 1024, 2048};
 
 /// The timed picture with its orders by the adaptive method.
 struct OrderedImage {
-  GreyImage image = timed_image(kUsualSize_px);
+  GreyImage image = timed_image(kDefaultSize_px);
   Plane<float> orders = [this] {
     engine::WantedPlanes wanted;
     wanted.order = true;
     return engine::extract_texture<float>(image, {}, wanted).order;
   }();
-  Plane<float> texture{kUsualSize_px, kUsualSize_px};
+  Plane<float> texture{kDefaultSize_px, kDefaultSize_px};
 
   [[nodiscard]] Plane<double> half_orders() const {
     Plane<double> half((orders.height() + 1) / 2, (orders.width() + 1) / 2);
@@ -86,7 +86,7 @@ Case adaptive_filter(int radius, const std::string& target = {}) {
 
 /// A picture, and a float plane by OpenCV or the engine.
 struct FixedFilter {
-  GreyImage image = timed_image(kUsualSize_px);
+  GreyImage image = timed_image(kDefaultSize_px);
   engine::Extraction<float> result{};
   cv::Mat mask{}, from{}, texture{};
 };
@@ -105,7 +105,7 @@ Case fixed_filter() {
         engine::extract_texture_into(filter.image, options, {}, filter.result);
       },
       [](const FixedFilter& filter) {
-        return fixed_error(filter.result.texture, filter.image, kUsualRadius);
+        return fixed_error(filter.result.texture, filter.image, kDefaultRadius);
       },
       kOurTolerance_grey);
 }
@@ -148,7 +148,7 @@ struct Extracted {
 
 Case our_daub4() {
   return timed(
-      "touchtrial", [] { return Extracted<>{timed_image(kUsualSize_px)}; },
+      "touchtrial", [] { return Extracted<>{timed_image(kDefaultSize_px)}; },
       [](Extracted<>& our) { engine::extract_sub_bands(our.image, our.result); },
       [](const Extracted<>& our) {
         return error_of_bands(our.image, {our.result.sub_band_ll, our.result.sub_band_lh,
@@ -157,12 +157,12 @@ Case our_daub4() {
       kBandTolerance_grey);
 }
 
-Case opencv_daub4(const std::string& who, Daub4Way way) {
+Case opencv_daub4(const std::string& name, Daub4Way way) {
   using Peer = Extracted<OpenCvDaub4>;
   return timed(
-      who,
+      name,
       [=] {
-        return Peer{timed_image(kUsualSize_px), OpenCvDaub4(way)};
+        return Peer{timed_image(kDefaultSize_px), OpenCvDaub4(way)};
       },
       [](Peer& work) { work.peer.run(mat_of(work.image)); },
       [](const Peer& work) {
@@ -174,7 +174,7 @@ Case opencv_daub4(const std::string& who, Daub4Way way) {
 }
 
 double texture_error(const GreyImage& image, const Plane<float>& texture) {
-  return ExtractionTruth(image, kUsualRadius).texture_error(texture);
+  return ExtractionTruth(image, kDefaultRadius).texture_error(texture);
 }
 
 Case our_extraction(int size_px, bool with_highest) {
@@ -192,15 +192,15 @@ Case our_extraction(int size_px, bool with_highest) {
       kOurTolerance_grey);
 }
 
-Case ring_sums(const std::string& who, int size_px, bool with_highest, RingSums how) {
+Case ring_sums(const std::string& name, int size_px, bool with_highest, RingSums how) {
   using Peer = Extracted<OpenCvRingSums>;
   return timed(
-      who,
+      name,
       [=] {
         return Peer{timed_image(size_px), OpenCvRingSums(how)};
       },
       [=](Peer& work) {
-        work.peer.extract(mat_of(work.image), kUsualRadius);
+        work.peer.extract(mat_of(work.image), kDefaultRadius);
         if (with_highest) work.highest = work.peer.highest();
       },
       [](const Peer& work) { return texture_error(work.image, plane_of(work.peer.texture())); },
@@ -245,8 +245,8 @@ Rows extraction_rows(const Scope& scope) {
   for (const std::string& target : scope.simd_targets) {
     const std::string set = instruction_set_of(target);
     rows.push_back({.what = "adaptive 5 x 5 on u8, " + set,
-                    .ours = adaptive_filter(kUsualRadius, target),
-                    .peers = {filter2d(kUsualRadius)},
+                    .ours = adaptive_filter(kDefaultRadius, target),
+                    .peers = {filter2d(kDefaultRadius)},
                     .error_unit = kGrey});
     if (set == "AVX-512") rows.back().goal = {"ratio", 0.5};
     if (set == "AVX2") rows.back().goal = {"ratio", 0.75};
@@ -259,7 +259,7 @@ Rows extraction_rows(const Scope& scope) {
                 .error_unit = kGrey},
                {.what = "fixed 5 x 5 on u8",
                 .ours = fixed_filter(),
-                .peers = {filter2d(kUsualRadius, "u8"), filter2d(kUsualRadius, "f32", true)},
+                .peers = {filter2d(kDefaultRadius, "u8"), filter2d(kDefaultRadius, "f32", true)},
                 .error_unit = kGrey},
                {.what = "DAUB4, four bands",
                 .ours = our_daub4(),
@@ -267,8 +267,8 @@ Rows extraction_rows(const Scope& scope) {
                           opencv_daub4("OpenCV sepFilter2D by rows, u8", Daub4Way::by_rows)},
                 .goal = {"ratio", 0.08},
                 .error_unit = kGrey},
-               extraction_row(kUsualSize_px, false, {"of bound", 1.6}),
-               extraction_row(kUsualSize_px, true, {"of bound", 2.0}),
+               extraction_row(kDefaultSize_px, false, {"of bound", 1.6}),
+               extraction_row(kDefaultSize_px, true, {"of bound", 2.0}),
                extraction_row(kLargeSize_px, false, {"of bound", 1.6}),
                extraction_row(kLargeSize_px, true, {"of bound", 2.0})});
   for (const int size_px : kOtherSizes_px) rows.push_back(extraction_row(size_px, false, {}));

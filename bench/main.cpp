@@ -37,10 +37,10 @@ struct Arguments {
 };
 
 /// A case whose job is created when it is first measured, and then kept.
-class MadeCase {
+class LazyCase {
  public:
   /// \param goal  of the case's row; none for peers and bounds
-  MadeCase(Case one, const Row& row, const Goal& goal)
+  LazyCase(Case one, const Row& row, const Goal& goal)
       : case_(std::move(one)),
         goal_(goal),
         goal_name_("goal: " + std::string(goal.limits)),
@@ -52,7 +52,8 @@ class MadeCase {
     run(1);  // warms the caches
     if (job_->error && !error_) error_ = job_->error();
     if (error_.value_or(0.0) > case_.tolerance) {
-      return state.SkipWithError("its error is so large that it computes something else");
+      return state.SkipWithError(
+          "its error is above the tolerance, so it does not compute the same result");
     }
     while (state.KeepRunningBatch(case_.operations)) {
       if (job_->run) job_->run();
@@ -79,7 +80,7 @@ class MadeCase {
 void register_case(const std::string& name, Case one, const Row& row, const Goal& goal,
                    const Arguments& arguments) {
   if (one.simd_target.empty()) one.simd_target = arguments.target;
-  const auto made = std::make_shared<MadeCase>(one, row, goal);
+  const auto made = std::make_shared<LazyCase>(one, row, goal);
   if (arguments.runs > 0) return made->run(arguments.runs);
   auto* const registered = benchmark::RegisterBenchmark(
       name.c_str(), [=](benchmark::State& state) { made->measure(state); });
@@ -95,15 +96,15 @@ void register_case(const std::string& name, Case one, const Row& row, const Goal
 bool register_rows(const Rows& rows, const Arguments& arguments) {
   bool found = false;
   for (const Row& row : rows) {
-    const auto add = [&](const std::string& who, const Case& one, const Goal& goal) {
-      const std::string name = row.what + " | " + who;
+    const auto add = [&](const std::string& case_name, const Case& one, const Goal& goal) {
+      const std::string name = row.what + " | " + case_name;
       if (!arguments.name.empty() && arguments.name != row.what && arguments.name != name) return;
       found = true;
       register_case(name, one, row, goal, arguments);
     };
-    add(row.ours.who, row.ours, row.goal);
-    for (const Case& peer : row.peers) add(peer.who, peer, {});
-    for (const Case& bound : row.bounds) add("bound: " + bound.who, bound, {});
+    add(row.ours.name, row.ours, row.goal);
+    for (const Case& peer : row.peers) add(peer.name, peer, {});
+    for (const Case& bound : row.bounds) add("bound: " + bound.name, bound, {});
   }
   return found;
 }
@@ -124,7 +125,7 @@ void run(Arguments arguments) {
   }
   if (!found) {
     throw UsageError(arguments.name +
-                     ": is no row and no case; --benchmark_list_tests=true lists them");
+                     ": is neither a row nor a case; --benchmark_list_tests=true lists them");
   }
   if (arguments.runs == 0) benchmark::RunSpecifiedBenchmarks();
 }
@@ -132,14 +133,14 @@ void run(Arguments arguments) {
 /// \return 0 done, 1 failed, 2 bad arguments
 int run_program(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
-  CLI::App program("The table's cases as benchmarks; takes Google Benchmark's options as well");
+  CLI::App program("The table's cases as benchmarks; also accepts the options of Google Benchmark");
   Arguments arguments;
   program.add_option("NAME", arguments.name, "Only this row, or this case: \"ROW | CASE\"");
-  program.add_option("--image", arguments.image, "Take times on this picture instead of bark.png");
+  program.add_option("--image", arguments.image, "Measure with this picture instead of bark.png");
   program.add_option("--target", arguments.target, "Use only this SIMD target, for instance AVX2")
       ->check(CLI::IsMember(simd_targets()));
-  program.add_option("--runs", arguments.runs, "Run the case this often and measure nothing");
-  program.add_flag("--quick", arguments.quick, "One repetition, and few pictures");
+  program.add_option("--runs", arguments.runs, "Run the case this many times without measuring");
+  program.add_flag("--quick", arguments.quick, "One repetition, with few pictures");
   try {
     program.parse(argc, argv);
     run(arguments);

@@ -44,7 +44,7 @@ struct TexturePair {
 };
 
 TexturePair timed_pair() {
-  const GreyImage image = timed_image(kUsualSize_px);
+  const GreyImage image = timed_image(kDefaultSize_px);
   engine::ExtractionOptions fixed;
   fixed.method = engine::Method::fixed;
   fixed.order = kFixedOrder;
@@ -54,9 +54,9 @@ TexturePair timed_pair() {
 
 /// \param measure  the similarity of a TexturePair
 template <class Measure>
-Case ms_ssim(const std::string& who, Measure measure) {
+Case ms_ssim(const std::string& name, Measure measure) {
   return timed(
-      who, timed_pair, [=](TexturePair& pair) { pair.similarity = measure(pair); },
+      name, timed_pair, [=](TexturePair& pair) { pair.similarity = measure(pair); },
       [](const TexturePair& pair) {
         return std::abs(pair.similarity - reference::ms_ssim(pair.a, pair.b).unit);
       },
@@ -89,7 +89,7 @@ double relative(double value, double truth) {
 }
 
 struct Counted {
-  GreyImage image = timed_image(kUsualSize_px);
+  GreyImage image = timed_image(kDefaultSize_px);
   engine::GlcmTable table{};
 };
 
@@ -108,9 +108,9 @@ double error_of(const Counted& counted) {
 }
 
 template <class Measure>
-Case glcm(const std::string& who, Measure measure) {
+Case glcm(const std::string& name, Measure measure) {
   return timed(
-      who, [] { return Counted{}; },
+      name, [] { return Counted{}; },
       [=](Counted& counted) { counted.table = measure(counted.image); }, error_of, kGlcmTolerance);
 }
 
@@ -135,21 +135,21 @@ int steps_to_goal(const GreyImage& image) {
   return std::numeric_limits<int>::max();
 }
 
-int usual_steps() {
-  static const int steps = steps_to_goal(timed_image(kUsualSize_px));
+int default_steps() {
+  static const int steps = steps_to_goal(timed_image(kDefaultSize_px));
   return steps;
 }
 
 struct Decomposed {
-  GreyImage image = timed_image(kUsualSize_px);
+  GreyImage image = timed_image(kDefaultSize_px);
   Plane<float> v{};
 };
 
 /// \param decompose  computes v of an image
 template <class Decompose>
-Case tv_gabor(const std::string& who, Decompose decompose) {
+Case tv_gabor(const std::string& name, Decompose decompose) {
   Case one = timed(
-      who, [] { return Decomposed{}; }, [=](Decomposed& work) { work.v = decompose(work.image); },
+      name, [] { return Decomposed{}; }, [=](Decomposed& work) { work.v = decompose(work.image); },
       [](const Decomposed& work) {
         static const Plane<double> truth = tv_gabor_truth(work.image);
         return distance_relative_to(work.v, truth);
@@ -162,7 +162,7 @@ Case tv_gabor(const std::string& who, Decompose decompose) {
 Case admm_to_goal() {
   return tv_gabor("touchtrial", [](const GreyImage& image) {
     engine::TvGaborSolver<float> solver(image, kEndless);
-    static_cast<void>(solver.run(usual_steps(), engine::Patience::unlimited));
+    static_cast<void>(solver.run(default_steps(), engine::Patience::unlimited));
     return solver.texture();
   });
 }
@@ -210,9 +210,9 @@ class MeasuredTransforms {
 Case transforms() {
   Case one = timed(
       "transforms",
-      [] { return std::make_unique<MeasuredTransforms>(engine::torus_length(kUsualSize_px)); },
+      [] { return std::make_unique<MeasuredTransforms>(engine::torus_length(kDefaultSize_px)); },
       [](const std::unique_ptr<MeasuredTransforms>& transforms) {
-        const int steps = usual_steps();
+        const int steps = default_steps();
         transforms->run(steps + steps / engine::PenaltySchedule::kStepsBetweenChecks);
       });
   one.is_slow = true;
@@ -223,9 +223,9 @@ Case transforms() {
 double steps_on_pictures(bool quick) {
   std::vector<GreyImage> pictures = shipped_pictures();
   if (quick) pictures.resize(kQuickPictures);
-  int most = 0;
-  for (const GreyImage& one : pictures) most = std::max(most, steps_to_goal(one));
-  return most;
+  int max_steps = 0;
+  for (const GreyImage& one : pictures) max_steps = std::max(max_steps, steps_to_goal(one));
+  return max_steps;
 }
 
 Rows tv_gabor_rows(bool quick) {

@@ -30,7 +30,7 @@ enum class Clock {
 
 /// A job that is created on demand, so that its inputs are in memory only while it is measured.
 struct Case {
-  std::string who;  ///< "touchtrial", or for instance "OpenCV filter2D, f32"
+  std::string name;  ///< "touchtrial", or for instance "OpenCV filter2D, f32"
   std::function<Job()> make;
   /// A larger error means that the case does not compute the same result.
   double tolerance = std::numeric_limits<double>::infinity();
@@ -47,8 +47,8 @@ using Cases = std::vector<Case>;
 /// \param make_state  returns the state: its inputs and outputs
 /// \param run  called with the state
 template <class MakeState, class Run>
-[[nodiscard]] Case timed(std::string who, MakeState make_state, Run run) {
-  return {std::move(who), [=] {
+[[nodiscard]] Case timed(std::string name, MakeState make_state, Run run) {
+  return {std::move(name), [=] {
             const auto state = std::make_shared<decltype(make_state())>(make_state());
             return Job{[=] { run(*state); }};
           }};
@@ -57,9 +57,9 @@ template <class MakeState, class Run>
 /// The same with an error.
 /// \param error  called with the state after a run
 template <class MakeState, class Run, class Error>
-[[nodiscard]] Case timed(std::string who, MakeState make_state, Run run, Error error,
+[[nodiscard]] Case timed(std::string name, MakeState make_state, Run run, Error error,
                          double tolerance) {
-  return {std::move(who),
+  return {std::move(name),
           [=] {
             const auto state = std::make_shared<decltype(make_state())>(make_state());
             return Job{.run = [=] { run(*state); }, .error = [=] { return error(*state); }};
@@ -68,8 +68,8 @@ template <class MakeState, class Run, class Error>
 }
 
 /// A case that is only counted.
-[[nodiscard]] inline Case counted(std::string who, std::function<double()> count) {
-  return {.who = std::move(who),
+[[nodiscard]] inline Case counted(std::string name, std::function<double()> count) {
+  return {.name = std::move(name),
           .make = [=] { return Job{.run = {}, .count = count}; },
           .clock = Clock::none};
 }
@@ -111,9 +111,9 @@ struct Scope {
 [[nodiscard]] Rows study_rows();
 
 /// The side of a default stimulus.
-inline constexpr int kUsualSize_px = 500;
+inline constexpr int kDefaultSize_px = 500;
 /// The method's default K.
-inline constexpr int kUsualRadius = 2;
+inline constexpr int kDefaultRadius = 2;
 /// The order of all cases with a fixed order.
 inline constexpr double kFixedOrder = 0.55;
 

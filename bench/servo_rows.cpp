@@ -61,7 +61,7 @@ struct ModelStroke {
   explicit ModelStroke(engine::ModelKind kind)
       : options(options_of(kind)),
         field(engine::make_texture_field(
-            engine::extract_texture<double>(timed_image(kUsualSize_px), {}).texture, options)),
+            engine::extract_texture<double>(timed_image(kDefaultSize_px), {}).texture, options)),
         model(field.view(), options,
               engine::choose_gains(std::array{field.view()}, options).of_field[0]) {}
 
@@ -73,7 +73,7 @@ struct ModelStroke {
   engine::TextureField field;
   engine::RenderingModel model;
   engine::Bristle touch;
-  std::vector<Vec3> places_mm = stroke(kUsualSize_px * options.pitch_mm);
+  std::vector<Vec3> places_mm = stroke(kDefaultSize_px * options.pitch_mm);
   Vec3 sum_n;  ///< keeps the compiler from removing evaluations
 };
 
@@ -203,7 +203,7 @@ void encode_traces(device::SampleRing& ring, const std::atomic<bool>& ending) {
 double tick_us() {
   constexpr std::size_t kRingSamples = 65'536;
   constexpr int kBursts = 60;
-  const app::TestTexture texture(kUsualSize_px);
+  const app::TestTexture texture(kDefaultSize_px);
   const engine::RenderingModel model = texture.texture();
   session::ModelForce force(model);
   LedStylus stylus(texture.plane().width_mm());

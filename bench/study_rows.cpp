@@ -104,18 +104,18 @@ void explore_alone() {
 
 /// Wall-clock time, because it includes the disk.
 template <class Work>
-Case on_the_study(const std::string& who, Work work, int threads = 1) {
+Case on_the_study(const std::string& name, Work work, int threads = 1) {
   Case one = timed(
-      who, [] { return &prepared(); }, [=](const PreparedStudy*) { work(); });
+      name, [] { return &prepared(); }, [=](const PreparedStudy*) { work(); });
   one.clock = Clock::wall;
   one.threads = threads;
   one.is_slow = true;
   return one;
 }
 
-Case simulated_study(const std::string& who, int threads) {
+Case simulated_study(const std::string& name, int threads) {
   return on_the_study(
-      who, [=] { simulate(threads); }, threads);
+      name, [=] { simulate(threads); }, threads);
 }
 
 }  // namespace

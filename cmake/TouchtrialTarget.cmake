@@ -15,9 +15,9 @@ set(TOUCHTRIAL_TEST_TIMEOUT_S 1800)
 # One static library a folder, of every .cpp file in and below it, except those that are in libraries
 # of their own. PUBLIC: targets of ours, along the arrows of docs/architecture.md; PRIVATE:
 # third-party libraries, whose headers no public header includes. UNHURRIED: nothing in it is worth
-# optimising. With TOUCHTRIAL_UNITY a few files that lie beside each other are compiled at a time:
-# names without linkage must differ among them. Position-independent for the Python module, which is
-# a shared library; hidden symbols keep the program's calls and data as direct as without.
+# optimising. With TOUCHTRIAL_UNITY many files of the library are compiled at a time, so that names in
+# the anonymous namespaces of one namespace must differ. Position-independent for the Python module,
+# which is a shared library; hidden symbols keep the program's calls and data as direct as without.
 function(touchtrial_library name)
   cmake_parse_arguments(ARG "UNHURRIED" "" "ONLY;EXCEPT;PUBLIC;PRIVATE" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp")
@@ -56,22 +56,20 @@ function(touchtrial_built_in_text target file header name_space function)
   target_sources(${target} PRIVATE "${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp")
 endfunction()
 
-# Compiles the files of a folder TOUCHTRIAL_BATCH at a time. Files that Highway compiles once for
-# every SIMD target include themselves, and so stay alone.
+# Compiles the files of a target TOUCHTRIAL_BATCH at a time: most of a small unit's time goes into headers.
+# Files that Highway compiles once for every SIMD target include themselves, and so stay alone.
 function(touchtrial_compile_together target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   touchtrial_allow_included_sources(${target})
+  set(files 0)
   foreach(source ${ARGN})
     file(STRINGS "${source}" once_a_target REGEX "#include <hwy/foreach_target\\.h>")
     if(once_a_target)
       continue()
     endif()
-    get_filename_component(folder "${source}" DIRECTORY)
-    file(RELATIVE_PATH folder "${CMAKE_SOURCE_DIR}" "${folder}")
-    string(REPLACE "/" "_" group "${folder}")
-    math(EXPR batch "0${files_of_${group}} / ${TOUCHTRIAL_BATCH}")
-    math(EXPR files_of_${group} "0${files_of_${group}} + 1")
-    set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "${group}_${batch}")
+    math(EXPR batch "${files} / ${TOUCHTRIAL_BATCH}")
+    math(EXPR files "${files} + 1")
+    set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "${target}_${batch}")
   endforeach()
 endfunction()
 
@@ -134,6 +132,9 @@ function(touchtrial_test name)
     set(level ${TOUCHTRIAL_UNHURRIED})
   endif()
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:${level}>)
+  if(MOLD_PROGRAM AND NOT TOUCHTRIAL_SANITIZE)
+    target_link_options(${name} PRIVATE -fuse-ld=mold)
+  endif()
   if(ARG_WHOLE)
     add_test(NAME ${name} COMMAND ${name})
     set_tests_properties(${name} PROPERTIES TIMEOUT ${TOUCHTRIAL_TEST_TIMEOUT_S})

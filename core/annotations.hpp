@@ -6,7 +6,7 @@ namespace touchtrial {
 
 inline constexpr const char* kMeaning = "x-meaning";
 inline constexpr const char* kUnit = "x-unit";
-inline constexpr const char* kOtherwise = "x-otherwise";
+inline constexpr const char* kDefaultText = "x-otherwise";
 inline constexpr const char* kRange = "x-range";
 
 }  // namespace touchtrial

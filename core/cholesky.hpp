@@ -9,16 +9,16 @@
 namespace touchtrial {
 
 /// Replaces the lower triangle of a matrix by its factor; the upper triangle is unchanged.
-/// \param least_share  the smallest share of a diagonal element that elimination may leave
+/// \param min_share  the smallest share of a diagonal element that elimination may leave
 /// \return whether the matrix is positive definite; if not, the factor is meaningless
-inline bool factorise(std::span<double> matrix, std::size_t n, double least_share = 0.0) {
+inline bool factorise(std::span<double> matrix, std::size_t n, double min_share = 0.0) {
   bool definite = true;
   for (std::size_t j = 0; j < n; ++j) {
     const double whole = matrix[j * n + j];
     for (std::size_t i = j; i < n; ++i) {
       double rest = matrix[i * n + j];
       for (std::size_t k = 0; k < j; ++k) rest -= matrix[i * n + k] * matrix[j * n + k];
-      if (i == j) definite = definite && rest > least_share * whole;
+      if (i == j) definite = definite && rest > min_share * whole;
       matrix[i * n + j] = i == j ? std::sqrt(rest) : rest / matrix[j * n + j];
     }
   }

@@ -14,10 +14,10 @@ using nlohmann::ordered_json;
 /// Learns the keys of an object.
 class KeyCollector final : public ObjectIo {
  public:
-  void member(std::string_view key, const About& about, bool /*is_there*/,
+  void member(std::string_view key, const KeyInfo& info, bool /*is_there*/,
               const Describe& /*describe*/) override {
     keys_.push_back(key);
-    others_.insert(others_.end(), about.also.begin(), about.also.end());
+    aliases_.insert(aliases_.end(), info.aliases.begin(), info.aliases.end());
   }
   void rule(const Rule& /*rule*/) override {}
   void only_for(std::string_view /*key*/, std::span<const std::string_view> /*words*/,
@@ -28,13 +28,13 @@ class KeyCollector final : public ObjectIo {
   /// With other names of them.
   [[nodiscard]] std::vector<std::string_view> known() const {
     std::vector<std::string_view> known = keys_;
-    known.insert(known.end(), others_.begin(), others_.end());
+    known.insert(known.end(), aliases_.begin(), aliases_.end());
     return known;
   }
 
  private:
   std::vector<std::string_view> keys_;
-  std::vector<std::string_view> others_;
+  std::vector<std::string_view> aliases_;
 };
 
 class ValueReader final : public ValueIo {
@@ -42,12 +42,12 @@ class ValueReader final : public ValueIo {
   explicit ValueReader(const JsonValue& place) : place_(place) {}
 
   void number(double& value, const NumberRange& range) override { value = place_.number(range); }
-  void truth(bool& value) override { value = place_.truth(); }
+  void boolean(bool& value) override { value = place_.boolean(); }
   void text(std::string& value, const TextRule& rule) override {
     value = place_.text();
     if (rule.check != nullptr) rule.check(place_);
   }
-  void either(std::size_t /*written*/, std::span<const Form> forms) override {
+  void one_of(std::size_t /*written*/, std::span<const Form> forms) override {
     const auto fits = [this](const Form& form) { return form.fits(place_); };
     const auto found = std::find_if(forms.begin(), forms.end() - 1, fits);
     found->describe(*this);
@@ -56,8 +56,8 @@ class ValueReader final : public ValueIo {
     read_described(place_, describe);
   }
   void rule(const std::function<void(const JsonValue&)>& rule) override { rule(place_); }
-  void own(std::string_view /*schema*/, const std::function<void(const JsonValue&)>& read,
-           const std::function<std::string()>& /*text*/) override {
+  void custom(std::string_view /*schema*/, const std::function<void(const JsonValue&)>& read,
+              const std::function<std::string()>& /*text*/) override {
     read(place_);
   }
 
@@ -69,7 +69,7 @@ class ValueReader final : public ValueIo {
     at = place_.choice(words);
   }
   void entries(const ListRange& range, const Entries& entries) override {
-    const std::vector<JsonValue> items = place_.items(range.fewest, range.most);
+    const std::vector<JsonValue> items = place_.items(range.min, range.max);
     entries.resize(items.size());
     for (std::size_t i = 0; i < items.size(); ++i) {
       ValueReader item(items[i]);
@@ -85,13 +85,13 @@ class ObjectReader final : public ObjectIo {
   ObjectReader(const JsonValue& place, std::span<const std::string_view> keys)
       : place_(place), object_(place.object(keys)) {}
 
-  void member(std::string_view key, const About& about, bool /*is_there*/,
+  void member(std::string_view key, const KeyInfo& info, bool /*is_there*/,
               const Describe& describe) override {
     std::optional<JsonValue> found = object_.find(key);
-    for (const std::string_view other : about.also) {
+    for (const std::string_view other : info.aliases) {
       if (!found) found = object_.find(other);
     }
-    if (!found && about.required) found = object_.at(key);
+    if (!found && info.required) found = object_.at(key);
     if (!found) return;
     ValueReader value(*found);
     describe(value);
@@ -127,15 +127,15 @@ class ValueWriter final : public ValueIo {
       : out_(out), pointer_(std::move(pointer)), marks_(marks) {}
 
   void number(double& value, const NumberRange& /*range*/) override { out_ = value; }
-  void truth(bool& value) override { out_ = value; }
+  void boolean(bool& value) override { out_ = value; }
   void text(std::string& value, const TextRule& /*rule*/) override { out_ = value; }
-  void either(std::size_t written, std::span<const Form> forms) override {
+  void one_of(std::size_t written, std::span<const Form> forms) override {
     forms[written].describe(*this);
   }
   void object(const std::function<void(ObjectIo&)>& describe) override;
   void rule(const std::function<void(const JsonValue&)>& /*rule*/) override {}
-  void own(std::string_view /*schema*/, const std::function<void(const JsonValue&)>& /*read*/,
-           const std::function<std::string()>& text) override {
+  void custom(std::string_view /*schema*/, const std::function<void(const JsonValue&)>& /*read*/,
+              const std::function<std::string()>& text) override {
     out_ = ordered_json::parse(text());
   }
 
@@ -166,12 +166,12 @@ class ObjectWriter final : public ObjectIo {
     out_ = ordered_json::object();
   }
 
-  void member(std::string_view key, const About& about, bool is_there,
+  void member(std::string_view key, const KeyInfo& info, bool is_there,
               const Describe& describe) override {
-    if (!is_there || !about.written) return;
+    if (!is_there || !info.written) return;
     const std::string pointer = pointer_ + "/" + std::string(key);
-    if (about.required) marks_.required.insert(pointer);
-    if (about.if_changed) marks_.if_changed.insert(pointer);
+    if (info.required) marks_.required.insert(pointer);
+    if (info.if_changed) marks_.if_changed.insert(pointer);
     ValueWriter value(out_[std::string(key)], pointer, marks_);
     describe(value);
   }
@@ -191,19 +191,20 @@ void ValueWriter::object(const std::function<void(ObjectIo&)>& describe) {
   describe(object);
 }
 
-/// Leaves out what is as usual.
+/// Removes keys that have their default values.
 /// \param may_leave  whether a key of this pointer may be left out
-void leave_out_usual(ordered_json& object, const ordered_json& usual, const std::string& pointer,
-                     const std::function<bool(const std::string&)>& may_leave) {
+void leave_out_defaults(ordered_json& object, const ordered_json& defaults,
+                        const std::string& pointer,
+                        const std::function<bool(const std::string&)>& may_leave) {
   for (auto it = object.begin(); it != object.end();) {
-    const auto before = usual.find(it.key());
+    const auto before = defaults.find(it.key());
     const std::string place = pointer + "/" + it.key();
-    if (before != usual.end() && *before == *it && may_leave(place)) {
+    if (before != defaults.end() && *before == *it && may_leave(place)) {
       it = object.erase(it);
       continue;
     }
-    if (before != usual.end() && before->is_object() && it->is_object()) {
-      leave_out_usual(*it, *before, place, may_leave);
+    if (before != defaults.end() && before->is_object() && it->is_object()) {
+      leave_out_defaults(*it, *before, place, may_leave);
     }
     ++it;
   }
@@ -217,7 +218,7 @@ std::string text_of(const ordered_json& written) {
 
 void ValueIo::axes(Vec3& value, const NumberRange& range) {
   std::vector<double> all = {value.x, value.y, value.z};
-  list(all, {.fewest = 3, .most = 3},
+  list(all, {.min = 3, .max = 3},
        [&range](ValueIo& io, double& number) { io.number(number, range); });
   value = {all[0], all[1], all[2]};
 }
@@ -235,16 +236,16 @@ void read_described(const JsonValue& place, const Description& description) {
   description(reader);
 }
 
-std::string written_as_described(const Description& description, const Description& usual,
+std::string written_as_described(const Description& description, const Description& defaults,
                                  WrittenKeys keys) {
   Marks marks;
   ordered_json written;
-  ordered_json defaults;
+  ordered_json default_values;
   ObjectWriter writer(written, "", marks);
   description(writer);
-  ObjectWriter of_defaults(defaults, "", marks);
-  usual(of_defaults);
-  leave_out_usual(written, defaults, "", [&](const std::string& pointer) {
+  ObjectWriter of_defaults(default_values, "", marks);
+  defaults(of_defaults);
+  leave_out_defaults(written, default_values, "", [&](const std::string& pointer) {
     if (marks.required.contains(pointer)) return false;
     return keys == WrittenKeys::changed || marks.if_changed.contains(pointer);
   });

@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// What the end of a key says of its unit: the longest first.
+/// Units by the suffix of a key, longest suffix first.
 constexpr auto kUnits = std::to_array<Named<std::string_view>>({{"_n_s_per_mm", "N s/mm"},
                                                                 {"_n_s_per_m", "N s/m"},
                                                                 {"_n_per_mm", "N/mm"},
@@ -57,15 +57,15 @@ class SchemaOfValue final : public ValueIo {
     out_[range.open_low ? "exclusiveMinimum" : "minimum"] = tidy(range.low);
     out_[range.open_high ? "exclusiveMaximum" : "maximum"] = tidy(range.high);
   }
-  void truth(bool& /*value*/) override { out_["type"] = "boolean"; }
+  void boolean(bool& /*value*/) override { out_["type"] = "boolean"; }
   void text(std::string& /*value*/, const TextRule& rule) override {
     out_["type"] = "string";
     if (rule.min_length > 0) out_["minLength"] = rule.min_length;
     if (rule.max_length > 0) out_["maxLength"] = rule.max_length;
     if (!rule.pattern.empty()) out_["pattern"] = rule.pattern;
-    if (!rule.in_words.empty()) out_[kRange] = rule.in_words;
+    if (!rule.description.empty()) out_[kRange] = rule.description;
   }
-  void either(std::size_t /*written*/, std::span<const Form> forms) override {
+  void one_of(std::size_t /*written*/, std::span<const Form> forms) override {
     ordered_json list = ordered_json::array();
     for (const Form& form : forms) {
       const std::string pointer = pointer_ + "/anyOf/" + std::to_string(list.size());
@@ -76,8 +76,8 @@ class SchemaOfValue final : public ValueIo {
   }
   void object(const std::function<void(ObjectIo&)>& describe) override;
   void rule(const std::function<void(const JsonValue&)>& /*rule*/) override {}
-  void own(std::string_view schema, const std::function<void(const JsonValue&)>& /*read*/,
-           const std::function<std::string()>& /*text*/) override {
+  void custom(std::string_view schema, const std::function<void(const JsonValue&)>& /*read*/,
+              const std::function<std::string()>& /*text*/) override {
     out_.update(ordered_json::parse(schema));
   }
 
@@ -93,12 +93,12 @@ class SchemaOfValue final : public ValueIo {
   }
   void entries(const ListRange& range, const Entries& entries) override {
     out_["type"] = "array";
-    if (range.fewest > 0) out_["minItems"] = range.fewest;
-    out_["maxItems"] = range.most;
+    if (range.min > 0) out_["minItems"] = range.min;
+    out_["maxItems"] = range.max;
     if (range.unique) out_["uniqueItems"] = true;
     ordered_json items = ordered_json::object();
     SchemaOfValue item(items, pointer_ + "/items");
-    entries.describe_usual(item);
+    entries.describe_default(item);
     out_["items"] = std::move(items);
   }
 
@@ -111,27 +111,27 @@ class SchemaOfObject final : public ObjectIo {
   SchemaOfObject(ordered_json& out, std::string pointer)
       : out_(out), pointer_(std::move(pointer)) {}
 
-  void member(std::string_view key, const About& about, bool is_there,
+  void member(std::string_view key, const KeyInfo& info, bool is_there,
               const Describe& describe) override {
     const std::string pointer = pointer_ + "/properties/" + std::string(key);
-    ordered_json property = {{kMeaning, about.meaning}};
-    const std::string_view unit = about.unit.empty() ? unit_of(key) : about.unit;
+    ordered_json property = {{kMeaning, info.meaning}};
+    const std::string_view unit = info.unit.empty() ? unit_of(key) : info.unit;
     if (!unit.empty()) property[kUnit] = unit;
-    ordered_json usual;
-    const bool has_default = is_there && !about.required && about.otherwise.empty();
-    if (has_default) usual = tidy(ordered_json::parse(written_as_described(describe)));
+    ordered_json defaults;
+    const bool has_default = is_there && !info.required && info.default_text.empty();
+    if (has_default) defaults = tidy(ordered_json::parse(written_as_described(describe)));
     SchemaOfValue value(property, pointer);
     describe(value);
     if (property.contains("properties")) {
       property.erase(kUnit);
     } else if (has_default) {
-      property["default"] = std::move(usual);
+      property["default"] = std::move(defaults);
     }
-    if (!about.otherwise.empty()) property[kOtherwise] = about.otherwise;
-    if (!about.range.empty()) property[kRange] = about.range;
+    if (!info.default_text.empty()) property[kDefaultText] = info.default_text;
+    if (!info.range.empty()) property[kRange] = info.range;
     properties_[std::string(key)] = std::move(property);
-    if (about.required) required_.push_back(key);
-    for (const std::string_view other : about.also) {
+    if (info.required) required_.push_back(key);
+    for (const std::string_view other : info.aliases) {
       properties_[std::string(other)] = {{"$ref", "#" + pointer}};
     }
   }
@@ -182,7 +182,7 @@ std::string without_links(const std::string& text) {
   return plain;
 }
 
-/// Puts descriptions in place of what only tables read.
+/// Merges annotations for tables into descriptions.
 ordered_json without_annotations(const ordered_json& node) {
   if (node.is_array()) {
     ordered_json list = ordered_json::array();
@@ -194,8 +194,8 @@ ordered_json without_annotations(const ordered_json& node) {
   if (node.contains(kMeaning)) {
     std::string text = without_links(node[kMeaning].get<std::string>());
     if (node.contains(kUnit)) text += " [" + node[kUnit].get<std::string>() + "]";
-    if (node.contains(kOtherwise)) {
-      text += " (default: " + without_links(node[kOtherwise].get<std::string>()) + ")";
+    if (node.contains(kDefaultText)) {
+      text += " (default: " + without_links(node[kDefaultText].get<std::string>()) + ")";
     }
     if (!text.empty()) plain["description"] = text;
   }
@@ -205,7 +205,7 @@ ordered_json without_annotations(const ordered_json& node) {
   return plain;
 }
 
-/// JSON whose lists and objects are on one line where they fit.
+/// JSON whose lists and objects are on one line if they fit.
 std::string on_few_lines(const ordered_json& value, std::size_t indent) {
   constexpr std::size_t kColumns = 100;
   const bool is_object = value.is_object();
@@ -231,22 +231,22 @@ std::string on_few_lines(const ordered_json& value, std::size_t indent) {
 
 }  // namespace
 
-std::string annotated_section(const About& about, const Description& usual) {
-  ordered_json schema = {{kMeaning, about.meaning}};
-  if (!about.otherwise.empty()) schema[kOtherwise] = about.otherwise;
+std::string annotated_section(const KeyInfo& info, const Description& defaults) {
+  ordered_json schema = {{kMeaning, info.meaning}};
+  if (!info.default_text.empty()) schema[kDefaultText] = info.default_text;
   SchemaOfObject object(schema, "");
-  usual(object);
+  defaults(object);
   object.finish();
   return schema.dump();
 }
 
-std::string annotated_schema(std::string_view title, std::string_view about,
-                             std::string_view examples, const Description& usual) {
+std::string annotated_schema(std::string_view title, std::string_view info,
+                             std::string_view examples, const Description& defaults) {
   ordered_json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
                          {"title", title},
-                         {"description", about}};
+                         {"description", info}};
   SchemaOfObject object(schema, "");
-  usual(object);
+  defaults(object);
   object.finish();
   if (!examples.empty()) schema["examples"] = ordered_json::parse(examples);
   return schema.dump();

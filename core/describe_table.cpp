@@ -26,7 +26,7 @@ std::string in_thousands(double number) {
   return text;
 }
 
-std::string limits_in_words(const ordered_json& rule) {
+std::string limits_text(const ordered_json& rule) {
   const bool open_low = rule.contains("exclusiveMinimum");
   const bool open_high = rule.contains("exclusiveMaximum");
   const std::string low = in_thousands(rule.at(open_low ? "exclusiveMinimum" : "minimum"));
@@ -40,11 +40,11 @@ std::string code(const std::string& text) {
   return "`" + text + "`";
 }
 
-std::string type_in_words(const ordered_json& rule) {
+std::string type_text(const ordered_json& rule) {
   if (rule.contains("anyOf")) {
     std::vector<std::string> types;
     for (const ordered_json& form : rule["anyOf"]) {
-      if (std::string type = type_in_words(form); std::ranges::count(types, type) == 0) {
+      if (std::string type = type_text(form); std::ranges::count(types, type) == 0) {
         types.push_back(std::move(type));
       }
     }
@@ -56,16 +56,16 @@ std::string type_in_words(const ordered_json& rule) {
   if (type == "boolean") return "true or false";
   if (type == "string") return "text";
   if (type != "array") return type;
-  const std::string of = type_in_words(rule.at("items"));
+  const std::string of = type_text(rule.at("items"));
   return "list of " + of + (of == "text" ? "" : "s");
 }
 
-std::string range_in_words(const ordered_json& rule) {
+std::string range_text(const ordered_json& rule) {
   if (rule.contains(kRange)) return rule[kRange];
   if (rule.contains("anyOf")) {
     std::vector<std::string> ranges;
     for (const ordered_json& form : rule["anyOf"]) {
-      if (std::string range = range_in_words(form); !range.empty()) ranges.push_back(range);
+      if (std::string range = range_text(form); !range.empty()) ranges.push_back(range);
     }
     return listed(ranges, "; or ");
   }
@@ -73,36 +73,38 @@ std::string range_in_words(const ordered_json& rule) {
     return listed(rule["enum"].get<std::vector<std::string>>(), ", ", code);
   }
   if (rule.contains("items")) {
-    const auto fewest = rule.value("minItems", std::size_t{0});
-    const auto most = rule.at("maxItems").get<std::size_t>();
-    const std::string of = range_in_words(rule["items"]);
+    const auto min_count = rule.value("minItems", std::size_t{0});
+    const auto max_count = rule.at("maxItems").get<std::size_t>();
+    const std::string of = range_text(rule["items"]);
     const std::string count =
-        fewest == most ? std::to_string(most)
-                       : std::to_string(fewest) + " to " + in_thousands(static_cast<double>(most));
+        min_count == max_count
+            ? std::to_string(max_count)
+            : std::to_string(min_count) + " to " + in_thousands(static_cast<double>(max_count));
     return count + (of.empty() ? " entries" : ", each " + of);
   }
-  if (rule.contains("minimum") || rule.contains("exclusiveMinimum")) return limits_in_words(rule);
+  if (rule.contains("minimum") || rule.contains("exclusiveMinimum")) return limits_text(rule);
   if (rule.contains("maxLength")) {
-    const auto fewest = rule.value("minLength", std::size_t{0});
-    const std::string most =
+    const auto min_count = rule.value("minLength", std::size_t{0});
+    const std::string max_count =
         in_thousands(static_cast<double>(rule["maxLength"].get<std::size_t>())) + " bytes";
-    return fewest > 0 ? std::to_string(fewest) + " to " + most : "at most " + most;
+    return min_count > 0 ? std::to_string(min_count) + " to " + max_count : "at most " + max_count;
   }
   return "";
 }
 
-std::string default_in_words(const ordered_json& rule, bool is_required) {
+std::string default_text(const ordered_json& rule, bool is_required) {
   if (is_required) return "required";
-  if (rule.contains(kOtherwise)) return rule[kOtherwise];
+  if (rule.contains(kDefaultText)) return rule[kDefaultText];
   if (rule.contains("properties")) return rule.contains(kRange) ? "none" : "all defaults";
   if (!rule.contains("default")) return "none";
-  const ordered_json& usual = rule["default"];
-  if (usual.is_string()) return usual == "" ? "empty" : code(usual);
-  if (usual.is_array()) {
-    return usual.empty() ? "none" : listed(usual, ", ", [](const auto& one) { return one.dump(); });
+  const ordered_json& defaults = rule["default"];
+  if (defaults.is_string()) return defaults == "" ? "empty" : code(defaults);
+  if (defaults.is_array()) {
+    return defaults.empty() ? "none"
+                            : listed(defaults, ", ", [](const auto& one) { return one.dump(); });
   }
-  if (usual.is_object()) return code(usual.dump());
-  return usual.is_number() ? in_thousands(usual) : usual.dump();
+  if (defaults.is_object()) return code(defaults.dump());
+  return defaults.is_number() ? in_thousands(defaults) : defaults.dump();
 }
 
 /// Makes the rows of a table.
@@ -184,10 +186,10 @@ class Rows {
       add_object(rule, outer + key + ".", left_out);
       return;
     }
-    std::string type = type_in_words(rule);
+    std::string type = type_text(rule);
     if (rule.contains(kUnit)) type += ", " + rule[kUnit].get<std::string>();
     for (const std::string& cell :
-         {code(outer + key), type, range_in_words(rule), default_in_words(rule, is_required),
+         {code(outer + key), type, range_text(rule), default_text(rule, is_required),
           rule.at(kMeaning).get<std::string>()}) {
       text_ += cell.empty() ? "| " : "| " + cell + " ";
     }

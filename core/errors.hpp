@@ -6,8 +6,8 @@
 
 namespace touchtrial {
 
-/// Base of all errors that the program reports and survives. `what()` is one line of UTF-8 that
-/// names what failed, where (file, JSON pointer, bus, key) and the remedy.
+/// Base of errors that the program survives. `what()` is one line of UTF-8: what failed, where, the
+/// remedy, and a code in brackets, [unsigned-look], where errors are easily confused.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -72,12 +72,12 @@ bool has_control_character(std::string_view text) {
 }
 
 std::string fault_of_label(const std::string& label) {
-  constexpr std::size_t kLongest = 64;
+  constexpr std::size_t kMaxBytes = 64;
   if (label.empty()) return "is empty";
   if (!is_utf8(label)) return "is not UTF-8";
-  if (label.size() > kLongest) {
+  if (label.size() > kMaxBytes) {
     return "has " + std::to_string(label.size()) + " bytes, must have at most " +
-           std::to_string(kLongest);
+           std::to_string(kMaxBytes);
   }
   if (has_control_character(label)) return "has a control character";
   if (label.front() == ' ' || label.back() == ' ') return "begins or ends with a blank";

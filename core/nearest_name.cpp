@@ -8,7 +8,7 @@
 namespace touchtrial {
 namespace {
 
-constexpr std::size_t kLongestName = 64;  // longer texts are not misspelt keys
+constexpr std::size_t kMaxNameBytes = 64;  // longer texts are not misspelt keys
 
 char folded(char c) {
   if (c >= 'A' && c <= 'Z') return static_cast<char>(c - 'A' + 'a');
@@ -54,7 +54,7 @@ int edit_distance(std::string_view a_name, std::string_view b_name) {
 
 std::optional<std::string_view> nearest_name(std::string_view name,
                                              std::span<const std::string_view> known) {
-  if (name.size() > kLongestName) return std::nullopt;
+  if (name.size() > kMaxNameBytes) return std::nullopt;
   std::optional<std::string_view> nearest;
   int smallest = 0;
   for (const std::string_view candidate : known) {
@@ -69,7 +69,7 @@ std::optional<std::string_view> nearest_name(std::string_view name,
 
 std::optional<std::string_view> nearest_product(std::string_view name,
                                                 std::span<const std::string_view> known) {
-  if (name.size() > kLongestName) return std::nullopt;
+  if (name.size() > kMaxNameBytes) return std::nullopt;
   const std::string wanted = without_signs(name);
   const std::string number = digits_of(name);
   std::vector<std::string_view> candidates;

@@ -10,10 +10,10 @@
 namespace touchtrial {
 
 bool is_in_range(const PassphraseCost& cost) noexcept {
-  const PassphraseCost& least = kMinPassphraseCost;
-  const PassphraseCost& most = kMaxPassphraseCost;
-  return cost.passes >= least.passes && cost.passes <= most.passes &&
-         cost.memory_bytes >= least.memory_bytes && cost.memory_bytes <= most.memory_bytes;
+  const PassphraseCost& min = kMinPassphraseCost;
+  const PassphraseCost& max = kMaxPassphraseCost;
+  return cost.passes >= min.passes && cost.passes <= max.passes &&
+         cost.memory_bytes >= min.memory_bytes && cost.memory_bytes <= max.memory_bytes;
 }
 
 SecretKey key_of_passphrase(std::string_view passphrase, const Salt& salt,

@@ -24,9 +24,9 @@ std::string_view beginning(std::string_view text, std::size_t limit) {
 }
 
 std::string escaped_token(std::string_view token) {
-  constexpr std::size_t kLongest = 80;
+  constexpr std::size_t kMaxShownBytes = 80;
   std::string escaped = "/";
-  for (const char c : beginning(token, kLongest)) {
+  for (const char c : beginning(token, kMaxShownBytes)) {
     if (c == '~') {
       escaped += "~0";
     } else if (c == '/') {
@@ -43,7 +43,7 @@ std::string escaped_token(std::string_view token) {
   throw StudyError(one_line(source + ": " + (place.empty() ? "/" : place) + ": " + what));
 }
 
-/// Follows the parser and knows its place in the document.
+/// Follows the parser and tracks its position in the document.
 class PlaceTracker {
  public:
   explicit PlaceTracker(const std::string& source) : source_(source) {}
@@ -118,8 +118,8 @@ void refuse_zero_bytes(std::string_view text, const std::string& source) {
   const std::size_t at = text.find('\0');
   if (at == std::string_view::npos) return;
   refuse_byte(text, at, source,
-              "is a zero byte, which no JSON text has; remove it and what is behind it, or write "
-              "the file anew");
+              "is a zero byte, which no JSON text has; remove it and everything after it, or write "
+              "the file again");
 }
 
 /// The value as a whole number, limited to 64 bits; nothing if it is not a whole number.
@@ -240,7 +240,7 @@ const std::string& JsonValue::text() const {
   return node_->value->get_ref<const std::string&>();
 }
 
-bool JsonValue::truth() const {
+bool JsonValue::boolean() const {
   if (!node_->value->is_boolean()) refuse_type("true or false");
   return node_->value->get<bool>();
 }
@@ -269,11 +269,11 @@ std::string JsonValue::any_object() const {
   return node_->value->dump();
 }
 
-std::vector<JsonValue> JsonValue::items(std::size_t fewest, std::size_t most) const {
+std::vector<JsonValue> JsonValue::items(std::size_t min_count, std::size_t max_count) const {
   if (!node_->value->is_array()) refuse_type("a list");
-  if (node_->value->size() < fewest || node_->value->size() > most) {
+  if (node_->value->size() < min_count || node_->value->size() > max_count) {
     refuse("has " + std::to_string(node_->value->size()) + " entries, must have from " +
-           std::to_string(fewest) + " to " + std::to_string(most));
+           std::to_string(min_count) + " to " + std::to_string(max_count));
   }
   std::vector<JsonValue> items;
   items.reserve(node_->value->size());
@@ -325,8 +325,8 @@ std::string number_text(double number) {
 }
 
 std::string in_quotes(std::string_view text) {
-  constexpr std::size_t kLongest = 60;
-  const std::string_view shown = beginning(text, kLongest);
+  constexpr std::size_t kMaxShownBytes = 60;
+  const std::string_view shown = beginning(text, kMaxShownBytes);
   return one_line("\"" + std::string(shown) + (shown.size() < text.size() ? "...\"" : "\""));
 }
 

@@ -1,4 +1,4 @@
-/// \file A strict reader for JSON files that people write: it refuses whatever it does not
+/// \file A strict reader for JSON files that people write: it refuses everything that it does not
 /// understand, and names the place.
 #pragma once
 
@@ -53,15 +53,15 @@ class JsonValue {
   [[nodiscard]] bool is_object() const;
   [[nodiscard]] const std::string& text() const;
   /// true or false.
-  [[nodiscard]] bool truth() const;
+  [[nodiscard]] bool boolean() const;
   [[nodiscard]] double number(const NumberRange& range) const;
   /// A whole number; 5.0 counts as one.
   [[nodiscard]] std::int64_t integer(std::int64_t low, std::int64_t high) const;
-  [[nodiscard]] std::vector<JsonValue> items(std::size_t fewest, std::size_t most) const;
+  [[nodiscard]] std::vector<JsonValue> items(std::size_t min_count, std::size_t max_count) const;
   /// An object; a key that is not among these is refused.
   [[nodiscard]] JsonObject object(std::span<const std::string_view> known) const;
   [[nodiscard]] JsonObject object(std::initializer_list<std::string_view> known) const;
-  /// An object whose keys somebody else knows, as JSON on one line, without comments.
+  /// An object with keys unknown to this reader, as JSON on one line, without comments.
   [[nodiscard]] std::string any_object() const;
   /// The index of a text in `names`; any other text is refused.
   [[nodiscard]] std::size_t choice(std::span<const std::string_view> names) const;
@@ -104,9 +104,9 @@ class JsonObject {
 /// \throws StudyError with line and column, or with the JSON pointer
 [[nodiscard]] JsonValue parse_strict_json(std::string_view text, const std::string& source);
 
-/// A document for readers that know no comments.
+/// Converts a document for readers that do not support comments.
 /// \param text  a document that parse_strict_json has read
-/// \return the same text if it has no comment, else the document written anew
+/// \return the same text if it has no comment, else the document without comments
 [[nodiscard]] std::string without_comments(std::string_view text);
 
 /// A number as JSON writes it: the shortest form, with a decimal point in every locale.

@@ -13,7 +13,7 @@
 
 namespace touchtrial {
 
-/// Parses a whole text as a number, whatever the locale; nothing if it is not a number.
+/// Parses a whole text as a number, independent of the locale; nothing if it is not a number.
 template <typename Number>
 [[nodiscard]] std::optional<Number> number_in(std::string_view text) {
   Number number{};

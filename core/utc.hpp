@@ -1,4 +1,4 @@
-/// \file Times as text, in UTC and whatever the locale.
+/// \file Times as text, in UTC and independent of the locale.
 #pragma once
 
 #include <chrono>

@@ -22,7 +22,7 @@ DeviceUse DeviceSettings::use_of(const std::string& driver) const {
 SafetyLimits stricter_of(SafetyLimits limits, const LabLimits& lab) noexcept {
   tighten(limits.max_force_n, lab.max_force_n);
   tighten(limits.max_slew_n_per_s, lab.max_slew_n_per_s);
-  limits.max_slew_n_per_s = std::max(limits.max_slew_n_per_s, limits.max_force_n / kLongestLetGoS);
+  limits.max_slew_n_per_s = std::max(limits.max_slew_n_per_s, limits.max_force_n / kMaxReleaseS);
   tighten(limits.max_speed_mm_s, lab.max_speed_mm_s);
   if (limits.continuous_force_n > 0.0) {
     tighten(limits.continuous_force_n, lab.continuous_force_n);
@@ -39,8 +39,9 @@ std::filesystem::path default_device_settings_path() {
 
 DeviceSettings device_settings_for(const std::filesystem::path& named) {
   if (!named.empty()) return read_device_settings(named);
-  const std::filesystem::path usual = default_device_settings_path();
-  return !usual.empty() && is_there(usual) ? read_device_settings(usual) : DeviceSettings{};
+  const std::filesystem::path default_path = default_device_settings_path();
+  return !default_path.empty() && is_there(default_path) ? read_device_settings(default_path)
+                                                         : DeviceSettings{};
 }
 
 }  // namespace touchtrial::device

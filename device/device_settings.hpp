@@ -38,12 +38,12 @@ struct OpenHapticsSettings {
 };
 
 struct DhdSettings {
-  /// A file, a folder, or a name; this one stands for every version of libdrd.so and libdhd.so.
+  /// A file, a folder, or a name; the default means any version of libdrd.so and libdhd.so.
   std::filesystem::path library = "libdhd.so";
   int index = 0;                     ///< among the connected devices, >= 0
   bool gravity_compensation = true;  ///< the library's own, which acts whenever force is on
-  double effector_mass_kg = 0.0;     ///< 0: as the device knows it
-  /// \name What the library does not tell; nothing: by the device's model
+  double effector_mass_kg = 0.0;     ///< 0: the device's own value
+  /// \name Facts that the library does not report; nothing: from the device's model
   ///@{
   std::optional<double> max_force_n{};         ///< > 0
   std::optional<double> continuous_force_n{};  ///< 0: no limit is known
@@ -54,7 +54,7 @@ struct DhdSettings {
 
 struct PluginSettings {
   std::filesystem::path library;  ///< needed
-  std::string settings = "{}";    ///< a JSON object, which the plug-in alone understands
+  std::string settings = "{}";    ///< a JSON object that only the plug-in understands
 };
 
 struct Inverse3Settings {
@@ -63,7 +63,7 @@ struct Inverse3Settings {
   int events_port = 10020;         ///< of its events channel, 1 to 65535
   int http_port = 10000;           ///< of HTTP where `port` has none, 1 to 65535
   std::string device_id{};         ///< of the device to use; empty: the only one
-  double max_force_n = 5.0;        ///< along each axis, which nobody publishes; > 0
+  double max_force_n = 5.0;        ///< along each axis; unpublished; > 0
 };
 
 struct ReplaySettings {
@@ -79,7 +79,7 @@ struct LabLimits {
   std::optional<double> max_speed_mm_s{};      ///< SafetyLimits::max_speed_mm_s, > 0
 };
 
-/// How a lab uses one of its devices, whatever the driver.
+/// How a lab uses one of its devices, for any driver.
 struct DeviceUse {
   LabLimits limits;
   /// How planes stand on it; nothing: horizontal.
@@ -89,7 +89,7 @@ struct DeviceUse {
   DeviceScale scale;  ///< of this very device, as the lab measured it
 };
 
-/// What records beside a session and is told of its events.
+/// Instruments that record during a session and receive its events.
 struct InstrumentSettings {
   MarkerLineSettings serial;
   LabStreamingSettings lsl;
@@ -112,7 +112,7 @@ struct DeviceSettings {
   [[nodiscard]] DeviceUse use_of(const std::string& driver) const;
 };
 
-/// \return the stricter of each limit; the slew limit stays high enough to let go in kLongestLetGoS
+/// \return the stricter of each limit; the slew limit stays high enough to let go in kMaxReleaseS
 [[nodiscard]] SafetyLimits stricter_of(SafetyLimits limits, const LabLimits& lab) noexcept;
 
 /// Reads a settings file of the schema config/schema/devices.schema.json. Paths in it are relative
@@ -128,8 +128,8 @@ struct DeviceSettings {
                                                    const std::filesystem::path& folder,
                                                    const std::string& source);
 
-/// \return the settings file of a user who names none: touchtrial/devices.json in the user's
-///   configuration folder (XDG_CONFIG_HOME, else ~/.config); empty if the system knows no home
+/// \return the settings file of a user who specifies none: touchtrial/devices.json in the user's
+///   configuration folder (XDG_CONFIG_HOME, else ~/.config); empty if there is no home folder
 [[nodiscard]] std::filesystem::path default_device_settings_path();
 
 /// Reads the settings that a command uses: the file that the user named, else the one at the

@@ -41,7 +41,7 @@ constexpr TextRule kLibrary{
         },
     .min_length = 1,
     .pattern = kPattern,
-    .in_words = "a name, or a path with a slash"};
+    .description = "a name, or a path with a slash"};
 constexpr TextRule kHost{.check =
                              [](const JsonValue& place) {
                                check_plain(place);
@@ -50,7 +50,7 @@ constexpr TextRule kHost{.check =
                              },
                          .min_length = 1,
                          .pattern = kPattern,
-                         .in_words = "not empty"};
+                         .description = "not empty"};
 constexpr TextRule kLine{.check =
                              [](const JsonValue& place) {
                                check_plain(place);
@@ -61,7 +61,7 @@ constexpr TextRule kLine{.check =
                              },
                          .min_length = 1,
                          .pattern = kPattern,
-                         .in_words = "a path"};
+                         .description = "a path"};
 
 /// The settings that are read, and where relative paths start.
 struct File {
@@ -71,7 +71,7 @@ struct File {
 
 /// The path of a file; an empty text names no file.
 void describe_path(ObjectIo& io, std::string_view key, const fs::path& folder, fs::path& path,
-                   const About& about) {
+                   const KeyInfo& about) {
   io.member(key, about, !path.empty(), [&](ValueIo& value) {
     std::string text;
     value.text(text, kPlain);
@@ -80,7 +80,7 @@ void describe_path(ObjectIo& io, std::string_view key, const fs::path& folder, f
 }
 
 /// The name of a library: a path if it has a slash, else a name that the system looks up.
-void describe_library(ObjectIo& io, const fs::path& folder, fs::path& path, const About& about) {
+void describe_library(ObjectIo& io, const fs::path& folder, fs::path& path, const KeyInfo& about) {
   io.member("library", about, !path.empty(), [&](ValueIo& value) {
     std::string name = path.string();
     value.text(name, kLibrary);
@@ -94,11 +94,11 @@ void describe_falcon(ObjectIo& io, const File& file) {
   describe_path(io, "firmware", file.folder, falcon.firmware,
                 {"the vendor's firmware image, needed unless the device already runs it"});
   io.text("serial", falcon.serial, kPlain,
-          {.meaning = "serial number of the Falcon to use", .otherwise = "the only one"});
+          {.meaning = "serial number of the Falcon to use", .default_text = "the only one"});
   io.member("gravity_bias_n",
-            {.meaning = "force that carries the grip, in the device frame, beside the limits of "
-                        "force",
-             .range = "three from -1 to 1, norm at most 1"},
+            {.meaning = "force that supports the weight of the grip, in the device frame; not "
+                        "subject to the force limits",
+             .range = "three numbers from -1 to 1, norm at most 1"},
             true, [&](ValueIo& value) {
               value.axes(falcon.gravity_bias_n, {-kMaxBiasN, kMaxBiasN});
             });
@@ -109,7 +109,7 @@ void describe_falcon(ObjectIo& io, const File& file) {
         "has a norm of " + number_text(norm(falcon.gravity_bias_n)) + " N, must be at most 1");
   });
   std::vector<int> order(falcon.led_order.begin(), falcon.led_order.end());
-  io.list("led_order", order, {.fewest = 3, .most = 3, .unique = true},
+  io.list("led_order", order, {.min = 3, .max = 3, .unique = true},
           {.meaning = "bits of the red, green and blue light", .range = "0, 1, 2, each once"},
           [](ValueIo& value, int& bit) { value.integer(bit, 0, 2); });
   io.rule([&order](const JsonValue& place, const JsonObject& /*object*/) {
@@ -118,12 +118,12 @@ void describe_falcon(ObjectIo& io, const File& file) {
   });
   std::ranges::copy(order, falcon.led_order.begin());
   io.integer("motor_peak", falcon.motor_peak, 1, kMaxMotorValue,
-             {"greatest motor value, of 6,616 for 1 N m"});
+             {"maximum motor value; 6,616 is 1 N m"});
   io.integer("motor_continuous", falcon.motor_continuous, 1, kMaxMotorValue,
-             {"motor value without a time limit, a guess until it is measured; none if not below "
-              "the greatest"});
+             {"motor value that can be held for any time, a guess until measured; no limit if not "
+              "below the maximum"});
   io.number("motor_peak_s", falcon.motor_peak_s, {.low = 0.0, .high = 600.0, .open_low = true},
-            {"how long a cold motor may have the greatest value"});
+            {"time for which a cold motor may have the maximum value"});
 }
 
 void describe_openhaptics(ObjectIo& io, const File& file) {
@@ -132,7 +132,7 @@ void describe_openhaptics(ObjectIo& io, const File& file) {
                    {"the vendor's library; the system searches for a name without a slash"});
   io.text("device", touch.device, kPlain,
           {.meaning = "the device's name in the vendor's configuration",
-           .otherwise = "the vendor's default"});
+           .default_text = "the vendor's default"});
   io.integer("rate_hz", touch.rate_hz, 500, 10'000, {"rate of the vendor's scheduler"});
 }
 
@@ -142,20 +142,20 @@ void describe_dhd(ObjectIo& io, const File& file) {
                    {"the vendor's library, its folder or that of the kit; the default finds every "
                     "version of `libdrd.so` and `libdhd.so`"});
   io.integer("index", dhd.index, 0, 63, {"number of the device among those connected"});
-  io.truth("gravity_compensation", dhd.gravity_compensation,
-           {"whether the maker's library carries the weight of arms and effector while force is "
-            "on"});
+  io.boolean("gravity_compensation", dhd.gravity_compensation,
+             {"whether the maker's library compensates the weight of arms and effector while force "
+              "is on"});
   io.number("effector_mass_kg", dhd.effector_mass_kg, {0.0, 10.0},
-            {"mass of the effector; 0: the device's own value, from which it may differ by 0.2; "
-             "it weighs no more than the model can"});
+            {"mass of the effector; 0: the device's own value. May differ from that by 0.2, and is "
+             "limited by the model"});
   io.number("max_force_n", dhd.max_force_n, kForceN,
-            {.meaning = "peak force, at most the model's", .otherwise = "by model"});
+            {.meaning = "peak force, at most the model's", .default_text = "by model"});
   io.number("continuous_force_n", dhd.continuous_force_n, {0.0, 100.0},
-            {.meaning = "force that the device can hold for any time; 0: not known",
-             .otherwise = "by model"});
+            {.meaning = "force that the device can hold for any time; 0: unknown",
+             .default_text = "by model"});
   io.optional("workspace_mm", dhd.workspace_mm,
-              {.meaning = "width, height and depth of the ellipsoid that the device reaches",
-               .otherwise = "by model"},
+              {.meaning = "width, height and depth of the ellipsoidal workspace",
+               .default_text = "by model"},
               [](ValueIo& value, Vec3& size) {
                 value.axes(size, {1.0, 2000.0});
               });
@@ -163,13 +163,13 @@ void describe_dhd(ObjectIo& io, const File& file) {
 
 void describe_plugin(ObjectIo& io, const File& file) {
   PluginSettings& plugin = file.settings.plugin;
-  describe_library(io, file.folder, plugin.library,
-                   {"the plug-in, without which it cannot be used; the system searches for a name "
-                    "without a slash"});
-  io.member("settings", {"handed to the plug-in as it stands"}, true, [&plugin](ValueIo& value) {
-    value.own(R"({"type": "object"})",
-              [&plugin](const JsonValue& place) { plugin.settings = place.any_object(); },
-              [&plugin] { return plugin.settings; });
+  describe_library(
+      io, file.folder, plugin.library,
+      {"the library of the plug-in, required; the system searches for a name without a slash"});
+  io.member("settings", {"passed to the plug-in unchanged"}, true, [&plugin](ValueIo& value) {
+    value.custom(R"({"type": "object"})",
+                 [&plugin](const JsonValue& place) { plugin.settings = place.any_object(); },
+                 [&plugin] { return plugin.settings; });
   });
 }
 
@@ -179,13 +179,12 @@ void describe_inverse3(ObjectIo& io, const File& file) {
   io.integer("port", inverse3.port, 1, kLastPort, {"port of its simulation channel"});
   io.integer("events_port", inverse3.events_port, 1, kLastPort, {"port of its events channel"});
   io.integer("http_port", inverse3.http_port, 1, kLastPort,
-             {"port of HTTP where that of the simulation channel has none, as before later "
-              "versions 3.5"});
+             {"HTTP port, if the simulation channel has no HTTP (before the later 3.5 versions)"});
   io.text(
       "device_id", inverse3.device_id, kPlain,
-      {.meaning = "the device to use, by the service's name for it", .otherwise = "the only one"});
+      {.meaning = "the device to use, as the service names it", .default_text = "the only one"});
   io.number("max_force_n", inverse3.max_force_n, kForceN,
-            {"largest force along each axis, which the maker does not publish"});
+            {"maximum force along each axis, not published by the maker"});
 }
 
 void describe_replay(ObjectIo& io, const File& file) {
@@ -194,26 +193,26 @@ void describe_replay(ObjectIo& io, const File& file) {
 }
 
 void describe_limits(ObjectIo& io, LabLimits& limits) {
-  const SafetyLimits usual;
+  const SafetyLimits defaults;
   const auto up_to = [](double high) { return NumberRange{0.0, high, true}; };
   io.number("max_force_n", limits.max_force_n, kForceN, {"largest norm of a force"});
   io.number("continuous_force_n", limits.continuous_force_n, kForceN,
-            {"force that may last for any time; a larger one is reduced after a while"});
-  io.number("max_slew_n_per_s", limits.max_slew_n_per_s, up_to(usual.max_slew_n_per_s),
-            {"fastest change of a force"});
-  io.number("max_speed_mm_s", limits.max_speed_mm_s, up_to(usual.max_speed_mm_s),
-            {"largest speed of the hand; a higher one is a fault"});
+            {"force that can last for any time; larger forces are reduced after some time"});
+  io.number("max_slew_n_per_s", limits.max_slew_n_per_s, up_to(defaults.max_slew_n_per_s),
+            {"maximum rate of change of the force"});
+  io.number("max_speed_mm_s", limits.max_speed_mm_s, up_to(defaults.max_speed_mm_s),
+            {"maximum speed of the hand; a higher speed is a fault"});
 }
 
 void describe_placement(ObjectIo& io, DeviceUse& use) {
-  io.optional(
-      "orientation", use.orientation,
-      {.meaning = "like a table before the person, or like a wall", .otherwise = "`horizontal`"},
-      [](ValueIo& value, PlaneOrientation& one) { value.choice(one, kOrientations); });
+  io.optional("orientation", use.orientation,
+              {.meaning = "horizontal, like a table, or vertical, like a wall",
+               .default_text = "`horizontal`"},
+              [](ValueIo& value, PlaneOrientation& one) { value.choice(one, kOrientations); });
   io.optional("centre_mm", use.centre_mm,
-              {.meaning = "the place of a plane's middle in the device frame: to the right, up, "
-                          "towards the person, from the middle of the workspace",
-               .otherwise = "the place with the largest margin"},
+              {.meaning = "position of a plane's centre relative to the centre of the workspace, "
+                          "in the device frame: right, up, towards the person",
+               .default_text = "the position with the largest margin"},
               [](ValueIo& value, Vec3& centre) {
                 value.axes(centre, {-1000.0, 1000.0});
               });
@@ -221,31 +220,31 @@ void describe_placement(ObjectIo& io, DeviceUse& use) {
 
 /// A number for all axes, or one for each.
 void describe_scale(ValueIo& io, Vec3& scale) {
-  constexpr NumberRange kScale{.low = kMinScale, .high = kMaxScale};
+  constexpr NumberRange kRange{.low = kMinScale, .high = kMaxScale};
   const ValueIo::Form forms[] = {{[](const JsonValue& place) { return place.is_list(); },
-                                  [&](ValueIo& value) { value.axes(scale, kScale); }},
+                                  [&](ValueIo& value) { value.axes(scale, kRange); }},
                                  {{}, [&](ValueIo& value) {
                                     double all = scale.x;
-                                    value.number(all, kScale);
+                                    value.number(all, kRange);
                                     scale = {all, all, all};
                                   }}};
-  io.either(scale.x == scale.y && scale.y == scale.z ? 1 : 0, forms);
+  io.one_of(scale.x == scale.y && scale.y == scale.z ? 1 : 0, forms);
 }
 
 void describe_scales_and_placement(ObjectIo& io, DeviceUse& use) {
   io.member("force_scale",
-            {"felt newtons for one of the driver's, for all axes or for each (to the right, up, "
-             "towards the person): [force and length](devices/README.md#force-and-length). Limits "
-             "of force hold as felt"},
+            {"felt newtons per newton of the driver, for all axes or for each (right, up, towards "
+             "the person): [force and length](devices/README.md#force-and-length). Force limits "
+             "apply to felt newtons"},
             true, [&use](ValueIo& value) { describe_scale(value, use.scale.force); });
-  io.member("length_scale", {"true millimetres for one of the driver's, likewise"}, true,
+  io.member("length_scale", {"true millimetres per millimetre of the driver, likewise"}, true,
             [&use](ValueIo& value) { describe_scale(value, use.scale.length); });
-  io.part("placement", use, {"where planes lie in the workspace"}, describe_placement);
+  io.part("placement", use, {"position of planes in the workspace"}, describe_placement);
 }
 
 void describe_serial(ObjectIo& io, MarkerLineSettings& serial) {
   io.member("port",
-            {.meaning = "serial line that gets event codes "
+            {.meaning = "serial line that receives event codes "
                         "([instruments](running-sessions.md#instruments-eeg-physiology-video))",
              .required = true},
             true, [&serial](ValueIo& value) {
@@ -253,28 +252,29 @@ void describe_serial(ObjectIo& io, MarkerLineSettings& serial) {
               value.text(port, kLine);
               serial.port = port;
             });
-  io.integer("baud", serial.baud, 9'600, 1'000'000, {"bits per second, of the usual rates"});
+  io.integer("baud", serial.baud, 9'600, 1'000'000, {"bits per second; one of the standard rates"});
   io.choice("format", serial.format, kMarkerFormats,
-            {"the code and bytes of the trial's number, most significant first; or for instance "
-             "E10 T7 and a line feed"});
-  io.integer("width", serial.width, 0, 4,
-             {"bytes of the trial's number after the code; digits that it has at least"});
+            {"`byte`: the code, then the trial's number, most significant byte first; `text`: for "
+             "instance E10 T7 and a line feed"});
+  io.integer(
+      "width", serial.width, 0, 4,
+      {"bytes of the trial's number after the code; with `text`, its minimum number of digits"});
   io.number("reset_ms", serial.reset_ms, {0.0, 1000.0},
-            {"after which the byte 0 follows; 0: never"});
+            {"delay after which the byte 0 is sent; 0: never"});
   io.rule([&serial](const JsonValue& place, const JsonObject& /*object*/) {
     if (serial.format != MarkerFormat::text || serial.reset_ms == 0.0) return;
     place.refuse_below("/reset_ms",
-                       "sets back codes sent as bytes; leave it out, or set the format to byte");
+                       "resets codes sent as bytes; leave it out, or set the format to byte");
   });
 }
 
 void describe_instruments(ObjectIo& io, const File& file) {
   InstrumentSettings& instruments = file.settings.instruments;
-  io.part("serial", instruments.serial, {"a serial line that gets a code for every event"},
+  io.part("serial", instruments.serial, {"a serial line that receives a code for every event"},
           describe_serial);
   io.member("lsl",
-            {"the Lab Streaming Layer: an outlet of markers and one of position and force; without "
-             "it there are none"},
+            {"the Lab Streaming Layer: an outlet for markers and one for position and force; "
+             "without this key there are none"},
             true, [&](ValueIo& value) {
               LabStreamingSettings& lsl = instruments.lsl;
               lsl.library = "liblsl.so";
@@ -314,7 +314,7 @@ void describe_driver(ObjectIo& io, const DeviceDriver& driver, const File& file)
   });
   std::erase(names, std::string_view(driver.name));
   std::optional<DeviceUse> read;
-  io.optional(driver.name, read, {.meaning = driver.what, .also = names},
+  io.optional(driver.name, read, {.meaning = driver.what, .aliases = names},
               [&](ValueIo& value, DeviceUse& use) {
                 value.object([&](ObjectIo& keys) {
                   const auto* const own =
@@ -322,17 +322,18 @@ void describe_driver(ObjectIo& io, const DeviceDriver& driver, const File& file)
                   const bool has_own = own != kOwnSettings.end();
                   if (has_own) own->value.describe(keys, file);
                   if (has_own && own->value.has_scales) describe_scales_and_placement(keys, use);
-                  keys.part("limits", use.limits,
-                            {"limits that make those of the study and of the device stricter"},
-                            describe_limits);
+                  keys.part(
+                      "limits", use.limits,
+                      {"limits that apply in addition to those of the study and of the device"},
+                      describe_limits);
                 });
               });
   if (read) file.settings.uses[driver.name] = *read;
 }
 
 void describe(ObjectIo& io, const File& file) {
-  io.member("instruments", {"what records beside a session and is told of its events"}, true,
-            [&](ValueIo& value) {
+  io.member("instruments", {"instruments that record during a session and receive its events"},
+            true, [&](ValueIo& value) {
               value.object([&](ObjectIo& keys) { describe_instruments(keys, file); });
             });
   for (const DeviceDriver& driver : device_drivers()) describe_driver(io, driver, file);
@@ -350,13 +351,13 @@ DeviceSettings parse_device_settings(std::string_view text, const fs::path& fold
 }
 
 DeviceSettings read_device_settings(const fs::path& file) {
-  constexpr std::uintmax_t kLargest = 1U << 20U;
-  const Bytes content = read_file(file, kLargest);
+  constexpr std::uintmax_t kMaxFileBytes = 1U << 20U;
+  const Bytes content = read_file(file, kMaxFileBytes);
   return parse_device_settings(text_of(content), file.parent_path(), file.string());
 }
 
 std::string device_settings_schema() {
-  DeviceSettings usual;
+  DeviceSettings defaults;
   const fs::path folder;
   return annotated_schema(
       "Touchtrial device settings",
@@ -366,7 +367,7 @@ std::string device_settings_schema() {
           {"openhaptics": {"library": "/opt/OpenHaptics/lib/libHD.so",
                            "placement": {"orientation": "vertical"}}}])",
       [&](ObjectIo& io) {
-        describe(io, {usual, folder});
+        describe(io, {defaults, folder});
       });
 }
 

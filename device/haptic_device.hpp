@@ -57,8 +57,8 @@ enum class WorkspaceShape {
 
 /// Extent of the positions that a device can reach, in the device frame.
 struct Workspace {
-  Vec3 least_mm;
-  Vec3 greatest_mm;
+  Vec3 min_mm;
+  Vec3 max_mm;
   WorkspaceShape shape = WorkspaceShape::box;
 };
 

@@ -178,9 +178,9 @@ GreyImage picture_by(const Plane<Real>& texture, LevelOf level_of) {
 
 template <typename Real>
 GreyImage stretched(const Plane<Real>& texture) {
-  const auto [least, most] = std::ranges::minmax_element(texture.samples());
-  const auto low = static_cast<double>(*least);
-  const double range = static_cast<double>(*most) - low;
+  const auto [min, max] = std::ranges::minmax_element(texture.samples());
+  const auto low = static_cast<double>(*min);
+  const double range = static_cast<double>(*max) - low;
   if (!(range > 0.0)) return GreyImage(texture.height(), texture.width());
   return picture_by(texture, [=](double sample) { return (sample - low) * 255.0 / range; });
 }

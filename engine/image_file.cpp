@@ -60,7 +60,7 @@ void check_range(const GreyScale& scale) {
 }
 
 Picture decode_file(ByteView file, const SampleScale& samples) {
-  if (file.empty()) throw ImageFault{"is empty", "copy or export it again"};
+  if (file.empty()) throw ImageFault{"is empty", "copy or export it again [empty-picture]"};
   const auto share = [](std::uint64_t part, std::uint64_t all) {
     return static_cast<double>(part) / static_cast<double>(all);
   };

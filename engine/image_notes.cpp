@@ -1,5 +1,6 @@
 #include "engine/image_notes.hpp"
 
+#include "core/units.hpp"
 #include "engine/image_formats/image_format.hpp"
 #include "engine/image_formats/tiff_directory.hpp"
 
@@ -12,7 +13,6 @@
 namespace touchtrial::engine {
 namespace {
 
-constexpr double kMmPerInch = 25.4;
 constexpr double kMmPerCm = 10.0;
 constexpr double kMmPerMetre = 1000.0;
 

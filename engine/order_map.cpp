@@ -69,10 +69,10 @@ class Composite {
   Combine combine_;
 };
 
-double order_at(double csgv, double largest) {
+double order_at(double csgv, double max_csgv) {
   if (csgv < kFlatBelowCsgv) return 0.0;
-  if (csgv <= kSteepAboveCsgv) return csgv / (3.0 * largest) + 0.666;
-  return csgv / (2.0 * largest) + 0.499;
+  if (csgv <= kSteepAboveCsgv) return csgv / (3.0 * max_csgv) + 0.666;
+  return csgv / (2.0 * max_csgv) + 0.499;
 }
 
 }  // namespace
@@ -137,12 +137,12 @@ Plane<double> composite_gradient(const SubBands& bands) {
 }
 
 Plane<double> order_map(const Plane<double>& csgv) {
-  const double largest = std::ranges::max(csgv.samples());
+  const double max_csgv = std::ranges::max(csgv.samples());
   Plane<double> orders(csgv.height(), csgv.width());
   for_each_strip(csgv.height(), kPixels * csgv.width(), [&](Rows strip) {
     for (int y = strip.first; y < strip.last; ++y) {
       std::ranges::transform(csgv.row(y), orders.row(y).begin(),
-                             [largest](double value) { return order_at(value, largest); });
+                             [max_csgv](double value) { return order_at(value, max_csgv); });
     }
   });
   return orders;

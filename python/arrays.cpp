@@ -34,7 +34,8 @@ std::string shape_of(const py::array& array) {
 /// Before anything is copied: an array that only repeats a sample may be larger than the memory.
 void check_sides(const py::array& array, const std::string& argument) {
   if (array.shape(0) == 0 || array.shape(1) == 0) {
-    throw py::value_error(argument + ": has shape " + shape_of(array) + ", and needs a pixel");
+    throw py::value_error(argument + ": has shape " + shape_of(array) +
+                          ", but needs at least one pixel");
   }
   const bool too_long = array.shape(0) > engine::kMaxSidePx || array.shape(1) > engine::kMaxSidePx;
   if (too_long || array.shape(0) > engine::kMaxImagePixels / array.shape(1)) {

@@ -53,10 +53,10 @@ class BodyIo {
   }
   /// Without the key where the value is `usual`.
   template <typename Value>
-  void unless(const Value& usual, std::string_view key, Value& value, std::string_view meaning,
-              const MemberNote& note = {}) {
+  void unless(const Value& default_value, std::string_view key, Value& value,
+              std::string_view meaning, const MemberNote& note = {}) {
     const Member member{key, meaning, note, /*optional=*/true};
-    if (has(member, value != usual)) put(member, value);
+    if (has(member, value != default_value)) put(member, value);
   }
   /// One of the words of an enumeration, in the order of its enumerators.
   template <typename Value, std::size_t size>
@@ -83,7 +83,7 @@ class BodyIo {
   /// \return whether the member is written, read or listed
   virtual bool has(const Member& member, bool there) = 0;
   virtual void text(const Member& member, std::string& value) = 0;
-  virtual void truth(const Member& member, bool& value) = 0;
+  virtual void boolean(const Member& member, bool& value) = 0;
   virtual void number(const Member& member, double& value) = 0;
   virtual void whole(const Member& member, std::int64_t& value, std::int64_t max) = 0;
   /// Bytes as hexadecimal digits.
@@ -112,7 +112,7 @@ class BodyIo {
   }
 
   void put(const Member& member, std::string& value) { text(member, value); }
-  void put(const Member& member, bool& value) { truth(member, value); }
+  void put(const Member& member, bool& value) { boolean(member, value); }
   void put(const Member& member, double& value) { number(member, value); }
   template <std::integral Whole>
   void put(const Member& member, Whole& value) {

@@ -50,7 +50,7 @@ class SignatureCheck {
 };
 
 /// How many sessions are in memory at once, for as many threads as there are.
-constexpr std::size_t kSessionsAtOnce = 16;
+constexpr std::size_t kParallelSessions = 16;
 
 /// One session in the pipeline of the check: its result or its fault.
 struct SessionInFlight {
@@ -94,7 +94,8 @@ class Inspection {
       signatures.add(event, /*is_signed=*/event.sequence >= std::ssize(collected));
     });
     signatures.finish();
-    if (!file_.commitment()) throw EventFault(0, kNoEvent, "the file's chain is empty");
+    if (!file_.commitment())
+      throw EventFault(0, kNoEvent, "the file's chain is empty [empty-chain]");
     inspect_length(collected);
     inspect_sessions();
     inspect_keys();
@@ -183,38 +184,39 @@ class Inspection {
   /// by session is reported, whichever thread finds one first. No exception leaves a filter,
   /// because oneTBB would leak the sessions in flight.
   void inspect_sessions() {
-    using OnItsWay = std::shared_ptr<SessionInFlight>;
+    using InFlight = std::shared_ptr<SessionInFlight>;
     auto next = file_.sessions().begin();
     std::exception_ptr fault;
     std::atomic<bool> has_fault = false;
-    const auto read = [&](tbb::flow_control& control) -> OnItsWay {
+    const auto read = [&](tbb::flow_control& control) -> InFlight {
       if (has_fault || next == file_.sessions().end()) {
         control.stop();
         return nullptr;
       }
       return read_session(*next++);
     };
-    const auto check = [&](const OnItsWay& one) {
+    const auto check = [&](const InFlight& one) {
       if (!one->fault) one->check(*file_.commitment(), reader_);
       return one;
     };
-    const auto add = [&](const OnItsWay& one) {
+    const auto add = [&](const InFlight& one) {
       if (fault) return;
       fault = one->fault;
       has_fault = fault != nullptr;
       if (!fault) add_session(*one);
     };
     const auto in_order = tbb::filter_mode::serial_in_order;
-    tbb::parallel_pipeline(kSessionsAtOnce, tbb::make_filter<void, OnItsWay>(in_order, read) &
-                                                tbb::make_filter<OnItsWay, OnItsWay>(
-                                                    tbb::filter_mode::parallel, check) &
-                                                tbb::make_filter<OnItsWay, void>(in_order, add));
+    tbb::parallel_pipeline(kParallelSessions, tbb::make_filter<void, InFlight>(in_order, read) &
+                                                  tbb::make_filter<InFlight, InFlight>(
+                                                      tbb::filter_mode::parallel, check) &
+                                                  tbb::make_filter<InFlight, void>(in_order, add));
     if (fault) std::rethrow_exception(fault);
     for (const std::int64_t session : sessions_with_events(database_)) {
       if (session < 0) continue;
       const bool known = session <= std::numeric_limits<int>::max() &&
                          file_.sessions().count(static_cast<int>(session)) > 0;
-      if (!known) throw EventFault(session, kNoEvent, "the file's chain has no such session");
+      if (!known)
+        throw EventFault(session, kNoEvent, "the file's chain has no such session [stray-session]");
     }
   }
 
@@ -248,7 +250,8 @@ class Inspection {
       const std::int64_t session = query.integer(0);
       const bool known = session > 0 && session <= std::numeric_limits<int>::max() &&
                          file_.sessions().contains(static_cast<int>(session));
-      if (!known) throw EventFault(session, kNoEvent, "a participant's key has no session");
+      if (!known)
+        throw EventFault(session, kNoEvent, "a participant's key has no session [stray-key]");
     }
     inspect_station_keys();
   }
@@ -262,14 +265,14 @@ class Inspection {
       if (!on_file.opened.kept || on_file.closed || on_file.withdrawn_at) continue;
       const auto copy = copies.extract(session);
       if (copy && copy.mapped() == *on_file.opened.kept) continue;
-      throw EventFault(session, kNoEvent,
-                       std::string("the station's copy of the key ") +
-                           (copy ? "was altered" : "is missing") +
-                           "; the session cannot be resumed");
+      throw EventFault(
+          session, kNoEvent,
+          std::string("the station's copy of the key ") + (copy ? "was altered" : "is missing") +
+              "; the session cannot be resumed " + (copy ? "[altered-copy]" : "[missing-copy]"));
     }
     if (copies.empty()) return;
     throw EventFault(copies.begin()->first, kNoEvent,
-                     "the station holds the key of a session that is not open");
+                     "the station holds the key of a session that is not open [stray-copy]");
   }
 
   void inspect_traces() {
@@ -278,17 +281,19 @@ class Inspection {
     using Wide = std::pair<std::int64_t, std::int64_t>;
     const auto missing = [&] {
       throw EventFault(claim->first.first, claim->second.sequence,
-                       trace_of(claim->first) + " is missing");
+                       trace_of(claim->first) + " is missing [missing-trace]");
     };
     while (query.step()) {
       const Wide id(query.integer(0), query.integer(1));
       if (claim != claims_.end() && Wide(claim->first) < id) missing();
       if (claim == claims_.end() || Wide(claim->first) != id) {
-        throw EventFault(id.first, kNoEvent,
-                         "trace of trial " + std::to_string(id.second) + " has no event");
+        throw EventFault(
+            id.first, kNoEvent,
+            "trace of trial " + std::to_string(id.second) + " has no event [stray-trace]");
       }
       if (blake2b(query.blob(2)) != claim->second.digest) {
-        throw EventFault(id.first, claim->second.sequence, trace_of(claim->first) + " was altered");
+        throw EventFault(id.first, claim->second.sequence,
+                         trace_of(claim->first) + " was altered [altered-trace]");
       }
       ++claim;
     }

@@ -79,13 +79,16 @@ StudyCommitment common_commitment(const StationChain& station) {
 
 /// Why two stations do not belong to one study, as a text.
 std::string difference(const StudyCommitment& a, const StudyCommitment& b) {
-  if (a.study_id != b.study_id) return "they are of different studies";
-  if (a.simulated != b.simulated) return "one is of simulated participants, the other is not";
-  if (a.pilot != b.pilot) return "one is of a pilot, the other is not";
-  if (a.seal != b.seal) return "their seals differ, as the study was changed between them";
-  if (a.pack != b.pack) return "they were recorded with different packs";
-  if (a.investigator != b.investigator) return "they name different investigators";
-  return "their studies' configurations differ";
+  if (a.study_id != b.study_id) return "they are of different studies [other-study]";
+  if (a.simulated != b.simulated)
+    return "one is of simulated participants, the other is not [simulated]";
+  if (a.pilot != b.pilot) return "one is of a pilot, the other is not [pilot]";
+  if (a.seal != b.seal)
+    return "their seals differ, as the study was changed between them [other-seal]";
+  if (a.pack != b.pack) return "they were recorded with different packs [other-pack]";
+  if (a.investigator != b.investigator)
+    return "they name different investigators [other-investigator]";
+  return "their studies' configurations differ [other-configuration]";
 }
 
 void require_one_study(std::span<const StationChain> stations) {

@@ -132,10 +132,12 @@ void CollectedDraft::add_trace(int trial, const Bytes& box) {
     const auto claim = impl_->claims.find(trial);
     const std::string name = "trace of trial " + std::to_string(trial);
     if (claim == impl_->claims.end()) {
-      throw EventFault(impl_->session, kNoEvent, name + " has no event, or is there twice");
+      throw EventFault(impl_->session, kNoEvent,
+                       name + " has no event, or is there twice [stray-trace]");
     }
     if (blake2b(box) != claim->second.digest) {
-      throw EventFault(impl_->session, claim->second.sequence, name + " was altered");
+      throw EventFault(impl_->session, claim->second.sequence,
+                       name + " was altered [altered-trace]");
     }
     impl_->claims.erase(claim);
   });
@@ -149,7 +151,7 @@ void CollectedDraft::end_traces() const {
   impl_->named_as_at_its_station([&] {
     const auto& [trial, claim] = *impl_->claims.begin();
     throw EventFault(impl_->session, claim.sequence,
-                     "trace of trial " + std::to_string(trial) + " is missing");
+                     "trace of trial " + std::to_string(trial) + " is missing [missing-trace]");
   });
 }
 

@@ -38,9 +38,9 @@ Header read_header(const std::filesystem::path& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (status.type() == std::filesystem::file_type::not_found) {
-    refuse_file(
-        path,
-        "no such database; check the name; `touchtrial run` and `touchtrial simulate` make one");
+    refuse_file(path,
+                "no such database; check the name; `touchtrial run` and `touchtrial simulate` make "
+                "one [no-database]");
   }
   if (std::filesystem::is_directory(status))
     refuse_file(path, "is a folder; name a database in it");
@@ -50,7 +50,7 @@ Header read_header(const std::filesystem::path& path) {
   file.read(reinterpret_cast<char*>(header.data()), header.size());
   const bool whole = file.gcount() == static_cast<std::streamsize>(header.size());
   if (!whole || std::memcmp(header.data(), kSqliteMagic, sizeof kSqliteMagic) != 0) {
-    refuse_file(path, "is not a Touchtrial database; check the name");
+    refuse_file(path, "is not a Touchtrial database; check the name [not-a-database]");
   }
   return header;
 }
@@ -79,7 +79,8 @@ bool has_log(const std::filesystem::path& path) {
 void check_header(const std::filesystem::path& path) {
   const Header header = read_header(path);
   if (big_endian_32(header, 68) != static_cast<std::uint32_t>(kApplicationId)) {
-    refuse_file(path, "is an SQLite database, but none of Touchtrial; check the name");
+    refuse_file(path,
+                "is an SQLite database, but none of Touchtrial; check the name [not-a-database]");
   }
   const std::uint32_t version = big_endian_32(header, 60);
   if (version == 0) refuse_damaged(path, "has no version, so it is damaged");
@@ -91,7 +92,7 @@ void check_header(const std::filesystem::path& path) {
   const auto size = std::filesystem::file_size(path, error);
   // A log may hold pages that are not in the file yet.
   if (!error && size < size_in_header(header) && !has_log(path)) {
-    refuse_damaged(path, "is truncated");
+    refuse_damaged(path, "is truncated [truncated]");
   }
 }
 

@@ -21,7 +21,7 @@ auto statement_of(const Event& event) {
 }  // namespace
 
 bool belongs_to_file_chain(EventKind kind) {
-  return kind <= EventKind::loss_accepted;
+  return kind < EventKind::opened;
 }
 
 Digest event_hash(const Event& event) {
@@ -69,23 +69,25 @@ ChainLink ChainLink::after(const Event& last) {
 
 std::optional<std::string> ChainLink::broken_by(const Event& next) const {
   if (next.session != session_ || next.own_session() != own_session_) {
-    return "the event belongs to another chain";
+    return "the event belongs to another chain [other-chain]";
   }
   // Makes the representation of an event unique.
-  if (next.renumbered_from == next.session) return "the event repeats its own number";
+  if (next.renumbered_from == next.session) return "the event repeats its own number [own-number]";
   if (next.sequence > length_) {
-    return "sequence gap: event " + std::to_string(length_) + " is missing";
+    return "sequence gap: event " + std::to_string(length_) + " is missing [sequence-gap]";
   }
-  if (next.sequence < length_) return "the sequence number repeats";
+  if (next.sequence < length_) return "the sequence number repeats [repeated-sequence]";
   if (next.previous != head_) {
-    return length_ == 0 ? "previous is not zero in the first event"
-                        : "previous does not match the hash of the event before";
+    return length_ == 0 ? "previous is not zero in the first event [broken-link]"
+                        : "previous does not match the hash of the event before [broken-link]";
   }
-  if (next.hash != event_hash(next)) return "the hash of the event does not match its content";
+  if (next.hash != event_hash(next))
+    return "the hash of the event does not match its content [altered-event]";
   if (belongs_to_file_chain(next.kind) != (session_ <= 0)) {
     return "an event of kind '" + std::string(name_of(next.kind)) + "' does not belong here";
   }
-  if (session_ > 0 && next.at.count() != 0) return "the time of the event is not sealed";
+  if (session_ > 0 && next.at.count() != 0)
+    return "the time of the event is not sealed [time-in-clear]";
   if (session_ > 0 && !next.signature.empty()) return "an event of a session has a signature";
   return std::nullopt;
 }

@@ -16,12 +16,12 @@ using More = EventKindRow::More;
 
 constexpr More kSafetyRecord{.in_safety_record = true};
 
-constexpr More about_text(std::string_view text, std::string_view secret_in_words = {}) {
-  return {.text = text, .secret_in_words = secret_in_words};
+constexpr More about_text(std::string_view text, std::string_view secret_description = {}) {
+  return {.text = text, .secret_description = secret_description};
 }
 
-constexpr More secret_text(std::string_view in_words) {
-  return {.secret_in_words = in_words};
+constexpr More secret_text(std::string_view description) {
+  return {.secret_description = description};
 }
 
 template <typename Body>
@@ -34,23 +34,23 @@ constexpr auto kKinds = std::to_array<EventKindRow>({
      describe_body<StudyCommitment>},
     {Kind::session_opened, "session-opened", "binds a session's chain and keys to the file",
      describe_body<SessionOpenedBody>},
-    {Kind::session_closed, "session-closed", "how the session's chain ends",
+    {Kind::session_closed, "session-closed", "the end of the session's chain",
      describe_body<SessionClosedBody>},
     {Kind::participant_excluded, "participant-excluded", "the session was excluded",
      describe_body<ParticipantBody>},
     {Kind::participant_withdrawn, "participant-withdrawn", "the participant withdrew",
      describe_body<WithdrawalBody>},
-    {Kind::study_closed, "study-closed", "nobody else takes part", describe_body<EmptyBody>},
+    {Kind::study_closed, "study-closed", "collection ended", describe_body<EmptyBody>},
     {Kind::study_unblinded, "study-unblinded", "outcomes were looked at",
      describe_body<UnblindingBody>},
-    {Kind::participant_replaced, "participant-replaced",
-     "somebody else took the participant's place", describe_body<ReplacementBody>},
+    {Kind::participant_replaced, "participant-replaced", "the participant was replaced by another",
+     describe_body<ReplacementBody>},
     {Kind::participant_noted, "participant-noted", "a note or deviation after the session",
      describe_body<NoteBody>},
-    {Kind::heads_kept, "heads-kept", "a head file is beside the database from then on",
+    {Kind::heads_kept, "heads-kept", "the head files of the database changed",
      describe_body<HeadsBody>},
     {Kind::loss_accepted, "loss-accepted",
-     "the loss of something that the head file records was accepted", describe_body<LossBody>},
+     "a loss of events that the head file records was accepted", describe_body<LossBody>},
 
     {Kind::opened, "opened", "the session begins", describe_body<SessionOpening>, 8,
      secret_text("schedule and layout, JSON")},
@@ -64,9 +64,10 @@ constexpr auto kKinds = std::to_array<EventKindRow>({
     {Kind::first_contact, "first-contact", "the stylus came near the plane",
      describe_body<TrialBody>},
     {Kind::answered, "answered", "the participant answered", describe_body<AnswerBody>, 4},
-    {Kind::interrupted, "interrupted", "a presentation was broken off",
+    {Kind::interrupted, "interrupted", "a presentation was interrupted",
      describe_body<InterruptedBody>, 8, secret_body<InterruptionDetail>()},
-    {Kind::timed_out, "timed-out", "time ran out without an answer", describe_body<TrialBody>},
+    {Kind::timed_out, "timed-out", "the time limit was reached without an answer",
+     describe_body<TrialBody>},
     {Kind::trace_stored, "trace-stored", "the trial's trace was stored", describe_body<TraceBody>,
      16, secret_body<TrialMeasures>()},
     {Kind::break_taken, "break-taken", "a break that the study prescribes", describe_body<TextBody>,
@@ -77,15 +78,15 @@ constexpr auto kKinds = std::to_array<EventKindRow>({
     {Kind::noted, "noted", "the experimenter took a note", describe_body<RemarkBody>, 8},
     {Kind::ticked, "ticked", "an item of the day sheet is done", describe_body<TextBody>, 1,
      about_text("code of the item")},
-    {Kind::deviated, "deviated", "something differed from what the study asks for",
-     describe_body<DeviationBody>, 8, kSafetyRecord},
+    {Kind::deviated, "deviated", "a deviation from the protocol", describe_body<DeviationBody>, 8,
+     kSafetyRecord},
     {Kind::questioned, "questioned", "a questionnaire was filled in", describe_body<TextBody>, 8,
      about_text("name of the questionnaire", "the answers, JSON")},
     {Kind::explored_again, "explored-again",
      "the participant returned to the plane before answering", describe_body<TrialBody>},
-    {Kind::block_restarted, "block-restarted", "a block was begun anew", describe_body<BlockBody>,
-     8, secret_text("the block in its new order, JSON")},
-    {Kind::resumed, "resumed", "the session went on", describe_body<ResumedBody>, 2},
+    {Kind::block_restarted, "block-restarted", "a block was restarted", describe_body<BlockBody>, 8,
+     secret_text("the block in its new order, JSON")},
+    {Kind::resumed, "resumed", "the session was resumed", describe_body<ResumedBody>, 2},
     {Kind::marked, "marked", "marks were sent to other instruments since the last such event",
      describe_body<EmptyBody>, 32, secret_body<MarksBody>()},
     {Kind::closed, "closed", "the session ends", describe_body<ClosedBody>, 8,
@@ -114,7 +115,7 @@ class MemberList final : public BodyIo {
 
   bool has(const Member& /*member*/, bool /*there*/) override { return true; }
   void text(const Member& member, std::string& /*value*/) override { add(member, "text"); }
-  void truth(const Member& member, bool& /*value*/) override { add(member, "true or false"); }
+  void boolean(const Member& member, bool& /*value*/) override { add(member, "true or false"); }
   void number(const Member& member, double& /*value*/) override { add(member, "number"); }
   void whole(const Member& member, std::int64_t& /*value*/, std::int64_t /*max*/) override {
     add(member, "whole number" + words_of(member.note.min));

@@ -27,10 +27,10 @@ void describe_body(BodyIo& io) {
 struct EventKindRow {
   /// What most kinds lack.
   struct More {
-    std::string_view text{};             ///< what the member `text` of a TextBody holds
-    DescribeBody secret = nullptr;       ///< of a sealed text beside the body, if it has members
-    std::string_view secret_in_words{};  ///< what else it is; empty: there is none
-    bool in_safety_record = false;       ///< sealed for safety_key()
+    std::string_view text{};                ///< what the member `text` of a TextBody holds
+    DescribeBody secret = nullptr;          ///< of a sealed text beside the body, if it has members
+    std::string_view secret_description{};  ///< what else it is; empty: there is none
+    bool in_safety_record = false;          ///< sealed for safety_key()
   };
 
   EventKind kind;

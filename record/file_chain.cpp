@@ -96,8 +96,8 @@ void FileChain::open_session(const Event& event) {
   const SessionOpenedBody body = body_of<SessionOpenedBody>(event);
   if (closed_) throw EventFault(event, "a session is opened after the study was closed");
   if (body.session != static_cast<int>(sessions_.size()) + 1) {
-    throw EventFault(event,
-                     "session " + std::to_string(body.session) + " is not opened in its turn");
+    throw EventFault(event, "session " + std::to_string(body.session) +
+                                " is not opened in its turn [session-order]");
   }
   if (unique_ == UniquePlaces::always) take_place(event, body);
   SessionOnFile& session = sessions_[body.session];
@@ -204,7 +204,8 @@ Signatories::Signatories(const Event& committed) {
   if (!is_signed_by(investigator_,
                     station_statement(commitment.study_id, station.name, station.key),
                     station.certificate)) {
-    throw EventFault(committed, "the investigator did not sign for station " + station.name);
+    throw EventFault(
+        committed, "the investigator did not sign for station " + station.name + " [uncertified]");
   }
   station_ = station.key;
 }
@@ -213,9 +214,10 @@ void Signatories::require(const Event& event) const {
   const bool by_station =
       station_ && event.kind != EventKind::study_unblinded && is_event_signed_by(*station_, event);
   if (by_station || is_event_signed_by(investigator_, event)) return;
-  throw EventFault(event, event.kind == EventKind::study_unblinded
-                              ? "the investigator did not sign the event"
-                              : "neither the station nor the investigator signed the event");
+  throw EventFault(event,
+                   event.kind == EventKind::study_unblinded
+                       ? "the investigator did not sign the event [unsigned-look]"
+                       : "neither the station nor the investigator signed the event [unsigned]");
 }
 
 FileChain checked_file_chain(std::span<const Event> chain) {
@@ -250,7 +252,9 @@ void SessionCheck::add(const Event& event, DerivedRows& rows) {
 
 void SessionCheck::check_opening(const Event& event) const {
   if (event.hash != on_file_.opened.first) {
-    throw EventFault(session_, 0, "the session's first event is not the one on the file's chain");
+    throw EventFault(
+        session_, 0,
+        "the session's first event is not the one on the file's chain [other-session]");
   }
   const SessionOpening opening = body_of<SessionOpening>(event);
   if (opening.study_id != commitment_.study_id || opening.seal != commitment_.seal) {
@@ -275,7 +279,8 @@ void SessionCheck::finish(const DerivedRows& rows) const {
   const SessionState state = rows.sessions.at(session_).state;
   if (!on_file_.closed) {
     if (state == SessionState::open) return;
-    throw EventFault(session_, last, "the session is closed, but not on the file's chain");
+    throw EventFault(session_, last,
+                     "the session is closed, but not on the file's chain [unrecorded-end]");
   }
   const SessionClosedBody& closed = *on_file_.closed;
   if (closed.length != chain_.length()) {
@@ -295,9 +300,10 @@ void SessionCheck::check_keys(const WrappedKeys& stored) const {
   const auto check = [&](const std::optional<Bytes>& key, const Digest& digest, bool erased,
                          const std::string& name, const std::string& short_name) {
     const auto refuse = [&](const std::string& why) { throw EventFault(session_, kNoEvent, why); };
-    if (!key && !erased) refuse(name + " is missing without a withdrawal");
-    if (key && erased) refuse("the participant withdrew, but " + short_name + " is still there");
-    if (key && sha256(*key) != digest) refuse(name + " was altered");
+    if (!key && !erased) refuse(name + " is missing without a withdrawal [missing-key]");
+    if (key && erased)
+      refuse("the participant withdrew, but " + short_name + " is still there [kept-key]");
+    if (key && sha256(*key) != digest) refuse(name + " was altered [altered-key]");
   };
   check(stored.participant, on_file_.opened.key, on_file_.erased_at.has_value(),
         "the participant's key", "the key");

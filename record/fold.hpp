@@ -53,7 +53,7 @@ struct SessionRow {
 };
 
 /// How a trial ended. `voided`: its block was restarted, so that this trial no longer counts,
-/// whatever its state was, and is never presented again.
+/// in any state, and is never presented again.
 enum class TrialState { presented, answered, timed_out, interrupted, voided };
 inline constexpr std::array<std::string_view, 5> kTrialStates = {
     "presented", "answered", "timed-out", "interrupted", "voided"};

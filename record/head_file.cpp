@@ -34,7 +34,7 @@ class LockedHead {
  public:
   /// \param access  O_RDONLY or O_RDWR
   /// \throws FileError if the file cannot be opened, or another program holds the lock for too long
-  LockedHead(const std::filesystem::path& path, int access, std::chrono::milliseconds patience)
+  LockedHead(const std::filesystem::path& path, int access, std::chrono::milliseconds timeout)
       : path_(path) {
     const bool writes = access == O_RDWR;
     if (writes) refuse_link(path);
@@ -42,7 +42,7 @@ class LockedHead {
     if (file_ < 0 && errno == ENOENT) return;
     if (file_ < 0) refuse_with_reason(path, "cannot be opened", errno, "check its permissions");
     try {
-      look(access == O_RDWR ? LOCK_EX : LOCK_SH, patience);
+      look(access == O_RDWR ? LOCK_EX : LOCK_SH, timeout);
     } catch (...) {
       ::close(file_);
       throw;
@@ -88,19 +88,19 @@ class LockedHead {
   }
 
  private:
-  void look(int lock, std::chrono::milliseconds patience) {
+  void look(int lock, std::chrono::milliseconds timeout) {
     struct stat status {};
     if (::fstat(file_, &status) != 0 || !S_ISREG(status.st_mode)) {
       refuse_head(path_, "is not a file; move it away");
     }
-    wait_for(lock, patience);
+    wait_for(lock, timeout);
     // Checked under the lock: the program that held it may have changed the size.
     if (::fstat(file_, &status) == 0) size_ = status.st_size;
   }
 
   /// A suspended program that holds the lock must not block this one for ever.
-  void wait_for(int lock, std::chrono::milliseconds patience) const {
-    const auto end = std::chrono::steady_clock::now() + patience;
+  void wait_for(int lock, std::chrono::milliseconds timeout) const {
+    const auto end = std::chrono::steady_clock::now() + timeout;
     while (::flock(file_, lock | LOCK_NB) != 0) {
       if (errno == EINTR) continue;
       if (errno != EWOULDBLOCK) {
@@ -295,8 +295,8 @@ HeadRecord record_of(const StudyStore& store) {
   return record;
 }
 
-HeadFile::HeadFile(std::filesystem::path path, std::chrono::milliseconds patience)
-    : path_(std::move(path)), patience_(patience) {}
+HeadFile::HeadFile(std::filesystem::path path, std::chrono::milliseconds timeout)
+    : path_(std::move(path)), timeout_(timeout) {}
 
 std::optional<HeadRecord> HeadFile::read(std::span<const PublicKey> signers) const {
   std::optional<HeadReading> found = reading(signers);
@@ -305,7 +305,7 @@ std::optional<HeadRecord> HeadFile::read(std::span<const PublicKey> signers) con
 }
 
 std::optional<HeadReading> HeadFile::reading(std::span<const PublicKey> signers) const {
-  const LockedHead file(path_, O_RDONLY, patience_);
+  const LockedHead file(path_, O_RDONLY, timeout_);
   if (!file.is_there()) return std::nullopt;
   const HeadSlots slots = read_slots(file, signers, path_);
   HeadReading reading{.file = path_, .record = *slots.newest().record, .damage = {}};
@@ -335,7 +335,7 @@ void HeadFile::update(const Signer& signer, const HeadChange& change,
 
 bool HeadFile::overwrite(const Signer& signer, const HeadChange& change,
                          std::span<const PublicKey> signers) const {
-  const LockedHead file(path_, O_RDWR, patience_);
+  const LockedHead file(path_, O_RDWR, timeout_);
   if (!file.is_there()) return false;
   const HeadSlots slots = read_slots(file, signers, path_);
   HeadRecord record = *slots.newest().record;

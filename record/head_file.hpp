@@ -79,9 +79,9 @@ struct HeadReading {
 /// and threads may use one file at a time; a lock serialises their changes.
 class HeadFile {
  public:
-  /// \param patience  how long to wait for another program that holds the lock
+  /// \param timeout  for another program that holds the lock
   explicit HeadFile(std::filesystem::path path,
-                    std::chrono::milliseconds patience = std::chrono::seconds(30));
+                    std::chrono::milliseconds timeout = std::chrono::seconds(30));
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
 
@@ -109,7 +109,7 @@ class HeadFile {
   [[nodiscard]] bool create(const Signer& signer, const HeadChange& change) const;
 
   std::filesystem::path path_;
-  std::chrono::milliseconds patience_;
+  std::chrono::milliseconds timeout_;
 };
 
 /// The head files of one database: `<database>.head` beside it and, if there is a second folder, a
@@ -147,7 +147,7 @@ class HeadFiles {
 /// A head file that a database has, or had.
 struct KnownHead {
   std::filesystem::path file;
-  std::optional<HeadReading> reading;  ///< nothing: the file is gone
+  std::optional<HeadReading> reading;  ///< nothing: the file does not exist
 };
 
 /// The head files beside a database or on record: first the one beside it, then those in the

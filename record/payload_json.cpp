@@ -33,7 +33,7 @@ class BodyWriter final : public BodyIo {
 
   bool has(const Member& /*member*/, bool there) override { return there; }
   void text(const Member& member, std::string& value) override { at(member) = value; }
-  void truth(const Member& member, bool& value) override { at(member) = value; }
+  void boolean(const Member& member, bool& value) override { at(member) = value; }
   void number(const Member& member, double& value) override {
     // JSON has no infinities.
     if (!std::isfinite(value)) {
@@ -120,7 +120,7 @@ class BodyReader final : public BodyIo {
 
   bool has(const Member& member, bool /*there*/) override { return find(member) != nullptr; }
   void text(const Member& member, std::string& value) override { value = text_at(member); }
-  void truth(const Member& member, bool& value) override {
+  void boolean(const Member& member, bool& value) override {
     const Json& found = at(member);
     if (!found.is_boolean()) refuse(member, "is neither true nor false");
     value = found.get<bool>();

@@ -17,9 +17,9 @@ std::size_t interruption_padding(std::int64_t ticks) {
   // A row has 21 values, 14 of them of up to 24 characters; ordinary rows need 330 bytes or less.
   constexpr std::size_t kBytesAThousand = 384'000;
   constexpr std::size_t kBytesBefore = 1024;
-  constexpr std::size_t kUsualThousands = 3;
+  constexpr std::size_t kTypicalThousands = 3;
   const std::size_t thousands = (static_cast<std::size_t>(ticks) + 999) / 1000;
-  return kBytesBefore + kBytesAThousand * std::max(kUsualThousands, thousands);
+  return kBytesBefore + kBytesAThousand * std::max(kTypicalThousands, thousands);
 }
 static_assert(1024 % kSealedUnit == 0 && 384'000 % kSealedUnit == 0);
 

@@ -86,7 +86,7 @@ class SessionRecorder {
   /// \param secret_schedule  JSON of the block's new presentations, sealed
   void block_restarted(std::chrono::nanoseconds at, int block, int first_trial,
                        const std::string& secret_schedule);
-  /// Any other event: one whose body, and perhaps a sealed text beside it, says all.
+  /// Any other event, which consists of a body and perhaps a sealed text.
   /// \throws StoreError also if events of this kind have another body
   template <typename Body>
   void add(std::chrono::nanoseconds at, EventKind kind, const Body& body,
@@ -118,9 +118,9 @@ class SessionRecorder {
   void add_described(std::chrono::nanoseconds at, EventKind kind, DescribeBody describe,
                      std::string body, std::string secret);
   void append(std::chrono::nanoseconds at, Draft draft);
-  /// All or none, one after the other at the same time.
+  /// Appends all or none, in order, with the same time.
   void append_together(std::chrono::nanoseconds at, std::span<Draft> drafts);
-  /// After the presentation's trace, if there is one.
+  /// Appends after the presentation's trace, if there is one.
   void append_with(std::chrono::nanoseconds at, const std::optional<TrialEvidence>& evidence,
                    Draft draft);
   [[nodiscard]] RecordedEvent chained(std::chrono::nanoseconds at, std::int64_t sequence,

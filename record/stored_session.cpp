@@ -12,7 +12,7 @@
 namespace touchtrial::record {
 namespace {
 
-constexpr std::size_t kLongestParticipant = 32;
+constexpr std::size_t kMaxParticipantBytes = 32;
 
 /// Whether a session is the visit after the participant's last one.
 bool is_next_visit(const SessionOpening& opening, const SessionRow& last) {
@@ -64,7 +64,8 @@ void require_match(const Event& event, const SealedTrace* trace) {
   }
   const int trial = body_of<TraceBody>(event).trial;
   if (trace == nullptr || trace->session != event.session || trace->trial != trial) {
-    throw EventFault(event, "the trace of trial " + std::to_string(trial) + " is missing");
+    throw EventFault(event,
+                     "the trace of trial " + std::to_string(trial) + " is missing [missing-trace]");
   }
 }
 
@@ -75,7 +76,7 @@ bool is_participant_id(const std::string& id) {
     return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '+' ||
            c == '-' || c == '_';
   };
-  return !id.empty() && id.size() <= kLongestParticipant && !is_read_as_missing(id) &&
+  return !id.empty() && id.size() <= kMaxParticipantBytes && !is_read_as_missing(id) &&
          !begins_like_formula(id) && std::all_of(id.begin(), id.end(), allowed);
 }
 

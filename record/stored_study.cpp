@@ -151,7 +151,7 @@ void StoredStudy::sign_with(const Signer& signer) {
   const bool is_station = known.station && known.station->key == signer.public_half();
   if (!is_station && known.investigator != signer.public_half()) {
     refuse(known.station ? "is the database of station " + known.station->name +
-                               "; give that station's file, or the study's key"
+                               "; give that station's file, or the study's key [other-station]"
                          : "was merged from several stations' databases; what is recorded in it "
                            "takes the investigator's key, name it with --key");
   }
@@ -189,7 +189,7 @@ void StoredStudy::append_to_file(EventKind kind, std::chrono::nanoseconds at,
   if (last) require_signed(*last);
   const bool is_investigator = signer_->public_half() == commitment().investigator;
   if (kind == EventKind::study_unblinded && !is_investigator) {
-    refuse("unblinding takes the investigator's key; name it with --key");
+    refuse("unblinding takes the investigator's key; name it with --key [needs-key]");
   }
   append(signed_event(next_on_file(last ? &*last : nullptr, kind, at, body, std::move(sealed)),
                       *signer_),

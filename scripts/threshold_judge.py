@@ -1,5 +1,5 @@
-"""Recomputes thresholds from counts of right answers, and their means over people, from what docs/thresholds.md says
-of them. Called by scripts/crosscheck-procedures. No quadrature of the program is used.
+"""Recomputes thresholds from counts of right answers, and their means over people, as defined in docs/thresholds.md.
+Called by scripts/crosscheck-procedures. No quadrature of the program is used.
 """
 
 import argparse, csv, json, math, os, sys
@@ -9,10 +9,10 @@ from scipy import interpolate, optimize, special, stats
 # --- Definitions of docs/thresholds.md ---
 
 WIDTHS = (2.0, 60.0)  # dB, from F = .05 to .95
-USUAL_WIDTH = stats.lognorm(s=0.8, scale=10)
+TYPICAL_WIDTH = stats.lognorm(s=0.8, scale=10)
 LAPSES = (0.0, 0.5)
 ANY_LAPSE = stats.beta(1, 3)
-USUAL_LAPSE = stats.beta(1, 10)
+TYPICAL_LAPSE = stats.beta(1, 10)
 BEYOND = 20.0  # dB by which thresholds are extended on either side, or the range of the levels
 LOSS = stats.chi2.ppf(0.95, 1) / 2
 WIDTH_AT_ONE = {"weibull": 20 * (math.log10(-math.log(0.05)) - math.log10(-math.log(0.95))),
@@ -54,25 +54,25 @@ class Averages:
                 value += right * np.log(guess + (1 - guess - lapse) * up)
             if given > right:
                 value += (given - right) * np.log((1 - guess) * down + lapse * up)
-        most = value.max(axis=(1, 2))
-        likelihood = np.exp(value - most[:, None, None])
+        top = value.max(axis=(1, 2))
+        likelihood = np.exp(value - top[:, None, None])
         any_width_weights = width_weights * width * width ** 0.5  # the nodes are of the logarithm
-        usual_lapse_weights = lapse_weights * USUAL_LAPSE.pdf(lapse)
+        typical_lapse_weights = lapse_weights * TYPICAL_LAPSE.pdf(lapse)
 
         def average(of_width, of_lapse):
-            return interpolate.CubicSpline(self.t, most + np.log((likelihood @ of_lapse) @ of_width))
+            return interpolate.CubicSpline(self.t, top + np.log((likelihood @ of_lapse) @ of_width))
 
         self.any = average(any_width_weights, lapse_weights * ANY_LAPSE.pdf(lapse))
-        self.usual_lapses = average(any_width_weights, usual_lapse_weights)
-        self.usual = average(width_weights * width * USUAL_WIDTH.pdf(width), usual_lapse_weights)
+        self.typical_lapses = average(any_width_weights, typical_lapse_weights)
+        self.typical = average(width_weights * width * TYPICAL_WIDTH.pdf(width), typical_lapse_weights)
 
     def top(self, log):
         peaks = [x for x in log.derivative().roots(extrapolate=False) if np.isfinite(x)]
         return log([self.t[0], self.t[-1], *peaks]).max()
 
     def rise(self):
-        """The loss of log likelihood beyond LOSS for usual observers who feel all levels, or none: the smaller one."""
-        return self.top(self.usual) - LOSS - max(self.usual([self.t[0], self.t[-1]]))
+        """The loss of log likelihood beyond LOSS for typical observers who feel all levels, or none: the smaller one."""
+        return self.top(self.typical) - LOSS - max(self.typical([self.t[0], self.t[-1]]))
 
     def interval(self, log):
         """The first and last threshold with a loss of at most LOSS; infinite at the end of the extended levels."""
@@ -88,23 +88,23 @@ class Averages:
 
     def border(self, number, first, last):
         """The smallest log-likelihood difference that decides a state."""
-        limits = [(log, self.top(log) - LOSS) for log in (self.any, self.usual_lapses)]
+        limits = [(log, self.top(log) - LOSS) for log in (self.any, self.typical_lapses)]
         ends = [abs(log(x) - limit) for log, limit in limits for x in (first, last, self.t[0], self.t[-1])]
-        numbers = [abs(self.usual(number) - self.usual(x)) for x in (first, last)]
+        numbers = [abs(self.typical(number) - self.typical(x)) for x in (first, last)]
         return min(abs(self.rise()), *ends, *numbers)
 
     def likeliest(self, low, high):
-        """The usual observers' threshold between these."""
+        """The typical observers' threshold between these."""
         low, high = max(low, self.t[0]), min(high, self.t[-1])
-        peaks = self.usual.derivative().roots(extrapolate=False)
-        return max([low, high, *peaks[(peaks > low) & (peaks < high)]], key=self.usual)
+        peaks = self.typical.derivative().roots(extrapolate=False)
+        return max([low, high, *peaks[(peaks > low) & (peaks < high)]], key=self.typical)
 
 
 def estimate(counts, levels, guess, shape):
     """A track's number and interval, or its side; its bounds for means; the likelihoods; and the smallest
     log-likelihood difference that decides between two states."""
     averages = Averages(counts, levels, guess, shape)
-    ends, usual_ends = averages.interval(averages.any), averages.interval(averages.usual_lapses)
+    ends, typical_ends = averages.interval(averages.any), averages.interval(averages.typical_lapses)
     number = averages.likeliest(*ends)
     first, last = min(levels), max(levels)
 
@@ -116,7 +116,7 @@ def estimate(counts, levels, guess, shape):
         state = "no"
     else:
         low, high = (end if inside(end) else None for end in ends)
-        state = "above" if max(ends[0], usual_ends[0]) >= last else \
+        state = "above" if max(ends[0], typical_ends[0]) >= last else \
             "below" if ends[1] <= first else "undetermined"
     if state == "above":
         low, high = last, None
@@ -125,7 +125,7 @@ def estimate(counts, levels, guess, shape):
     if not inside(number):
         bounds = (last, math.inf) if number > last else (-math.inf, first)
     else:
-        bounds = (number, number) if state == "no" or any(map(inside, usual_ends)) else (-math.inf, math.inf)
+        bounds = (number, number) if state == "no" or any(map(inside, typical_ends)) else (-math.inf, math.inf)
     return {"level": number if state == "no" else None, "low": low, "high": high, "censored": state,
             "at_least": bounds[0], "at_most": bounds[1], "averages": averages,
             "border": averages.border(number, first, last)}
@@ -141,12 +141,12 @@ class CensoredNormal:
         known = bounds[:, 0] == bounds[:, 1]
         self.known, self.cut, self.m = bounds[known, 0], bounds[~known], known.sum()
         start = self.known.mean(), math.log(max(self.known.std(), 0.1))
-        # From several starts, because tails can make a second slope.
+        # From several starts, because tails can create a second maximum.
         found = [optimize.minimize(lambda at: -self.at(*at), (start[0] + shift, start[1] + grow), method="Nelder-Mead",
                                    options={"xatol": 1e-10, "fatol": 1e-13, "maxiter": 4000, "maxfev": 4000})
                  for shift, grow in ((0, 0), (0, 0.7), (math.exp(start[1]), 0.3), (-math.exp(start[1]), 0.3))]
         best = min(found, key=lambda one: one.fun)
-        self.mean, self.sd, self.most = best.x[0], math.exp(best.x[1]), -best.fun
+        self.mean, self.sd, self.max_log = best.x[0], math.exp(best.x[1]), -best.fun
 
     def at(self, mean, log_sd):
         sd = math.exp(log_sd)
@@ -161,7 +161,7 @@ class CensoredNormal:
         middle = math.log(math.hypot(self.sd, mean - self.mean))
         best = optimize.minimize_scalar(lambda log_sd: -self.at(mean, log_sd), bounds=(middle - 3, middle + 3),
                                         method="bounded", options={"xatol": 1e-10})
-        return 2 * (self.most + best.fun)
+        return 2 * (self.max_log + best.fun)
 
     def interval(self):
         """Ends where the ratio is that of Student's interval of the known values."""
@@ -208,13 +208,13 @@ class Comparison:
         self.other_states += others
         for what, (stated, found) in pairs.items():
             if is_number(stated) and is_number(found):
-                log = ours["averages"].any if what in ("low", "high") else ours["averages"].usual
+                log = ours["averages"].any if what in ("low", "high") else ours["averages"].typical
                 apart = float(abs(log(stated) - log(found)))
                 self.largest[what] = max(self.largest.get(what, (0.0, "")), (apart, name))
                 self.farthest[what] = max(self.farthest.get(what, 0.0), abs(stated - found))
 
-    def tell(self, say, name):
-        say(name, self.n > 0 and not self.other_states and all(d <= TOLERANCE for d, _ in self.largest.values()),
+    def report(self, check, name):
+        check(name, self.n > 0 and not self.other_states and all(d <= TOLERANCE for d, _ in self.largest.values()),
             f"{self.n} tracks, log-likelihoods apart at most: "
             + ", ".join(f"{what} {d:.1e} ({of}; {self.farthest[what]:.1e} dB)" for what, (d, of) in self.largest.items())
             + f"; {self.at_border} states within {TOLERANCE} of a border"
@@ -225,12 +225,12 @@ def is_number(x):
     return x is not None and math.isfinite(x)
 
 
-def check_estimates(say, cases):
+def check_estimates(check, cases):
     comparison = Comparison()
     for i, case in enumerate(cases):
         comparison.add(f"track {i + 1}", case["estimate"],
                        estimate(case["counts"], case["levels"], case["guess"], case["shape"]))
-    comparison.tell(say, "estimates against Gauss-Legendre sums")
+    comparison.report(check, "estimates against Gauss-Legendre sums")
 
 
 # --- The thresholds of an exported study ---
@@ -279,7 +279,7 @@ class Task:
 
 
 def counts_of(folder):
-    """Numbers of right answers and of answers by level for each participant's tracks, including catch trials."""
+    """Numbers of right answers and of all answers by level for each participant's tracks, including catch trials."""
     counts = {}
     for row in table(folder, "tracks.csv"):
         if row["kind"] == "control" or row["track"] in ("", "0") or row["correct"] == "":
@@ -290,12 +290,12 @@ def counts_of(folder):
     return {key: [(level, *pair) for level, pair in sorted(of.items())] for key, of in counts.items()}
 
 
-def check_folder(say, folder, report):
+def check_folder(check, folder, report):
     """Each threshold of thresholds.csv; with a report, the means over people of these."""
     with open(os.path.join(folder, "study_file.json"), encoding="utf-8") as file:
         task = Task(json.load(file))
     if task.section.get("question") == "same-different":
-        return say("thresholds", True, "none: the task is 'same or different'")
+        return check("thresholds", True, "none: the task is 'same or different'")
     counts, comparison, people = counts_of(folder), Comparison(), {}
     for row in table(folder, "thresholds.csv"):
         standard = float(row["standard_value"])
@@ -304,29 +304,29 @@ def check_folder(say, folder, report):
                        estimate(counts[row["participant"], row["track"]], task.levels_of(standard), task.guess, task.shape))
         people.setdefault((row["class"], standard), {}).setdefault(row["participant"], []).append(
             (stated["at_least"], stated["at_most"]))
-    comparison.tell(say, "thresholds of thresholds.csv")
+    comparison.report(check, "thresholds of thresholds.csv")
     if report is not None:
         with open(report, encoding="utf-8") as file:
             for standard in json.load(file)["standards"]:
-                check_mean(say, standard, people[standard["class"], standard["value"]].values())
+                check_mean(check, standard, people[standard["class"], standard["value"]].values())
 
 
-def check_mean(say, standard, people):
-    """Of one of the report's standards; `people` are the bounds of each person's tracks."""
+def check_mean(check, standard, people):
+    """Checks one of the report's standards; `people` are the bounds of each person's tracks."""
     name, stated = f"mean of {standard['standard']}", standard["mean"]
     bounds = [tuple(np.mean(tracks, axis=0)) for tracks in people]
     known = [low for low, high in bounds if low == high]
     if 2 * len(known) < len(bounds):
-        return say(name, stated is None, "more than half are not known: no mean")
+        return check(name, stated is None, "more than half are not known: no mean")
     if len(set(known)) < 2:
-        return say(name, standard["interval"] is None, "fewer than two different thresholds: no interval")
+        return check(name, standard["interval"] is None, "fewer than two different thresholds: no interval")
     ours = CensoredNormal(bounds)
     interval = standard["interval"] or (None, None)
     pairs = [(stated, ours.mean), (standard["sd"], ours.sd * math.sqrt(ours.m / (ours.m - 1))),
              *((open_end if end is None else end, found)  # null in JSON
                for end, open_end, found in zip(interval, (-math.inf, math.inf), ours.interval()))]
     apart = max(0.0 if a == b else abs(a - b) for a, b in pairs)
-    say(name, apart <= MEAN_TOLERANCE_DB,
+    check(name, apart <= MEAN_TOLERANCE_DB,
         f"{len(known)} of {len(bounds)} known; mean, SD and interval within {apart:.1e} dB")
 
 
@@ -337,11 +337,11 @@ def main():
     options = parser.parse_args()
     failed = []
 
-    def say(name, holds, text):
+    def check(name, holds, text):
         print(f"{'ok  ' if holds else 'FAIL'}  {name}: {text}", flush=True)
         failed.extend([] if holds else [name])
 
-    check_folder(say, options.folder, options.report)
+    check_folder(check, options.folder, options.report)
     sys.exit(1 if failed else 0)
 
 

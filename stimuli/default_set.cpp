@@ -80,9 +80,8 @@ std::vector<StimulusEntry> chosen_entries(const StimuliChoice& choice) {
   std::vector<StimulusEntry> entries;
   for (const StimulusRecipe& recipe : stimulus_recipes()) {
     if (choice.kind && recipe.kind != *choice.kind) continue;
-    const bool one_is_enough = recipe.kind == StimulusKind::flat;
-    const int wanted =
-        one_is_enough ? 1 : choice.exemplars.value_or(shipped_exemplars(recipe.kind));
+    const bool is_single = recipe.kind == StimulusKind::flat;
+    const int wanted = is_single ? 1 : choice.exemplars.value_or(shipped_exemplars(recipe.kind));
     for (int exemplar = 1; exemplar <= wanted; ++exemplar) {
       StimulusEntry& entry = entries.emplace_back();
       entry.label = recipe.label;

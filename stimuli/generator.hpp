@@ -18,9 +18,9 @@ inline constexpr std::uint64_t kDefaultStimuliSeed = 31875542;
 inline constexpr int kDefaultStimulusSizePx = 500;
 inline constexpr int kMinStimulusSizePx = 16;
 inline constexpr int kMaxStimulusSizePx = 4096;
-/// The largest number of exemplars of a label.
+/// Maximum number of exemplars of a label.
 inline constexpr int kMaxStimulusExemplars = 1000;
-/// Increased at every change of the pictures that a seed gives.
+/// Incremented whenever the pictures of a given seed change.
 inline constexpr int kGeneratorVersion = 2;
 
 /// The use of a picture. An object lies on a plain ground; all others fill the picture.

@@ -156,7 +156,7 @@ Plane<double> lit(const Relief& relief, const Lamp& lamp) {
       const double direct =
           std::max(0.0, dot(normal_at(relief.height_px, y, x), towards)) * (1.0 - shadow.at(y, x));
       const double depth = (surroundings.at(y, x) - relief.height_px.at(y, x)) / lamp.hollow_px;
-      const double open = std::clamp(1.0 - 1.2 * depth, lamp.least_open, 1.3);
+      const double open = std::clamp(1.0 - 1.2 * depth, lamp.min_ambient, 1.3);
       light.at(y, x) =
           relief.albedo.at(y, x) * (lamp.ambient * open + (1.0 - lamp.ambient) * direct);
     }

@@ -59,7 +59,7 @@ struct Lamp {
   double shadow_reach_px = 40.0;       ///< length of the longest shadow
   double shadow_blur_px = 1.5;         ///< depth below the shadow's edge at which it is full
   double hollow_px = 7.0;              ///< size of the hollows that the ambient light misses
-  double least_open = 0.15;            ///< share of the ambient light that the deepest hollow gets
+  double min_ambient = 0.15;           ///< share of the ambient light that the deepest hollow gets
 };
 
 /// The lamp of a specimen: turned by up to about half a radian, and higher or lower.

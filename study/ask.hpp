@@ -5,6 +5,7 @@
 
 #include "core/answer.hpp"
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <variant>
@@ -36,6 +37,9 @@ struct HandRange {
 /// Height above the plane at which the stylus counts as lifted, mm.
 inline constexpr double kLiftedMm = 1.0;
 
+/// Time in which a plane's force fades to zero when its exploration ends.
+inline constexpr std::chrono::milliseconds kFade{100};
+
 /// Exploration for as long as the participant wants, up to the study's explore_limit_s. If the
 /// trial has one plane, the participant may feel it again before answering.
 struct Free {};
@@ -48,10 +52,14 @@ struct InContact {
   HandRange range{};
 };
 
-/// A recorded movement, which the device plays back while the hand is off it.
+/// A circular stroke in the plane, whose lateral forces the device plays while the hand is off it.
 struct Played {
   double seconds = 2.5;  ///< > 0
 };
+
+// The speed of that stroke, which the instructions ask for, and its load.
+inline constexpr double kPlayedMmS = 100.0;
+inline constexpr double kPlayedLoadN = 0.7;
 
 using Exploring = std::variant<Free, InContact, Played>;
 

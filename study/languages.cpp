@@ -140,7 +140,7 @@ Language parse_language(std::string_view text, const std::string& source) {
   Language language;
   language.code = read_plain_name(file.at("language"));
   language.name = read_line(file.at("name"), kMaxTextBytes);
-  language.draft = file.at("draft").truth();
+  language.draft = file.at("draft").boolean();
   language.texts = read_sections(file, Extent::all);
   return language;
 }

@@ -45,7 +45,7 @@ std::vector<std::string> rendering_warnings(const engine::RenderingOptions& rend
   if (gains.over_budget) {
     warnings.push_back("/rendering/gains: the explicit gains exceed the stiffness budget of " +
                        number_text(rendering.texture_stiffness_n_per_mm) +
-                       " N/mm, at which devices may buzz; lower them or set \"budget\"");
+                       " N/mm, so devices may vibrate; lower them or set \"budget\"");
   }
   const auto is_nothing = [](const engine::Gains& of_field) { return of_field == engine::Gains{}; };
   if (!rendering.gains && std::ranges::all_of(gains.of_field, is_nothing)) {
@@ -82,8 +82,7 @@ std::vector<std::string> validity_warnings(const Study& study) {
   warn_of_time("contact_s", rule.min_contact_s);
   if (rule.min_path_mm > kMaxStrokeMmS * limit_s) {
     warn("path_mm", number_text(rule.min_path_mm) +
-                        " mm, more than the fastest stroke that participants are asked for covers "
-                        "in " +
+                        " mm, more than the fastest stroke of the instructions covers in " +
                         number_text(limit_s) + " s");
   }
   const double max_n = std::min(rule.max_median_n, study.rendering.max_force_n);

@@ -52,7 +52,7 @@ class RunCounter {
 
   [[nodiscard]] int left(int symbol) const { return left_[static_cast<std::size_t>(symbol)]; }
   [[nodiscard]] int symbols() const { return static_cast<int>(left_.size()); }
-  [[nodiscard]] int longest(int copies) const { return std::min(copies, max_run_); }
+  [[nodiscard]] int max_length(int copies) const { return std::min(copies, max_run_); }
 
   void take(int symbol, int copies) {
     int& left = left_[static_cast<std::size_t>(symbol)];
@@ -91,7 +91,7 @@ class RunCounter {
 
   BigCount after_any_run(int copies) {
     BigCount sum = 0;
-    for (int run = 1; run <= longest(copies); ++run) {
+    for (int run = 1; run <= max_length(copies); ++run) {
       move(copies, copies - run);
       sum += count(copies - run);
       move(copies - run, copies);
@@ -106,15 +106,15 @@ class RunCounter {
 };
 
 /// The maximum number of copies of the preceding symbol that may come first, >= 0.
-int longest_continuation(const RunCounter& counter, int max_run, RunBefore before) {
+int max_continuation(const RunCounter& counter, int max_run, RunBefore before) {
   return std::min(max_run - before.length, counter.left(before.symbol));
 }
 
 BigCount count_all(RunCounter& counter, int max_run, RunBefore before) {
   if (before.symbol < 0) return counter.completions(-1);
   BigCount total = 0;
-  const int longest = longest_continuation(counter, max_run, before);
-  for (int run = 0; run <= longest; ++run) {
+  const int max_length = max_continuation(counter, max_run, before);
+  for (int run = 0; run <= max_length; ++run) {
     counter.take(before.symbol, run);
     total += counter.completions(before.symbol);
     counter.take(before.symbol, -run);
@@ -146,8 +146,8 @@ class Descent {
   int append_next_run(int last) {
     for (int symbol = 0; symbol < counter_.symbols(); ++symbol) {
       if (symbol == last) continue;
-      const int longest = counter_.longest(counter_.left(symbol));
-      for (int run = 1; run <= longest; ++run) {
+      const int max_length = counter_.max_length(counter_.left(symbol));
+      for (int run = 1; run <= max_length; ++run) {
         if (append_if_next(symbol, run)) return symbol;
       }
     }
@@ -175,18 +175,18 @@ std::vector<BigCount> sequences_below(int symbols, int length, int max_run) {
 }
 
 /// Draws the length of the next run, in proportion to the number of sequences that can follow it.
-int draw_run(const std::vector<BigCount>& below, int left, int shortest, int longest,
+int draw_run(const std::vector<BigCount>& below, int left, int min_length, int max_length,
              RandomStream& random) {
   // left - r symbols follow a run of r. The numbers begin with the shortest run.
   const auto at = [&below](int length) -> const BigCount& {
     return below[static_cast<std::size_t>(length)];
   };
-  const BigCount& top = at(left - shortest + 1);
-  const BigCount number = draw_below(BigCount(top - at(left - longest)), random);
-  for (int run = shortest; run < longest; ++run) {
+  const BigCount& top = at(left - min_length + 1);
+  const BigCount number = draw_below(BigCount(top - at(left - max_length)), random);
+  for (int run = min_length; run < max_length; ++run) {
     if (number < top - at(left - run)) return run;
   }
-  return longest;
+  return max_length;
 }
 
 // De Bruijn cycles.
@@ -294,8 +294,8 @@ std::optional<std::vector<int>> draw_limited_order(const std::vector<int>& count
   if (total == 0) return std::nullopt;
   Descent descent(counter, draw_below(total, random));
   if (before.symbol >= 0) {
-    const int longest = longest_continuation(counter, max_run, before);
-    for (int run = 0; run <= longest; ++run) {
+    const int max_length = max_continuation(counter, max_run, before);
+    for (int run = 0; run <= max_length; ++run) {
       if (descent.append_if_next(before.symbol, run)) break;
     }
   }

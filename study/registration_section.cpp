@@ -33,7 +33,7 @@ constexpr TextRule kDeviation{
 /// Describes a list of deviation codes.
 void describe_codes(ObjectIo& io, std::string_view key, const TextRule& rule, bool is_written,
                     std::vector<std::string>& codes, std::string_view meaning) {
-  io.list(key, codes, {.most = kMaxCodes},
+  io.list(key, codes, {.max = kMaxCodes},
           {.meaning = meaning, .written = is_written, .range = "up to 64 codes"},
           [&rule](ValueIo& value, std::string& code) { value.text(code, rule); });
 }
@@ -43,33 +43,33 @@ void describe_exclusion_rules(ObjectIo& io, ExclusionRules& rules) {
   std::vector<std::string> programs(rules.deviations.begin(), own);
   std::vector<std::string> laboratory(own, rules.deviations.end());
   describe_codes(io, "deviations", kDeviation, true, programs,
-                 "a session with one of these [deviations](data-dictionary.md) is left out; a code "
-                 "that the program does not record is refused");
+                 "a session with one of these [deviations](data-dictionary.md) is excluded; only "
+                 "codes that the program records are accepted");
   describe_codes(io, "own_deviations", kLine<kMaxCodeBytes>, !laboratory.empty(), laboratory,
-                 "the same for codes of your own, which experimenters enter during a session or "
-                 "with `note --deviation`");
+                 "likewise for custom codes, which experimenters enter during a session or with "
+                 "`note --deviation`");
   rules.deviations = programs;
   rules.deviations.insert(rules.deviations.end(), laboratory.begin(), laboratory.end());
   std::stable_partition(rules.deviations.begin(), rules.deviations.end(), is_deviation_code);
   io.number("invalid_trials", rules.invalid_trials, {.low = 0.0, .high = 1.0},
-            {"a session with a larger share of trials that break the validity rule is left out"});
-  io.optional("missed_catch", rules.missed_catch,
-              {.meaning = "a session with more catch trials without the right answer is left out; "
-                          "of protocols whose catch trials have a right answer (thresholds). "
-                          "Nobody sees that before unblinding, so the report itself leaves it out "
-                          "of the registered question, excluded or not",
-               .range = "0 to 1,000, below the catch trials of a session"},
-              [](ValueIo& value, int& trials) { value.integer(trials, 0, 1000); });
+            {"a session with a larger share of invalid trials is excluded"});
+  io.optional(
+      "missed_catch", rules.missed_catch,
+      {.meaning = "a session with more wrong catch trials is excluded, in protocols whose catch "
+                  "trials have a right answer (thresholds). This is known only after unblinding, "
+                  "so the report excludes it from the registered question automatically",
+       .range = "0 to 1,000, below the catch trials of a session"},
+      [](ValueIo& value, int& trials) { value.integer(trials, 0, 1000); });
 }
 
 void describe_standard(ObjectIo& io, RegisteredStandard& standard) {
   std::optional<std::string> label;
   if (!standard.label.empty()) label = standard.label;
-  io.optional("class", label, {"label of a class; may be left out if the study has one"},
+  io.optional("class", label, {"label of a class; can be omitted if the study has only one"},
               [](ValueIo& value, std::string& text) { value.text(text, kPlainName); });
   standard.label = label.value_or("");
   io.number("value", standard.value, {-200.0, 200.0},
-            {"one of the study's `standards`; may be left out if there is one"});
+            {"one of the study's `standards`; can be omitted if there is only one"});
 }
 
 constexpr std::string_view kAnalysisKeys[] = {
@@ -117,7 +117,8 @@ void check_keys(const JsonObject& object, Estimand estimand) {
 }
 
 /// The default analysis of an estimand. Sign flips test against 0, so a margin needs a t test.
-RegisteredAnalysis usual_analysis(Estimand estimand, bool has_margin, RegisteredTest usual_test) {
+RegisteredAnalysis default_analysis(Estimand estimand, bool has_margin,
+                                    RegisteredTest default_test) {
   RegisteredAnalysis analysis;
   analysis.estimand = estimand;
   if (estimand == Estimand::mean_accuracy) return analysis;
@@ -126,35 +127,35 @@ RegisteredAnalysis usual_analysis(Estimand estimand, bool has_margin, Registered
     return analysis;
   }
   analysis.test =
-      has_margin && usual_test == RegisteredTest::sign_flip ? RegisteredTest::t : usual_test;
+      has_margin && default_test == RegisteredTest::sign_flip ? RegisteredTest::t : default_test;
   analysis.one_sided = has_margin;
   return analysis;
 }
 
 /// Describes a number that has one key for accuracies and another for thresholds.
 void describe_size(ObjectIo& io, std::string_view key, std::optional<double>& size,
-                   const NumberRange& range, bool is_here, const About& about) {
+                   const NumberRange& range, bool is_here, const KeyInfo& info) {
   std::optional<double> own = is_here ? size : std::nullopt;
-  io.number(key, own, range, about);
+  io.number(key, own, range, info);
   if (own) size = own;
 }
 
 void describe_sizes(ObjectIo& io, RegisteredAnalysis& analysis) {
   const bool of_thresholds = is_of_thresholds(analysis.estimand);
   describe_size(io, "smallest_effect", analysis.smallest_effect, kShare, !of_thresholds,
-                {"smallest value worth having: an accuracy above chance (0.4: 40 % right), or a "
+                {"smallest effect of interest: an accuracy above chance (0.4: 40 % right), or a "
                  "difference (0.07: 7 points)"});
-  describe_size(io, "margin", analysis.margin, kShare, !of_thresholds,
-                {"of a difference, in place of `smallest_effect`: the first method is as good as "
-                 "the second if it is worse by less than this "
-                 "([non-inferiority](statistics.md#as-good-by-a-margin)); one-sided, by `t` or "
-                 "`crossover`"});
+  describe_size(
+      io, "margin", analysis.margin, kShare, !of_thresholds,
+      {"margin of a difference, instead of `smallest_effect`: the first method is as good as the "
+       "second if it is worse by less than this "
+       "([non-inferiority](statistics.md#as-good-by-a-margin)); one-sided, by `t` or `crossover`"});
   describe_size(io, "smallest_effect_db", analysis.smallest_effect, kDecibels, of_thresholds,
-                {"of `threshold-difference`: smallest difference worth having"});
+                {"for `threshold-difference`: smallest difference of interest"});
   describe_size(io, "margin_db", analysis.margin, kDecibels, of_thresholds,
-                {.meaning = "of `threshold-equality`, which needs it: the thresholds are the same "
-                            "if every difference of two is less, either way",
-                 .otherwise = "none"});
+                {.meaning = "required for `threshold-equality`: thresholds are equal if every "
+                            "pairwise difference is smaller than this, in either direction",
+                 .default_text = "none"});
 }
 
 /// Which test, at how many looks.
@@ -166,16 +167,15 @@ void describe_test(ObjectIo& io, RegisteredAnalysis& analysis) {
                         "test](statistics.md#two-methods-in-blocks) of two methods in "
                         "blocks",
              .written = has_test,
-             .otherwise = "`t`; for a difference `crossover` if two methods are in blocks, else "
-                          "`sign-flip`, or `t` with a margin"});
+             .default_text = "`t`; for a difference `crossover` if two methods are in blocks, else "
+                             "`sign-flip`, or `t` with a margin"});
   io.choice("sides", analysis.one_sided, kSidesNames,
-            {.meaning = "one-sided, against larger values, or two-sided",
+            {.meaning = "one-sided, for larger values, or two-sided",
              .written = has_test && analysis.estimand != Estimand::threshold_equality,
-             .otherwise = "`one`; `two` for a difference without margin"});
-  io.list("looks", analysis.looks, {.most = 20},
-          {.meaning = "numbers of participants at which the answer to the registered question is "
-                      "looked at before the end (`unblind --interim`), ascending, below "
-                      "`participants`",
+             .default_text = "`one`; `two` for a difference without margin"});
+  io.list("looks", analysis.looks, {.max = 20},
+          {.meaning = "numbers of participants at which an interim analysis of the registered "
+                      "question is allowed (`unblind --interim`), ascending, below `participants`",
            .written = has_test},
           [](ValueIo& value, int& look) { value.integer(look, 2, kMaxParticipants); });
   io.rule([&analysis](const JsonValue& place, const JsonObject& /*object*/) {
@@ -190,18 +190,18 @@ void describe_test(ObjectIo& io, RegisteredAnalysis& analysis) {
 
 void describe_analysis(ObjectIo& io, RegisteredAnalysis& analysis) {
   const bool of_thresholds = is_of_thresholds(analysis.estimand);
-  io.list("methods", analysis.methods, {.most = 2},
-          {.meaning = "of a difference: the first less the second",
+  io.list("methods", analysis.methods, {.max = 2},
+          {.meaning = "for a difference: the first minus the second",
            .written = !of_thresholds,
-           .otherwise = "the study's two",
+           .default_text = "the study's two",
            .range = "none or two labels"},
           [](ValueIo& value, std::string& label) { value.text(label, kPlainName); });
-  io.list("standards", analysis.standards, {.most = 64},
-          {.meaning = "of thresholds: a difference is the first less the second. `class` (label) "
-                      "or `value` (one of the study's `standards`) may be left out where the "
-                      "study has one",
+  io.list("standards", analysis.standards, {.max = 64},
+          {.meaning =
+               "for thresholds: a difference is the first minus the second. `class` (label) or "
+               "`value` (one of the study's `standards`) can be omitted if the study has only one",
            .written = of_thresholds,
-           .otherwise = "all of the study",
+           .default_text = "all of the study",
            .range = "`class` and `value`"},
           [](ValueIo& value, RegisteredStandard& one) { value.part(one, describe_standard); });
   io.number("alpha", analysis.alpha, {.low = kMinAlpha, .high = 0.5},
@@ -210,19 +210,19 @@ void describe_analysis(ObjectIo& io, RegisteredAnalysis& analysis) {
   describe_test(io, analysis);
   io.optional(
       "exclusion_rules", analysis.exclusion_rules,
-      {"all rules that leave a session out, besides that it was stopped or its "
-       "participant withdrew"},
+      {"rules that exclude a session, in addition to sessions that were stopped and participants "
+       "who withdrew"},
       [](ValueIo& value, ExclusionRules& rules) { value.part(rules, describe_exclusion_rules); });
   io.choice("visits", analysis.visits, kRegisteredVisitsNames,
-            {.meaning = "in a study with several visits: those that enter the analysis. `all`: a "
-                        "participant's accuracy is that of the trials of all visits together. With "
-                        "`first`, whoever had the first visit counts",
+            {.meaning = "in a study with several visits: the visits that enter the analysis. "
+                        "`all`: accuracy is computed over all visits; `first`: every participant "
+                        "with a complete first visit counts",
              .if_changed = true});
 }
 
 }  // namespace
 
-RegisteredTest usual_test_of(const Study& study) {
+RegisteredTest default_test_of(const Study& study) {
   return study.presented_methods() == 2 && study.trials.blocks == Blocks::by_method
              ? RegisteredTest::crossover
              : RegisteredTest::sign_flip;
@@ -240,7 +240,7 @@ std::string_view name_of(Spending spending) {
   return name_in(kSpendingNames, spending);
 }
 
-void describe(ObjectIo& io, Registration& registration, RegisteredTest usual_test) {
+void describe(ObjectIo& io, Registration& registration, RegisteredTest default_test) {
   io.text("hypothesis", registration.hypothesis, kStatement,
           {"the expected result, stated so that data can contradict it"});
   io.integer("participants", registration.participants, 0, kMaxParticipants,
@@ -248,20 +248,17 @@ void describe(ObjectIo& io, Registration& registration, RegisteredTest usual_tes
   io.text("stopping_rule", registration.stopping_rule, kStatement, {"when data collection ends"});
   io.text("exclusions", registration.exclusions, kStatement,
           {"who is excluded, in addition to the validity rule of trials"});
-  io.text("primary_test", registration.primary_test, kStatement,
-          {"the test that decides on the hypothesis"});
+  io.text("primary_test", registration.primary_test, kStatement, {"the test of the hypothesis"});
   std::optional<Estimand> estimand;
   if (registration.analysis) estimand = registration.analysis->estimand;
-  io.optional(
-      "estimand", estimand,
-      {.meaning = "what is estimated: the mean over participants of the share of right answers, "
-                  "against chance, or of the accuracy with one method less that with another; or "
-                  "[of thresholds](thresholds.md#the-registered-question) the mean at one "
-                  "standard, the difference of two, or the equality of two or more. A protocol's "
-                  "report answers some of them, and a study cannot register another; ratings have "
-                  "none",
-       .otherwise = "none"},
-      [](ValueIo& value, Estimand& one) { value.choice(one, kEstimandNames); });
+  io.optional("estimand", estimand,
+              {.meaning = "the estimated quantity: the mean accuracy over participants, against "
+                          "chance; the mean difference between two methods; or, for "
+                          "[thresholds](thresholds.md#the-registered-question), the mean at one "
+                          "standard, the difference of two standards, or the equality of two or "
+                          "more. Each protocol supports some of these; ratings support none",
+               .default_text = "none"},
+              [](ValueIo& value, Estimand& one) { value.choice(one, kEstimandNames); });
   io.rule([&](const JsonValue& /*place*/, const JsonObject& object) {
     if (!estimand) {
       return refuse_keys(object, kAnalysisKeys,
@@ -269,22 +266,22 @@ void describe(ObjectIo& io, Registration& registration, RegisteredTest usual_tes
     }
     check_keys(object, *estimand);
     registration.analysis =
-        usual_analysis(*estimand, object.find("margin").has_value(), usual_test);
+        default_analysis(*estimand, object.find("margin").has_value(), default_test);
   });
   RegisteredAnalysis none;
   describe_analysis(io, registration.analysis ? *registration.analysis : none);
   io.integer("safety_record_years", registration.safety_record_years, 0, 100,
-             {"years after a session that its safety record is kept when the participant's data "
-              "are erased (`withdraw --erase`); in clear in every database"});
+             {"years for which the safety record of a session is kept if the participant's data "
+              "are erased (`withdraw --erase`); unencrypted in every database"});
 }
 
 nlohmann::json to_json(const Registration& registration) {
   Registration copy = registration;
-  Registration usual;
-  usual.analysis.emplace();
+  Registration defaults;
+  defaults.analysis.emplace();
   nlohmann::json text =
       written_section([&](ObjectIo& io) { describe(io, copy, RegisteredTest::t); },
-                      [&](ObjectIo& io) { describe(io, usual, RegisteredTest::t); });
+                      [&](ObjectIo& io) { describe(io, defaults, RegisteredTest::t); });
   if (!registration.analysis) {
     for (const std::string_view key : kAnalysisKeys) text.erase(std::string(key));
   }

@@ -30,24 +30,23 @@ std::string threshold_words(const RegisteredAnalysis& analysis) {
     case Estimand::mean_threshold:
       return mean + (standards.empty() ? "" : ", standard " + standards.front());
     case Estimand::threshold_difference:
-      if (standards.empty()) return mean + " at the first standard less that at the second";
+      if (standards.empty()) return mean + " at the first standard minus that at the second";
       return mean + ", standard " + standards.front() + " less standard " + standards.back();
     default:
       break;
   }
   return "equality of the thresholds of " +
          (standards.empty() ? "all standards" : "the standards " + listed(standards, " and ")) +
-         ": means over participants of all differences of two";
+         ": means over participants of all pairwise differences";
 }
 
 std::string name_in_words(RegisteredTest test) {
   using enum RegisteredTest;
   static constexpr auto kNames = std::to_array<Named<RegisteredTest>>(
       {{"exact sign flips over participants", sign_flip},
-       {"period-adjusted t test over participants (period differences compared between the "
-        "two "
-        "orders of methods), checked by a permutation of orders within the blocks in which "
-        "they were dealt",
+       {"period-adjusted t test over participants (period differences compared between the two "
+        "orders of methods), checked by a permutation of orders within the blocks in which they "
+        "were assigned",
         crossover},
        {"Student's t test over participants", t}});
   return std::string(name_in(kNames, test));
@@ -58,8 +57,8 @@ Field margin_field(const RegisteredAnalysis& analysis) {
   if (is_of_thresholds(analysis.estimand)) {
     return {"margin", "the same if every difference is less than " + number_text(*analysis.margin) +
                           " dB either way; decided by the " + level +
-                          " intervals; nothing follows if more than half of the participants have "
-                          "no threshold at one of the standards"};
+                          " intervals; no conclusion is drawn if more than half of the "
+                          "participants have no threshold at one of the standards"};
   }
   return {"margin", "as good if worse by less than " + per_cent_text(*analysis.margin) +
                         " points; decided by the " + level +
@@ -71,12 +70,12 @@ Field margin_field(const RegisteredAnalysis& analysis) {
 std::string estimand_words(const RegisteredAnalysis& analysis) {
   if (is_of_thresholds(analysis.estimand)) return threshold_words(analysis);
   if (analysis.estimand == Estimand::mean_accuracy) {
-    return "mean over participants of the share of right answers, against chance";
+    return "mean over participants of the proportion of right answers, against chance";
   }
   const std::string of =
       analysis.methods.empty()
-          ? " with the first method less that with the second"
-          : " with " + analysis.methods[0] + " less that with " + analysis.methods[1];
+          ? " with the first method minus that with the second"
+          : " with " + analysis.methods[0] + " minus that with " + analysis.methods[1];
   return "mean over participants of the accuracy" + of;
 }
 
@@ -106,9 +105,9 @@ std::string rules_words(const ExclusionRules& rules) {
   if (rules.missed_catch) {
     words.push_back("more than " + counted(*rules.missed_catch, "missed catch trial"));
   }
-  if (words.empty()) return "none, besides sessions stopped early and participants who withdrew";
+  if (words.empty()) return "none, except sessions stopped early and participants who withdrew";
   return "a session with " + listed(words, " or ") +
-         "; besides sessions stopped early and participants who withdrew";
+         "; in addition, sessions stopped early and participants who withdrew";
 }
 
 std::pair<std::string, std::string> size_field(const RegisteredAnalysis& analysis) {

@@ -112,12 +112,25 @@ std::string texture_words(const ExtractionOptions& method) {
           "{1} grey levels",
           2 * method.radius + 1, number_text(method.threshold_grey));
     case edge:
-      return fmt::format("norm of the Sobel gradient over {}, 127 grey levels at most",
+      return fmt::format("norm of the Sobel gradient divided by {}, at most 127 grey levels",
                          number_text(method.divisor));
     case luminance:
       return "luminance (grey level less 128)";
   }
   return {};
+}
+
+constexpr const char* kScrambled = "phase-scrambled control (same spectrum, random phases) of ";
+
+/// The method before a control of which it is; null for other methods, and if it is not presented.
+const StudyMethod* original_of(const StudyMethod& control, std::span<const StudyMethod> methods) {
+  if (control.control == engine::Control::none) return nullptr;
+  ExtractionOptions wanted = control;
+  wanted.control = engine::Control::none;
+  const auto found = std::ranges::find_if(methods, [&wanted](const StudyMethod& one) {
+    return static_cast<const ExtractionOptions&>(one) == wanted;
+  });
+  return found == methods.end() ? nullptr : &*found;
 }
 
 std::string gain_list(const engine::Gains& gains, engine::ModelKind model) {
@@ -132,8 +145,7 @@ std::string gain_list(const engine::Gains& gains, engine::ModelKind model) {
 
 std::string words_of(const ExtractionOptions& method) {
   const bool scrambled = method.control == engine::Control::phase_scrambled;
-  return (scrambled ? "phase-scrambled control (same spectrum, random phases) of the " : "") +
-         texture_words(method);
+  return (scrambled ? std::string(kScrambled) + "the " : "") + texture_words(method);
 }
 
 SettingFields fields_of_methods(const Study& study) {
@@ -147,7 +159,10 @@ SettingFields fields_of_methods(const Study& study) {
   }
   SettingFields fields;
   for (const StudyMethod& method : presented) {
-    fields.emplace_back(method.label, words_of(method));
+    const StudyMethod* const original = original_of(method, presented);
+    fields.emplace_back(method.label, original == nullptr
+                                          ? words_of(method)
+                                          : kScrambled + in_quotes(original->label));
   }
   return fields;
 }
@@ -162,8 +177,9 @@ std::string force_words(const RenderingOptions& rendering) {
   const std::string limit = ", limited to " + number_text(rendering.max_force_n) + " N in all";
   if (rendering.model == engine::ModelKind::surface) {
     return "gradient of one potential (model \"surface\"): k e along the normal and −k e α ∇h "
-           "along the plane, with e the depth plus the height α h and h the cubic spline through "
-           "the texture" +
+           "along the plane, with k the wall's stiffness, e the depth plus the height α h and h "
+           "the "
+           "cubic spline through the texture" +
            (rendering.friction > 0.0
                 ? ", with bristle friction of coefficient " + number_text(rendering.friction)
                 : std::string(", without friction")) +

@@ -53,7 +53,7 @@ void describe_tasks(ObjectIo& io, Study& study) {
                 "belongs to the protocol " + std::string(one->name) +
                     "; remove it, or choose that protocol");
     io.member(one->section, {}, false, [&](ValueIo& value) {
-      value.own(
+      value.custom(
           one->section_schema == nullptr ? R"({"type": "object"})" : one->section_schema(),
           [&study](const JsonValue& place) { study.task = study.protocol->read(place); },
           [] { return "{}"; });
@@ -151,26 +151,27 @@ void check_visits(const JsonValue& place, const Study& study) {
 void describe_plans(ObjectIo& io, Study& study) {
   const auto describe_plan = [](ObjectIo& keys, auto& plan) { describe(keys, plan); };
   io.part("trials", study.trials, {"the trials of a participant, see below"}, describe_plan);
-  io.part(
-      "practice", study.practice,
-      {.meaning = "textures on which participants learn the task, see below", .otherwise = "none"},
-      describe_plan);
-  io.part("session", study.session, {"the other parts of a session with a person, see below"},
+  io.part("practice", study.practice,
+          {.meaning = "textures on which participants learn the task, see below",
+           .default_text = "none"},
+          describe_plan);
+  io.part("session", study.session,
+          {"texts, questions and other settings of sessions with people, see below"},
           describe_plan);
   io.part("visits", study.visits,
-          {.meaning = "how often each participant comes, see below", .otherwise = "one visit"},
+          {.meaning = "visits of each participant, see below", .default_text = "one visit"},
           describe_plan);
-  io.part("groups", study.groups,
-          {.meaning = "into which participants are dealt, see below", .otherwise = "none"},
-          describe_plan);
+  io.part(
+      "groups", study.groups,
+      {.meaning = "groups to which participants are assigned, see below", .default_text = "none"},
+      describe_plan);
   io.member("registration",
-            {.meaning = "what is deposited before the first participant, see below",
-             .otherwise = "empty"},
-            true, [&study](ValueIo& value) {
+            {.meaning = "content of the preregistration, see below", .default_text = "empty"}, true,
+            [&study](ValueIo& value) {
               value.object([&study](ObjectIo& keys) {
                 const bool has_methods = !study.methods.empty();
                 describe(keys, study.registration,
-                         has_methods ? usual_test_of(study) : RegisteredTest::t);
+                         has_methods ? default_test_of(study) : RegisteredTest::t);
               });
             });
 }
@@ -214,12 +215,14 @@ void describe_study(ObjectIo& io, Study& study) {
   describe_plans(io, study);
   io.choice("blinding", study.double_blind, kBlindingNames,
             {"`double`: neither participant nor experimenter knows what is presented; "
-             "`participant`: the experimenter sets something by hand, and may know. It is stated, "
-             "and changes nothing that the program shows"});
-  io.member("seed",
-            {.meaning = "decides simulations and control textures; never what people get",
-             .range = "0 to 2^53"},
-            true, [&study](ValueIo& value) { value.integer(study.seed, 0, kMaxSeed); });
+             "`participant`: the experimenter sets something by hand and may know what is "
+             "presented. This is reported, and does not affect what the program shows"});
+  io.member(
+      "seed",
+      {.meaning =
+           "seed of simulations and control textures; does not affect the schedules of people",
+       .range = "0 to 2^53"},
+      true, [&study](ValueIo& value) { value.integer(study.seed, 0, kMaxSeed); });
 }
 
 Study read_study(const JsonValue& place) {
@@ -295,13 +298,13 @@ bool Study::enters_analysis(int visit) const {
 }
 
 std::string study_schema() {
-  Study usual;
-  usual.registration.analysis.emplace();
+  Study defaults;
+  defaults.registration.analysis.emplace();
   return annotated_schema(
       "Touchtrial study",
       "What is presented, how it is rendered, and in which trials. docs/study-file.md explains "
       "every key.",
-      "", [&usual](ObjectIo& io) { describe_study(io, usual); });
+      "", [&defaults](ObjectIo& io) { describe_study(io, defaults); });
 }
 
 Study parse_study(std::string_view text, const std::filesystem::path& folder,

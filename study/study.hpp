@@ -154,7 +154,7 @@ struct Study {
 
 /// The default test of a difference between methods: crossover if two methods are presented one
 /// after the other, else sign flips.
-[[nodiscard]] RegisteredTest usual_test_of(const Study& study);
+[[nodiscard]] RegisteredTest default_test_of(const Study& study);
 
 /// Reads a study file strictly: refuses unknown keys, wrong types and impossible values.
 /// \throws StudyError with the file, the JSON pointer, and the nearest known key or value

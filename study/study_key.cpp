@@ -74,6 +74,28 @@ std::string texts_tag(const StudyKey& key) {
   return to_hex(keyed_hash(derive_key(key.master, "texts"), ByteView(hash)));
 }
 
+/// Whether a value with this JSON Schema may be or hold free text.
+bool holds_text(const nlohmann::json& schema) {
+  if (schema.is_object()) {
+    const auto type = schema.find("type");
+    if (type != schema.end() && *type == "string" && !schema.contains("enum")) return true;
+    if (type != schema.end() && *type == "object" && !schema.contains("properties")) return true;
+  }
+  return schema.is_structured() && std::ranges::any_of(schema, holds_text);
+}
+
+/// The session's settings without those with free text, which may name textures.
+nlohmann::json without_texts(const SessionPlan& session) {
+  SessionPlan usual;
+  const auto schema =
+      nlohmann::json::parse(annotated_section({}, [&usual](ObjectIo& io) { describe(io, usual); }));
+  nlohmann::json settings = to_json(session);
+  for (const auto& [key, property] : schema.at("properties").items()) {
+    if (holds_text(property)) settings.erase(key);
+  }
+  return settings;
+}
+
 /// Adds the sections that older studies do not have. A section with default values is omitted, so
 /// that the configuration of an older study stays the same.
 void add_plans(nlohmann::json& configuration, const StudyKey& key) {
@@ -83,14 +105,7 @@ void add_plans(nlohmann::json& configuration, const StudyKey& key) {
                                  {"criterion", study.practice.criterion},
                                  {"rounds", study.practice.rounds}};
   }
-  if (study.session != SessionPlan{}) {
-    nlohmann::json session = to_json(study.session);
-    for (const char* text : {"instructions", "texts", "day_sheet", "consent_version",
-                             "ethics_number", "closing_questions"}) {
-      session.erase(text);
-    }
-    configuration["session"] = std::move(session);
-  }
+  if (study.session != SessionPlan{}) configuration["session"] = without_texts(study.session);
   if (study.visits != VisitPlan{}) {
     configuration["visits"] = to_json(study.visits);
     configuration["visits"]["needed"] = study.visits_needed();

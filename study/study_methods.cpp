@@ -62,8 +62,9 @@ void describe_component(ObjectIo& io, engine::GaborComponent& component) {
   io.number("frequency", component.frequency_cycles_per_px,
             {.low = 0.0, .high = 0.5, .open_low = true},
             {.meaning = "of the wave", .required = true, .unit = "cycles per pixel"});
-  io.number("direction", component.direction_deg, {.low = -360.0, .high = 360.0},
-            {.meaning = "of the wave, from the x axis", .required = true, .unit = "degrees"});
+  io.number(
+      "direction", component.direction_deg, {.low = -360.0, .high = 360.0},
+      {.meaning = "direction of the wave, from the x axis", .required = true, .unit = "degrees"});
 }
 
 /// Describes components: a list, or the word "auto".
@@ -76,19 +77,19 @@ void describe_components(ValueIo& io, engine::TvGaborOptions& options) {
                                   }},
                                  {{}, [&](ValueIo& value) {
                                     options.automatic = false;
-                                    value.list(options.components, {.fewest = 1, .most = 64},
+                                    value.list(options.components, {.min = 1, .max = 64},
                                                [](ValueIo& item, engine::GaborComponent& one) {
                                                  item.part(one, describe_component);
                                                });
                                   }}};
-  io.either(options.automatic ? 0 : 1, forms);
+  io.one_of(options.automatic ? 0 : 1, forms);
 }
 
 /// Composes the meaning of a key, with the methods that use it.
 class Meanings {
  public:
   /// \param key  one of method_keys()
-  About of(std::string_view key, std::string_view meaning, std::string_view unit = {}) {
+  KeyInfo of(std::string_view key, std::string_view meaning, std::string_view unit = {}) {
     const auto entry = std::ranges::find(method_keys(), key, &MethodKey::key);
     text_ = std::string(meaning) + " (" + listed(names_of(entry->methods)) + ")";
     const bool is_of_method = std::ranges::count(entry->methods, method_) > 0;
@@ -105,18 +106,18 @@ void describe_tv_gabor(ObjectIo& io, engine::TvGaborOptions& options, Meanings& 
   using Options = engine::TvGaborOptions;
   io.number("lambda", options.lambda, {.low = Options::kMinLambda, .high = Options::kMaxLambda},
             about.of("lambda", "weight of the texture norm"));
-  About components = about.of("components",
-                              "the oscillations that count as texture; `auto` takes the strongest "
-                              "ones of each image");
+  KeyInfo components = about.of(
+      "components",
+      "the oscillations that count as texture; `auto` selects the strongest ones of each image");
   components.range = "1 to 64 entries, or `auto`";
-  components.otherwise = "four at 0.25, 0, 45, 90, 135 degrees";
+  components.default_text = "four at 0.25, 0, 45, 90, 135 degrees";
   io.member("components", components, true,
             [&options](ValueIo& value) { describe_components(value, options); });
   io.number("gap", options.gap, {.low = 0.0, .high = 1.0, .open_low = true},
             about.of("gap", "relative primal-dual gap at which the solver stops"));
-  io.integer("max_steps", options.max_steps, 1, 1'000'000,
-             about.of("max_steps",
-                      "number of steps after which the solver gives up; `prepare` then warns"));
+  io.integer(
+      "max_steps", options.max_steps, 1, 1'000'000,
+      about.of("max_steps", "maximum number of solver steps; `prepare` warns if it is reached"));
 }
 
 void describe_parameters(ObjectIo& io, engine::ExtractionOptions& options) {
@@ -133,14 +134,14 @@ void describe_parameters(ObjectIo& io, engine::ExtractionOptions& options) {
   io.choice("gradient", options.gradient, engine::kGradientNames,
             about.of("gradient", "operator that measures the slope of the sub-bands"));
   io.choice("combine", options.combine, engine::kCombineNames,
-            about.of("combine", "how the slopes of all sub-bands become one number"));
+            about.of("combine", "how the slopes of all sub-bands are combined"));
   io.integer("levels", options.levels, 1, Options::kMaxLevels,
              about.of("levels", "levels of sub-bands"));
   io.number("sigma_px", options.sigma_px,
             {.low = 0.0, .high = Options::kMaxSigma_px, .open_low = true},
             about.of("sigma_px", "standard deviation of the Gaussian blur that is subtracted"));
   io.number("threshold", options.threshold_grey, {.low = 0.0, .high = 255.0},
-            about.of("threshold", "differences from the median up to this count as no texture",
+            about.of("threshold", "differences from the median up to this value are not texture",
                      "grey levels"));
   io.number("divisor", options.divisor, {.low = Options::kMinDivisor, .high = Options::kMaxDivisor},
             about.of("divisor", "divisor of the norm of the gradient"));
@@ -151,17 +152,17 @@ void describe(ObjectIo& io, StudyMethod& method) {
   describe_name(io, method.method);
   describe_parameters(io, method);
   io.choice("control", method.control, engine::kControlNames,
-            {.meaning = "`phase-scrambled` presents a texture with the spectrum of the method's "
-                        "texture but none of its structure",
+            {.meaning = "`phase-scrambled`: a texture with the same spectrum as the method's "
+                        "texture but without its structure",
              .written = method.control != engine::Control::none});
   io.rule([&method](const JsonValue& /*place*/, const JsonObject& /*object*/) {
     method.label = default_label(method);
   });
   io.text("label", method.label, kPlainName,
-          {.meaning = "its name in tables and files, unique as labels of classes are; required "
-                      "where two entries have the same method",
+          {.meaning = "name in tables and files, unique like labels of classes; required if two "
+                      "entries have the same method",
            .written = method.label != default_label(method),
-           .otherwise = "the name and the control"});
+           .default_text = "the name and the control"});
 }
 
 }  // namespace
@@ -173,8 +174,8 @@ std::string default_label(const engine::ExtractionOptions& method) {
   return label;
 }
 
-void describe_methods(ObjectIo& io, std::vector<StudyMethod>& methods, const About& about) {
-  io.list("methods", methods, {.fewest = 1, .most = kMaxMethods}, about,
+void describe_methods(ObjectIo& io, std::vector<StudyMethod>& methods, const KeyInfo& about) {
+  io.list("methods", methods, {.min = 1, .max = kMaxMethods}, about,
           [](ValueIo& value, StudyMethod& method) {
             value.object([&method](ObjectIo& keys) { describe(keys, method); });
           });

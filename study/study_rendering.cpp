@@ -31,7 +31,7 @@ constexpr TextRule kCurve{
         },
     .max_length = 200,
     .pattern = R"(^(israr_2006|tan_1994|.+\.db)$)",
-    .in_words = "`israr_2006`, `tan_1994`, `NAME.db`"};
+    .description = "`israr_2006`, `tan_1994`, `NAME.db`"};
 
 /// A name or a path. Whether the model exists is checked when it is needed.
 constexpr TextRule kDevice{
@@ -43,20 +43,20 @@ constexpr TextRule kDevice{
         },
     .min_length = 1,
     .max_length = 200,
-    .in_words = "a product's or a model's name, or a file"};
+    .description = "a product's or a model's name, or a file"};
 
 constexpr NumberRange kGain{.low = 0.0, .high = 10.0};
 constexpr NumberRange kStiffness{.low = 0.0, .high = 100.0, .open_low = true};
 
 void describe_level(ObjectIo& io, TargetLevel& level) {
-  io.number(
-      "level_db", level.db, {.low = 0.0, .high = TargetLevel::kMaxDb},
-      {.meaning = "of the weakest stimulus, above the detection threshold on `device`, beside "
-                  "the blank plane",
-       .required = true});
+  io.number("level_db", level.db, {.low = 0.0, .high = TargetLevel::kMaxDb},
+            {.meaning = "level of the weakest stimulus above its detection threshold on `device`, "
+                        "compared with the blank plane",
+             .required = true});
   io.text("curve", level.curve, kCurve,
           {.meaning = "a published curve of thresholds, or the unblinded database of a detection "
-                      "study of pilots, relative to the study's folder, with key and pack in reach",
+                      "study with pilot participants, relative to the study's folder; its key and "
+                      "pack must be accessible",
            .required = true});
 }
 
@@ -106,18 +106,18 @@ void describe_gains(ValueIo& io, RenderingSection& rendering) {
                                  {[is_surface](const JsonValue& /*place*/) { return is_surface; },
                                   [&](ValueIo& value) { gains(value, describe_surface_gains); }},
                                  {{}, [&](ValueIo& value) { gains(value, describe_paper_gains); }}};
-  io.either(!options.gains ? 0 : is_surface ? 2 : 3, forms);
+  io.one_of(!options.gains ? 0 : is_surface ? 2 : 3, forms);
 }
 
 /// Describes the keys of a single model.
 void describe_model_keys(ObjectIo& io, engine::RenderingOptions& options) {
-  io.number(
-      "friction", options.friction, {.low = 0.0, .high = 10.0},
-      {"`surface`: coefficient of the bristle friction. `paper` has none and accepts only 0"});
+  io.number("friction", options.friction, {.low = 0.0, .high = 10.0},
+            {"`surface`: coefficient of the bristle friction. `paper` has no friction and accepts "
+             "only 0"});
   io.number("touchdown_ramp_n", options.touchdown_ramp_n, {.low = 0.0, .high = 1.0},
-            {.meaning = "`paper`: load up to which the lateral force grows in proportion to the "
-                        "load; 0: whole from the touchdown on. `surface`, whose lateral force "
-                        "grows with the load anyway, accepts only 0",
+            {.meaning = "`paper`: normal force up to which the lateral force grows in proportion "
+                        "to it; 0: full lateral force from first contact. `surface` accepts only "
+                        "0, because its lateral force always grows with the normal force",
              .if_changed = true});
   io.rule([&options](const JsonValue& place, const JsonObject& /*object*/) {
     if (options.model == engine::ModelKind::paper && options.friction != 0.0) {
@@ -141,7 +141,7 @@ void describe_wall(ObjectIo& io, engine::RenderingOptions& options) {
   io.number("damping_n_s_per_mm", options.damping_n_s_per_mm, {.low = 0.0, .high = 1.0},
             {"damping of the wall"});
   io.number("max_force_n", options.max_force_n, kStiffness,
-            {"limit of the total force; at most the device's largest force"});
+            {"limit of the total force; at most the device's maximum force"});
 }
 
 void describe_texture(ObjectIo& io, RenderingSection& rendering) {
@@ -151,19 +151,20 @@ void describe_texture(ObjectIo& io, RenderingSection& rendering) {
   io.number("texture_stiffness_n_per_mm", options.texture_stiffness_n_per_mm, kStiffness,
             {"stiffness budget, from which the gains are computed"});
   io.number("reference_grey", options.reference_grey, {.low = 0.0, .high = 255.0},
-            {.meaning = "`paper`: grey level that adds no normal force; 0 is the paper's literal "
-                        "reading, with a warning. No effect under `surface`",
+            {.meaning = "`paper`: grey level without normal force; 0 follows the paper literally, "
+                        "with a warning. No effect with `surface`",
              .unit = "grey levels"});
   io.member("gains",
-            {.meaning = "the largest gains within the budget; those of a level; or explicit ones",
+            {.meaning = "the largest gains within the stiffness budget; the gains for a level; or "
+                        "explicit gains",
              .range = "`budget`, or as below"},
             true, [&rendering](ValueIo& value) { describe_gains(value, rendering); });
   io.choice("equalise", options.equalise, kEqualiseNames,
-            {"`rms` gives every stimulus the same rms force, without effect on explicit gains; "
-             "`level` gives every stimulus the level that `gains` states"});
+            {"`rms`: every stimulus has the same rms force, without effect on explicit gains; "
+             "`level`: every stimulus has the level stated in `gains`"});
   io.integer("neighbourhood", options.neighbourhood, 3, 31,
              {.meaning = "`paper`: side of the neighbourhood from which the tangential force is "
-                         "computed. No effect under `surface`",
+                         "computed. No effect with `surface`",
               .unit = "pixels",
               .range = "3 to 31, odd"});
   io.rule([&rendering](const JsonValue& place, const JsonObject& /*object*/) {
@@ -185,20 +186,20 @@ void describe_texture(ObjectIo& io, RenderingSection& rendering) {
 
 void describe(ObjectIo& io, RenderingSection& rendering) {
   io.choice("model", rendering.options.model, kModelNames,
-            {"the rendering model: tangential forces beside a wall, or the gradient of one "
+            {"the rendering model: tangential forces in addition to a wall, or the gradient of one "
              "potential"});
   describe_model_keys(io, rendering.options);
   describe_wall(io, rendering.options);
   describe_texture(io, rendering);
-  io.text("device", rendering.device, kDevice,
-          {.meaning = "the device that the study is for: a product with a model "
-                      "([which](devices/README.md)), a [device model](devices/models.md), or a "
-                      "model's file, relative to the study's; [levels](perception.md) are stated "
-                      "for it, simulated hands hold it, `device fit` takes it, and `gains` of a "
-                      "level depend on it. None: simulated hands hold an ideal device, which "
-                      "nobody sells",
-           .written = false,
-           .otherwise = "none"});
+  io.text(
+      "device", rendering.device, kDevice,
+      {.meaning =
+           "the device that the study is for: a product with a model ([which](devices/README.md)), "
+           "a [device model](devices/models.md), or a model's file, relative to the study's; used "
+           "for [levels](perception.md), simulated participants, `device fit`, and `gains` of a "
+           "level. None: simulated participants use an ideal device",
+       .written = false,
+       .default_text = "none"});
   io.rule([&rendering](const JsonValue& place, const JsonObject& /*object*/) {
     if (!rendering.level || !rendering.device.empty()) return;
     place.refuse_below("/gains", "states a level, which depends on the device; add \"device\"");

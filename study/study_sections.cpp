@@ -21,12 +21,12 @@ constexpr TextRule kLabel{
     .max_length = 64,
     .pattern = R"(^[^\u0000-\u0020\u007f-\u009f]([^\u0000-\u001f\u007f-\u009f]*)"
                R"([^\u0000-\u0020\u007f-\u009f])?$)",
-    .in_words =
+    .description =
         "1 to 64 bytes of UTF-8, no control characters, no space at either end, unique; two labels "
-        "may not look alike: differ by capitals, blanks, hyphens, the encoding of accents, the "
-        "width of letters, or the alphabet of letters that are alike (a Cyrillic or Greek o) "
-        "alone; no word of Latin letters with one of another alphabet; no word that other programs "
-        "take for a missing value (NA), and no =, +, - or @ in front"};
+        "may not look alike, that is, differ only by capitals, blanks, hyphens, the encoding of "
+        "accents, the width of letters, or the alphabet of similar letters (a Cyrillic or Greek "
+        "o); no word that mixes Latin with other letters; no word that other programs read as a "
+        "missing value (NA), and no =, +, - or @ at the start"};
 
 void check_image(const JsonValue& place) {
   const std::string& path = place.text();
@@ -42,9 +42,9 @@ constexpr TextRule kImage{.check = check_image,
                           .max_length = kMaxPathBytes,
                           .pattern = R"(^[^\u0000-\u001f\u007f-\u009f]+$)"};
 
-void describe_class(ObjectIo& io, StudyClass& one, std::size_t most_images) {
+void describe_class(ObjectIo& io, StudyClass& one, std::size_t max_images) {
   io.text("label", one.label, kLabel, {.meaning = "name of the texture", .required = true});
-  io.list("images", one.images, {.fewest = 1, .most = most_images, .unique = true},
+  io.list("images", one.images, {.min = 1, .max = max_images, .unique = true},
           {.meaning = "the exemplars of the class; paths are relative to the study file",
            .required = true},
           [](ValueIo& value, std::filesystem::path& image) {
@@ -69,20 +69,21 @@ constexpr NumberRange kPath_mm{.low = 0.0, .high = 1e6};
 void describe_validity(ObjectIo& io, ValidityRule& rule) {
   constexpr NumberRange kMedian_n{.low = 0.0, .high = 100.0};
   io.number("exploring_s", rule.min_exploring_s, kTime_s,
-            {"exploration from landing to the last sample, at least"});
+            {"minimum exploration, from first contact to the last sample"});
   io.number("contact_s", rule.min_contact_s, kTime_s, {"contact, at least"});
-  io.number("path_mm", rule.min_path_mm, kPath_mm, {"path in contact, at least"});
-  io.number("least_median_n", rule.min_median_n, kMedian_n, {"smallest median force in contact"});
-  io.number("largest_median_n", rule.max_median_n, kMedian_n, {"largest median force in contact"});
-  io.number("saturated_share", rule.saturated_share, {.low = 0.0, .high = 1.0, .open_low = true},
-            {"share of the samples in contact at the force limit that makes a trial invalid"});
+  io.number("path_mm", rule.min_path_mm, kPath_mm, {"minimum path in contact"});
+  io.number("least_median_n", rule.min_median_n, kMedian_n, {"minimum median force in contact"});
+  io.number("largest_median_n", rule.max_median_n, kMedian_n, {"maximum median force in contact"});
+  io.number(
+      "saturated_share", rule.saturated_share, {.low = 0.0, .high = 1.0, .open_low = true},
+      {"share of the samples in contact at the force limit, from which on a trial is invalid"});
 }
 
 void describe_min_touch(ObjectIo& io, MinTouch& touch) {
   io.number("contact_s", touch.contact_s, kTime_s,
-            {"time at the plane (at most 3 mm above it), at least"});
+            {"minimum time at the plane (at most 3 mm above it)"});
   io.number("path_mm", touch.path_mm, kPath_mm,
-            {"way along it, at least; 0 here and in `contact_s`: no touch needed"});
+            {"minimum path along it; 0 here and in `contact_s`: no touch needed"});
 }
 
 /// Describes how presentations are ordered.
@@ -93,16 +94,16 @@ void describe_order(ObjectIo& io, TrialOptions& trials) {
   io.integer("lead_in", trials.lead_in, 0, 100,
              {"presentations at the start of each block that are not scored"});
   io.choice("blocks", trials.blocks, kBlocksNames,
-            {"`by-method`: a block for each method, in a balanced order, so that the period must "
-             "be adjusted for; `mixed`: all methods in one block. Write `mixed` in new studies, "
-             "see [Blocks and schedules](#blocks-and-schedules)"});
+            {"`by-method`: a block for each method, in a balanced order, so that the analysis must "
+             "adjust for the period; `mixed`: all methods in one block. Use `mixed` in new "
+             "studies, see [Blocks and schedules](#blocks-and-schedules)"});
   io.integer("max_run", trials.max_run, 0, kMaxScoredTrials,
-             {.meaning = "largest number of presentations of one class in a row within a block; 0: "
+             {.meaning = "maximum number of presentations of one class in a row within a block; 0: "
                          "no limit. See [Orders](#orders)",
               .if_changed = true});
   io.number("rove_db", trials.rove_db, {0.0, 40.0},
-            {.meaning = "each presentation's gain is drawn from a range so wide, which ends at the "
-                        "prepared gain, so that strength alone does not tell classes or methods "
+            {.meaning = "width of the range from which each presentation's gain is drawn, which "
+                        "ends at the prepared gain; prevents identification by strength alone "
                         "([roving](perception.md#a-studys-level)). A threshold study has [its "
                         "own](thresholds.md#the-study-files-threshold)",
              .if_changed = true});
@@ -111,22 +112,22 @@ void describe_order(ObjectIo& io, TrialOptions& trials) {
 /// Describes what follows an interruption, and how long a session can be resumed.
 void describe_resumption(ObjectIo& io, TrialOptions& trials) {
   constexpr double kYear_h = 8760.0;
-  io.choice("on_interruption", trials.on_interruption, kOnInterruptionNames,
-            {.meaning = "what happens to a presentation that a device fault, a comfort stop or the "
-                        "end of the program interrupted. `repeat`: it is repeated at the end (in "
-                        "the protocol `threshold`, at the end of its block); `leave-out`: it is "
-                        "left out; `restart-block`: its whole block is void and is repeated in a "
-                        "new order",
-             .if_changed = true});
-  io.number("resume_within_h", trials.resume_within_h,
-            {.low = 0.0, .high = kYear_h, .open_low = true},
-            {.meaning = "how long a session that broke off can be resumed", .if_changed = true});
+  io.choice(
+      "on_interruption", trials.on_interruption, kOnInterruptionNames,
+      {.meaning = "what happens to a presentation interrupted by a device fault, a comfort stop or "
+                  "the end of the program. `repeat`: it is repeated at the end (in the protocol "
+                  "`threshold`, at the end of its block); `leave-out`: it is omitted; "
+                  "`restart-block`: its whole block is void and is repeated in a new order",
+       .if_changed = true});
+  io.number(
+      "resume_within_h", trials.resume_within_h, {.low = 0.0, .high = kYear_h, .open_low = true},
+      {.meaning = "time for which an interrupted session can be resumed", .if_changed = true});
 }
 
 }  // namespace
 
-nlohmann::json written_section(const Description& section, const Description& usual) {
-  return nlohmann::json::parse(written_as_described(section, usual));
+nlohmann::json written_section(const Description& section, const Description& defaults) {
+  return nlohmann::json::parse(written_as_described(section, defaults));
 }
 
 void refuse_same_label(const JsonValue& place, const std::string& pointer, const std::string& label,
@@ -141,11 +142,11 @@ void refuse_same_label(const JsonValue& place, const std::string& pointer, const
   }
 }
 
-void describe_classes(ObjectIo& io, std::vector<StudyClass>& classes, int fewest,
-                      std::size_t most_images, const About& about) {
-  io.list("classes", classes, {.fewest = static_cast<std::size_t>(fewest), .most = kMaxClasses},
-          about, [most_images](ValueIo& value, StudyClass& one) {
-            value.object([&](ObjectIo& keys) { describe_class(keys, one, most_images); });
+void describe_classes(ObjectIo& io, std::vector<StudyClass>& classes, int min_classes,
+                      std::size_t max_images, const KeyInfo& info) {
+  io.list("classes", classes, {.min = static_cast<std::size_t>(min_classes), .max = kMaxClasses},
+          info, [max_images](ValueIo& value, StudyClass& one) {
+            value.object([&](ObjectIo& keys) { describe_class(keys, one, max_images); });
           });
   io.rule([&classes](const JsonValue& place, const JsonObject& /*object*/) {
     for (std::size_t i = 1; i < classes.size(); ++i) {
@@ -180,22 +181,22 @@ void describe(ObjectIo& io, TrialOptions& trials) {
           {.meaning = "when a trial is valid; fixed before outcomes are seen", .if_changed = true},
           describe_validity);
   io.part("answer_after", trials.answer_after,
-          {.meaning = "what the hand does before a presentation can be answered, unless time is up",
+          {.meaning = "minimum touch before a presentation can be answered, unless time is up",
            .if_changed = true},
           describe_min_touch);
 }
 
 void describe(ObjectIo& io, PracticePlan& practice) {
-  describe_classes(io, practice.classes, 2, 1,
-                   {.meaning = "the textures, one image each; neither a label nor an image may be "
-                               "one of the study's",
-                    .required = true});
+  describe_classes(
+      io, practice.classes, 2, 1,
+      {.meaning = "the textures, one image each; labels and images must differ from the study's",
+       .required = true});
   io.integer("criterion", practice.criterion, 0, 100,
              {"number of correct answers in a round that ends practice, at most `trials.practice`; "
-              "0: one whole round"});
+              "0: practice ends after one round"});
   io.integer("rounds", practice.rounds, 1, 10,
-             {"largest number of rounds; a participant who has not reached the criterion after "
-              "them is flagged and continues"});
+             {"maximum number of rounds; participants who do not reach the criterion are flagged "
+              "and continue"});
 }
 
 void describe(ObjectIo& io, VisitPlan& visits) {
@@ -203,26 +204,26 @@ void describe(ObjectIo& io, VisitPlan& visits) {
   io.integer("count", visits.count, 2, 100,
              {.meaning = "number of visits of each participant", .required = true});
   io.number("least_days", visits.min_days, {.low = 0.0, .high = kMaxDays},
-            {"between the beginnings of two visits; an earlier visit is refused"});
+            {"minimum from start to start of two visits; an earlier visit is refused"});
   io.number("most_days", visits.max_days, {.low = 0.0, .high = kMaxDays, .open_low = true},
-            {.meaning = "between the beginnings of two visits, at least `least_days`; a later "
-                        "visit is warned of, and recorded as the deviation `visit-late`",
-             .otherwise = "any"});
+            {.meaning = "maximum from start to start of two visits, at least `least_days`; a later "
+                        "visit causes a warning and the deviation `visit-late`",
+             .default_text = "any"});
   io.rule([&visits](const JsonValue& place, const JsonObject& /*object*/) {
     if (!visits.max_days || *visits.max_days >= visits.min_days) return;
     place.refuse_below("/most_days",
                        "is less than \"least_days\", so no visit would be possible; raise it");
   });
   io.choice("methods", visits.methods, kVisitMethodsNames,
-            {"`all`: every visit presents all methods, in the participant's one order, with new "
-             "orders of trials; `divided`: in that order, as many of the methods at each visit. "
-             "Needs blocks by method, and a multiple of `count` methods"});
+            {"`all`: every visit presents all methods in the participant's order of methods, with "
+             "new orders of trials; `divided`: the methods are divided evenly among the visits, in "
+             "that order. Needs blocks by method, and a multiple of `count` methods"});
 }
 
 void describe(ObjectIo& io, GroupPlan& groups) {
   constexpr std::size_t kMaxGroups = 16;
-  io.list("labels", groups.labels, {.fewest = 2, .most = kMaxGroups, .unique = true},
-          {.meaning = "names of the groups, each once", .required = true},
+  io.list("labels", groups.labels, {.min = 2, .max = kMaxGroups, .unique = true},
+          {.meaning = "names of the groups", .required = true},
           [](ValueIo& value, std::string& label) { value.text(label, kPlainName); });
   io.rule([&groups](const JsonValue& place, const JsonObject& /*object*/) {
     const std::vector<std::string>& labels = groups.labels;
@@ -233,7 +234,7 @@ void describe(ObjectIo& io, GroupPlan& groups) {
           in_quotes(*label) + " is the label of another group; labels must be unique");
     }
   });
-  io.truth("open", groups.open, {"whether the experimenter is told who is in which group"});
+  io.boolean("open", groups.open, {"whether the experimenter sees participants' groups"});
 }
 
 }  // namespace touchtrial::study

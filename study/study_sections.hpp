@@ -77,33 +77,33 @@ inline constexpr auto kSpendingNames = std::to_array<Named<Spending>>(
     {{"obrien-fleming", Spending::obrien_fleming}, {"pocock", Spending::pocock}});
 
 /// Reads one line.
-/// \param longest  maximum length, bytes
+/// \param max_bytes  maximum length
 /// \throws StudyError if the line is empty or too long, begins or ends with a blank, or contains a
 ///   control character
-[[nodiscard]] std::string read_line(const JsonValue& place, std::size_t longest);
+[[nodiscard]] std::string read_line(const JsonValue& place, std::size_t max_bytes);
 
 /// Reads paragraphs, which may contain line feeds and may be empty.
 /// \throws StudyError if the text is too long, or contains another control character
-[[nodiscard]] std::string read_paragraphs(const JsonValue& place, std::size_t longest);
+[[nodiscard]] std::string read_paragraphs(const JsonValue& place, std::size_t max_bytes);
 
-/// A line of 1 to `longest` bytes.
-template <std::size_t longest>
+/// A line of 1 to `max_bytes` bytes.
+template <std::size_t max_bytes>
 inline constexpr TextRule kLine{
-    .check = [](const JsonValue& place) { static_cast<void>(read_line(place, longest)); },
+    .check = [](const JsonValue& place) { static_cast<void>(read_line(place, max_bytes)); },
     .min_length = 1,
-    .max_length = longest};
-/// A line of 0 to `longest` bytes.
-template <std::size_t longest>
+    .max_length = max_bytes};
+/// A line of 0 to `max_bytes` bytes.
+template <std::size_t max_bytes>
 inline constexpr TextRule kLineOrNothing{.check =
                                              [](const JsonValue& place) {
                                                if (!place.text().empty())
-                                                 static_cast<void>(read_line(place, longest));
+                                                 static_cast<void>(read_line(place, max_bytes));
                                              },
-                                         .max_length = longest};
-template <std::size_t longest>
+                                         .max_length = max_bytes};
+template <std::size_t max_bytes>
 inline constexpr TextRule kParagraphs{
-    .check = [](const JsonValue& place) { static_cast<void>(read_paragraphs(place, longest)); },
-    .max_length = longest};
+    .check = [](const JsonValue& place) { static_cast<void>(read_paragraphs(place, max_bytes)); },
+    .max_length = max_bytes};
 
 /// "German", "French, a draft"
 [[nodiscard]] std::string_view words_for_language(std::string_view code);
@@ -145,7 +145,7 @@ inline constexpr int kMaxScoredTrials = 10'000;
 inline constexpr TextRule kPlainName{
     .check = [](const JsonValue& place) { static_cast<void>(read_plain_name(place)); },
     .pattern = "^[0-9A-Za-z_-]{1,64}$",
-    .in_words = "1 to 64 of `0-9 A-Z a-z _ -`"};
+    .description = "1 to 64 of `0-9 A-Z a-z _ -`"};
 
 /// Refuses a label that equals or looks like another one (skeleton_of).
 /// \param pointer  JSON pointer to the label
@@ -162,17 +162,17 @@ struct RenderingSection {
 };
 
 /// These functions describe the sections, and refuse values that contradict each other.
-void describe_classes(ObjectIo& io, std::vector<StudyClass>& classes, int fewest,
-                      std::size_t most_images, const About& about);
-void describe_methods(ObjectIo& io, std::vector<StudyMethod>& methods, const About& about);
+void describe_classes(ObjectIo& io, std::vector<StudyClass>& classes, int min_classes,
+                      std::size_t max_images, const KeyInfo& info);
+void describe_methods(ObjectIo& io, std::vector<StudyMethod>& methods, const KeyInfo& info);
 void describe(ObjectIo& io, RenderingSection& rendering);
 void describe(ObjectIo& io, TrialOptions& trials);
 void describe(ObjectIo& io, PracticePlan& practice);
 void describe(ObjectIo& io, SessionPlan& session);
 void describe(ObjectIo& io, VisitPlan& visits);
 void describe(ObjectIo& io, GroupPlan& groups);
-/// \param usual_test  of a difference in this study
-void describe(ObjectIo& io, Registration& registration, RegisteredTest usual_test);
+/// \param default_test  of a difference in this study
+void describe(ObjectIo& io, Registration& registration, RegisteredTest default_test);
 /// Checks that the registered analysis is possible for this study.
 /// \param file  the whole study file
 void check_registration(const JsonValue& file, const Study& study);
@@ -180,15 +180,16 @@ void check_registration(const JsonValue& file, const Study& study);
 /// The sections in the form of the study file, with every key explicit except the following. A
 /// method has only the keys that belong to it, "control" if it has one, and "label" if it is not
 /// the default. Keys that are younger than sealed studies appear only if they differ from their
-/// defaults (About::if_changed), and a registration has the keys of its analysis only if it has
+/// defaults (KeyInfo::if_changed), and a registration has the keys of its analysis only if it has
 /// one, so that older studies keep their seals. Equal options give equal JSON.
-[[nodiscard]] nlohmann::json written_section(const Description& section, const Description& usual);
+[[nodiscard]] nlohmann::json written_section(const Description& section,
+                                             const Description& defaults);
 template <typename Section>
 [[nodiscard]] nlohmann::json to_json(const Section& section) {
   Section copy = section;
-  Section usual;
+  Section defaults;
   return written_section([&](ObjectIo& io) { describe(io, copy); },
-                         [&](ObjectIo& io) { describe(io, usual); });
+                         [&](ObjectIo& io) { describe(io, defaults); });
 }
 [[nodiscard]] nlohmann::json to_json(const engine::ExtractionOptions& method);
 [[nodiscard]] nlohmann::json to_json(const StudyMethod& method);

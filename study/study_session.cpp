@@ -12,10 +12,10 @@ constexpr std::size_t kMaxQuestionBytes = 500;  // bytes
 constexpr std::size_t kMaxPageBytes = 4000;     // bytes
 constexpr std::size_t kMaxNameBytes = 64;       // bytes
 
-void check_length(const JsonValue& place, const std::string& text, std::size_t longest) {
-  if (text.size() <= longest) return;
+void check_length(const JsonValue& place, const std::string& text, std::size_t max_bytes) {
+  if (text.size() <= max_bytes) return;
   place.refuse("has " + std::to_string(text.size()) + " bytes, must have at most " +
-               std::to_string(longest) + "; shorten it");
+               std::to_string(max_bytes) + "; shorten it");
 }
 
 constexpr TextRule kPage{.check =
@@ -33,9 +33,8 @@ void describe_bounds(ObjectIo& io, Question& question) {
   constexpr auto kKeys = std::to_array<std::string_view>({"min", "max"});
   constexpr auto kOwner = std::to_array<std::string_view>({"number"});
   io.only_for("kind", kOwner, kKeys, "belongs to a question of the kind number; remove it");
-  io.number("min", question.min, kAny,
-            {"the smallest number that is accepted, which the screen shows; for `number` alone"});
-  io.number("max", question.max, kAny, {"the largest number that is accepted"});
+  io.number("min", question.min, kAny, {"minimum, shown on the screen; only for `number`"});
+  io.number("max", question.max, kAny, {"maximum, likewise"});
   io.rule([&question](const JsonValue& place, const JsonObject& /*object*/) {
     if (!question.min || !question.max || *question.min <= *question.max) return;
     place.refuse_below("/max", "is " + number_text(*question.max) + ", less than min, " +
@@ -47,10 +46,10 @@ void describe_options(ObjectIo& io, Question& question, const std::string& langu
   constexpr auto kKey = std::to_array<std::string_view>({"options"});
   constexpr auto kOwner = std::to_array<std::string_view>({"choice"});
   io.only_for("kind", kOwner, kKey, "belongs to a question of the kind choice; remove it");
-  io.list("options", question.options, {.fewest = 2, .most = 20},
-          {.meaning = "the possible answers, by language; for `choice` alone, which needs them",
+  io.list("options", question.options, {.min = 2, .max = 20},
+          {.meaning = "the possible answers, by language; required for `choice`, and only for it",
            .written = !question.options.empty(),
-           .otherwise = "none"},
+           .default_text = "none"},
           describe_translated);
   io.rule([&](const JsonValue& place, const JsonObject& object) {
     if (question.kind == QuestionKind::choice) static_cast<void>(object.at("options"));
@@ -61,8 +60,7 @@ void describe_options(ObjectIo& io, Question& question, const std::string& langu
 }
 
 void describe_question(ObjectIo& io, Question& question, const std::string& language) {
-  io.text("id", question.id, kPlainName,
-          {.meaning = "its name in tables, unique", .required = true});
+  io.text("id", question.id, kPlainName, {.meaning = "unique name in tables", .required = true});
   io.choice("kind", question.kind, kQuestionKindNames,
             {.meaning = "one of the options, a number, or free text", .required = true});
   io.member("text", {.meaning = "the question, by language", .required = true}, true,
@@ -71,14 +69,14 @@ void describe_question(ObjectIo& io, Question& question, const std::string& lang
     require_language(place, "/text", question.text, language);
   });
   describe_options(io, question, language);
-  io.truth("required", question.required, {"whether the participant must answer it"});
+  io.boolean("required", question.required, {"whether the participant must answer it"});
   describe_bounds(io, question);
 }
 
 void describe_instructions(ObjectIo& io, SessionPlan& session) {
   describe_by_language(
       io, session.instructions, [](ValueIo& value, std::vector<std::string>& pages) {
-        value.list(pages, {.fewest = 1, .most = 20},
+        value.list(pages, {.min = 1, .max = 20},
                    [](ValueIo& page, std::string& text) { page.text(text, kPage); });
       });
   io.rule([&session](const JsonValue& place, const JsonObject& /*object*/) {
@@ -90,9 +88,9 @@ void describe_instructions(ObjectIo& io, SessionPlan& session) {
 
 void describe_own_texts(ObjectIo& io, SessionPlan& session) {
   describe_by_language(io, session.texts, [](ValueIo& value, Texts& texts) {
-    value.own(R"({"type": "object"})",
-              [&texts](const JsonValue& place) { texts = read_texts(place); },
-              [&texts] { return nlohmann::json(texts).dump(); });
+    value.custom(R"({"type": "object"})",
+                 [&texts](const JsonValue& place) { texts = read_texts(place); },
+                 [&texts] { return nlohmann::json(texts).dump(); });
   });
   std::erase_if(session.texts, [](const auto& own) { return own.second.empty(); });
 }
@@ -110,32 +108,33 @@ void describe_texts(ObjectIo& io, SessionPlan& session) {
               session.language = codes.at(language);
             });
   io.part("instructions", session,
-          {.meaning = "the pages that the participant reads, by language; none: the program's own. "
-                      "With bold words and [pictures](running-sessions.md#a-studys-own-texts)",
+          {.meaning = "the pages of instructions, by language; none: those of the program. May "
+                      "contain bold words and [pictures](running-sessions.md#a-studys-own-texts)",
            .range = "by language"},
           describe_instructions);
   io.part("texts", session,
-          {.meaning = "single [texts](running-sessions.md#a-studys-own-texts) of the participant's "
-                      "screens in place of the program's",
+          {.meaning = "[texts](running-sessions.md#a-studys-own-texts) of the participant's "
+                      "screens that replace those of the program",
            .if_changed = true,
            .range = "by language, section and key"},
           describe_own_texts);
   io.number("text_scale", session.text_scale, {.low = 1.0, .high = kMaxTextScale},
             {.meaning = "size of the letters on the participant's screens", .if_changed = true});
-  io.truth("high_contrast", session.high_contrast,
-           {.meaning = "whether these screens are black on white", .if_changed = true});
+  io.boolean(
+      "high_contrast", session.high_contrast,
+      {.meaning = "whether the participant's screens are black on white", .if_changed = true});
 }
 
 void describe_masking(ObjectIo& io, MaskingPlan& masking) {
-  io.truth("wanted", masking.wanted,
-           {"whether masking noise is played; a session without it is then a recorded deviation"});
+  io.boolean("wanted", masking.wanted,
+             {"whether masking noise is played; if so, a session without it has a deviation"});
   io.number("level_dbfs", masking.level_dbfs, {.low = -90.0, .high = 0.0},
             {"root mean square relative to full scale; the laboratory measures the level in dBA"});
 }
 
 /// Describes the preparations before a session.
 void describe_day(ObjectIo& io, SessionPlan& session) {
-  io.list("day_sheet", session.day_sheet, {.most = 50, .unique = true},
+  io.list("day_sheet", session.day_sheet, {.max = 50, .unique = true},
           {"items to tick before a session, in addition to the program's own"},
           [](ValueIo& value, std::string& item) { value.text(item, kLine<200>); });
   io.rule([&session](const JsonValue& place, const JsonObject& /*object*/) {
@@ -154,8 +153,8 @@ void describe_day(ObjectIo& io, SessionPlan& session) {
 
 void describe_closing(ObjectIo& io, SessionPlan& session) {
   io.list(
-      "closing_questions", session.closing_questions, {.most = 50},
-      {.meaning = "questions at the end, in addition to the program's own",
+      "closing_questions", session.closing_questions, {.max = 50},
+      {.meaning = "questions after the session, in addition to the program's own",
        .range = "0 to 50 entries"},
       [&session](ValueIo& value, Question& question) {
         value.object([&](ObjectIo& keys) { describe_question(keys, question, session.language); });
@@ -173,16 +172,16 @@ void describe_closing(ObjectIo& io, SessionPlan& session) {
           in_quotes(here->id) + " is the id of another question; ids must be unique");
     }
   });
-  io.truth("closing", session.closing,
-           {"whether participants answer the program's own closing questions"});
+  io.boolean("closing", session.closing,
+             {"whether participants answer the program's own closing questions"});
 }
 
 }  // namespace
 
-std::string read_line(const JsonValue& place, std::size_t longest) {
+std::string read_line(const JsonValue& place, std::size_t max_bytes) {
   const std::string& line = place.text();
   if (line.empty()) place.refuse("is empty; write a text, or remove the key");
-  check_length(place, line, longest);
+  check_length(place, line, max_bytes);
   if (has_control_character(line)) place.refuse("has a control character; remove it");
   if (line.front() == ' ' || line.back() == ' ') {
     place.refuse("begins or ends with a blank; remove it");
@@ -190,9 +189,9 @@ std::string read_line(const JsonValue& place, std::size_t longest) {
   return line;
 }
 
-std::string read_paragraphs(const JsonValue& place, std::size_t longest) {
+std::string read_paragraphs(const JsonValue& place, std::size_t max_bytes) {
   const std::string& text = place.text();
-  check_length(place, text, longest);
+  check_length(place, text, max_bytes);
   std::string without_ends = text;
   std::erase(without_ends, '\n');
   if (has_control_character(without_ends)) {
@@ -231,14 +230,14 @@ void describe(ObjectIo& io, SessionPlan& session) {
   describe_texts(io, session);
   io.choice("sight", session.sight, kSightNames,
             {"`curtain`: hand and device are hidden and pictures are visible; `blindfold`: the "
-             "participant sees nothing, learns the labels by heart and speaks the answers, which "
-             "the experimenter enters"});
-  io.part("masking", session.masking, {"noise that covers the device's sound"}, describe_masking);
-  io.truth("handedness", session.handedness,
-           {"whether participants answer the handedness inventory"});
+             "participant sees nothing, memorises the labels and speaks the answers, which the "
+             "experimenter enters"});
+  io.part("masking", session.masking, {"noise that masks the device's sound"}, describe_masking);
+  io.boolean("handedness", session.handedness,
+             {"whether participants answer the handedness inventory"});
   io.integer("confidence", session.confidence_levels, 0, 9,
-             {.meaning = "number of levels of confidence to choose from with each answer; 0: "
-                         "confidence is not asked for",
+             {.meaning = "number of levels of confidence for each answer; 0: participants do not "
+                         "rate their confidence",
               .unit = "levels",
               .range = "0, 2 to 9"});
   io.rule([&session](const JsonValue& place, const JsonObject& /*object*/) {

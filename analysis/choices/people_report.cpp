@@ -74,6 +74,13 @@ std::string preference_words(const Preferences& preferences,
                     share_figure(elsewhere.share()));
 }
 
+std::string preferences_sentence(const Preferences& preferences,
+                                 const std::vector<std::string>& labels) {
+  const std::string who = preference_words(preferences, labels);
+  return fmt::format("Preferences of single participants ({}, global test over participants): {}.",
+                     analysis::p_phrase(preferences.anybody.p), who.empty() ? "none found" : who);
+}
+
 std::string global_null_json(const GlobalNullResult& anybody) {
   return json_of(anybody).dump();
 }

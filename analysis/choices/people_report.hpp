@@ -18,6 +18,10 @@ namespace touchtrial::choices {
 [[nodiscard]] std::string preference_words(const Preferences& preferences,
                                            const std::vector<std::string>& labels);
 
+/// The same as a sentence of the page, whether or not somebody was found.
+[[nodiscard]] std::string preferences_sentence(const Preferences& preferences,
+                                               const std::vector<std::string>& labels);
+
 /// One JSON object each.
 [[nodiscard]] std::string global_null_json(const GlobalNullResult& anybody);
 [[nodiscard]] std::string preferences_json(const Preferences& preferences,

@@ -66,8 +66,8 @@ Preference preference_of(const std::string& participant, const OwnTrials& trials
 }
 
 /// Sets the p of the people who were tested, and their adjusted p.
-void put_p(const std::vector<std::size_t>& tested, const std::vector<double>& p,
-           std::vector<Preference>& people) {
+void store_p_values(const std::vector<std::size_t>& tested, const std::vector<double>& p,
+                    std::vector<Preference>& people) {
   const std::vector<double> adjusted = analysis::holm_adjusted(p);
   for (std::size_t i = 0; i < tested.size(); ++i) {
     people[tested[i]].p = p[i];
@@ -112,7 +112,7 @@ struct NamedAndRight {
 };
 
 /// The same numbers of right and wrong answers with redrawn choices, without a preference.
-NamedAndRight drawn_anew(int choices, int n, int right, RandomStream& random) {
+NamedAndRight redrawn_choices(int choices, int n, int right, RandomStream& random) {
   const auto m = static_cast<std::uint64_t>(choices);
   NamedAndRight drawn(choices);
   for (int i = 0; i < n; ++i) {
@@ -140,7 +140,7 @@ std::vector<std::vector<double>> dealt_beyond(const OwnTrials& trials, int choic
   std::vector<std::vector<double>> beyond{beyond_targets(trials, choices)};
   for (int deal = 0; deal < deals; ++deal) {
     beyond.push_back(
-        drawn_anew(choices, right.n, right.correct, random).beyond(right.n, right.correct));
+        redrawn_choices(choices, right.n, right.correct, random).beyond(right.n, right.correct));
   }
   return beyond;
 }
@@ -343,7 +343,7 @@ Preferences preferences_by_target(std::span<const Person> people, int choices, c
       std::ranges::transform(sums[deal], dealt[deal], sums[deal].begin(), std::plus<>());
     }
   }
-  put_p(places, own_p, all.people);
+  store_p_values(places, own_p, all.people);
   all.anybody = test.result(squares_of(sums));
   return all;
 }
@@ -384,7 +384,7 @@ Preferences preferences_among_errors(std::span<const Person> people, int choices
     own_p.push_back(p.front());
     std::ranges::transform(together, squares[place], together.begin(), std::plus<>());
   }
-  put_p(places, own_p, all.people);
+  store_p_values(places, own_p, all.people);
   all.anybody = test.result(together);
   return all;
 }

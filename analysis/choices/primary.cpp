@@ -188,7 +188,7 @@ std::optional<PrimaryQuestion> primary_question(const study::Study& study, int m
   PrimaryQuestion question;
   if (methods == 2) {
     question.estimand = Estimand::difference;
-    question.test = study::usual_test_of(study);
+    question.test = study::default_test_of(study);
     question.sides = Sides::two;
   }
   return question;

@@ -22,7 +22,7 @@ std::vector<Selection> selections(const Outcomes& outcomes) {
   const std::set<int> taken = counted_sessions(outcomes);
   const std::set<int> excluded = excluded_sessions(outcomes);
   std::set<int> put_back = taken;
-  std::ranges::set_intersection(excluded, outcomes.looked.excluded_afterwards,
+  std::ranges::set_intersection(excluded, outcomes.look_record.excluded_afterwards,
                                 std::inserter(put_back, put_back.end()));
   std::set<int> registered = put_back;
   for (const auto& [session, rule] : rules_met(outcomes)) registered.erase(session);
@@ -37,11 +37,11 @@ std::vector<Selection> selections(const Outcomes& outcomes) {
              counted(static_cast<int>(inattentive.size()), "session");
   }
   return {{"registered", std::move(words), std::move(registered)},
-          {"taken", "all exclusions as made", taken},
-          {"put_back", "exclusions made after outcomes were seen put back", std::move(put_back)},
-          {"all", "all excluded sessions put back", joined(taken, excluded)},
-          {"valid", "exclusions as made, valid trials alone", taken, true},
-          {"answered", "exclusions as made, trials with a response alone", taken, false, true}};
+          {"taken", "all exclusions", taken},
+          {"put_back", "without exclusions made after outcomes were seen", std::move(put_back)},
+          {"all", "with all excluded sessions", joined(taken, excluded)},
+          {"valid", "all exclusions, valid trials only", taken, true},
+          {"answered", "all exclusions, only trials with a response", taken, false, true}};
 }
 
 std::set<int> people_with_all_visits(const Outcomes& outcomes, const Selection& selection,

@@ -15,13 +15,13 @@ struct Selection {
   std::string name;   ///< "registered", "taken", "put_back", "all", "valid", "answered"
   std::string words;  ///< what it excludes
   std::set<int> sessions;
-  bool valid_alone = false;
-  bool answered_alone = false;
+  bool only_valid = false;
+  bool only_answered = false;
 
   /// Whether the selection includes a trial of any kind.
   [[nodiscard]] bool admits(const TrialOutcome& trial) const {
     return has_ended(trial) && sessions.contains(trial.row.session) &&
-           (!valid_alone || trial.valid()) && (!answered_alone || trial.response);
+           (!only_valid || trial.valid()) && (!only_answered || trial.response);
   }
   /// Whether it includes a scored trial.
   [[nodiscard]] bool has(const TrialOutcome& trial) const { return trial.scored && admits(trial); }

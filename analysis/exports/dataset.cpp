@@ -34,12 +34,12 @@ Levels incident_levels() {
     levels.emplace_back(row.name, row.meaning);
   }
   const Levels marks{
-      {"session-begins", "the session begins, or goes on after the program had ended"},
+      {"session-begins", "the session begins, or continues after the program had ended"},
       {"session-ends", "the session ends"},
       {"plane-on", "a plane can be felt from now on"},
       {"contact", "the stylus comes near the plane"},
       {"plane-off", "the plane can no longer be felt"},
-      {"time-up", "the time to explore was over, and the force has faded"},
+      {"time-up", "the time limit for exploring was reached, and the force has faded"},
       {"answered", "the participant answered"},
       {"practised", "the participant answered in practice"}};
   levels.insert(levels.end(), marks.begin(), marks.end());
@@ -51,11 +51,11 @@ Meanings of_trials() {
                       {"timed-out", "time ran out without an answer"},
                       {"interrupted", "interrupted and never repeated"},
                       {"voided", "its block was restarted"},
-                      {"presented", "had not ended when the session did"}};
+                      {"presented", "had not ended at the end of the session"}};
   const Levels kinds{{"scored", "may enter the report"},
                      {"lead-in", "starts a block and is not scored"},
                      {"catch",
-                      "a plane without texture, or the highest level of a track, without an effect "
+                      "a plane without texture, or the highest level of a track without an effect "
                       "on its procedure; not scored"},
                      {"control", "with the hand off the device; not scored"}};
   return {
@@ -69,7 +69,7 @@ Meanings of_trials() {
       {"motion_file",
        {"Recording of the trial, below the folder of the participant's session; its run is the "
         "trial"}},
-      {"response", {"Texture or other choice that the participant gave as the answer"}},
+      {"response", {"Texture or other choice that the participant answered"}},
       {"correct", yes_or_no("Whether the response is the right one; a trial without a "
                             "response is wrong")},
       {"confidence", {"Confidence in the response, from 1 (a guess) upwards"}},
@@ -85,27 +85,27 @@ Meanings of_trials() {
       {"counted", yes_or_no("Whether the trial enters the report")},
       {"kind", {"What the trial is for", "", kinds}},
       {"state", {"How the trial ended", "", states}},
-      {"explorations", {"Times that the participant explored the plane before responding"}},
+      {"explorations", {"Number of explorations of the plane before the response"}},
       {"first_contact_s", {"From the moment the plane can be felt to first contact", "s"}},
-      {"position", {"Place of the response among the pictures shown, from 0"}},
-      {"first_position", {"Place of the first response if it was changed, from 0"}},
+      {"position", {"Index of the response among the pictures shown, from 0"}},
+      {"first_position", {"Index of the first response if it was changed, from 0"}},
       {"valid_in_clear",
-       yes_or_no("Validity by the unsealed data: how long the plane was explored")},
+       yes_or_no("Validity by the unencrypted data: duration of the exploration")},
       {"contact_ok", yes_or_no("Whether the hand was at the plane long enough")},
       {"path_ok", yes_or_no("Whether the hand moved far enough along the plane")},
       {"force_ok", yes_or_no("Whether the hand pushed neither too lightly nor too hard")},
       {"speed_ok", yes_or_no("Whether the hand moved neither too slowly nor too fast")},
-      {"within_limits", yes_or_no("Validity by the sealed data: path, force and saturation")},
+      {"within_limits", yes_or_no("Validity by the encrypted data: path, force and saturation")},
       {"limited_ticks", {"Servo ticks whose force the safety chain changed"}},
       {"samples", {"Samples in the trial's trace"}},
       {"sampling_hz", {"Sampling rate of the trial's trace", "Hz"}},
       {"overruns", {"Servo ticks that came too late"}},
       {"paused",
-       {"Whether the session was paused before the answer, which then has no reaction times"}},
-      {"gain_db", {"Gain of the presented plane relative to the prepared one", "dB"}},
+       {"Whether the session was paused before the answer; if so, there are no reaction times"}},
+      {"gain_db", {"Gain of the presented plane, relative to the gain in the pack", "dB"}},
       {"track", {"Track of the trial, from 1; none with the hand off the device"}},
       {"standard",
-       {"Standard of the track: a texture, and the value from which comparisons differ"}},
+       {"Standard of the track: a texture, and the value with which comparisons differ"}},
       {"level_db",
        {"Level of the comparison: for detection its gain, for discrimination 20 log10 of the "
         "difference over the standard",
@@ -131,12 +131,13 @@ Meanings of_sessions() {
          {"open", "not ended"}}}},
       {"excluded", yes_or_no("Whether the session was excluded")},
       {"withdrawn", yes_or_no("Whether the participant withdrew")},
-      {"erased", yes_or_no("Whether the participant had the data erased")},
+      {"erased", yes_or_no("Whether the data were erased at the participant's request")},
       {"pilot", yes_or_no("Whether the session is a pilot")},
       {"simulated", yes_or_no("Whether the participant was simulated, not a person")},
       {"counted_session", yes_or_no("Whether the session's trials enter the report")},
       {"device", {"Driver of the haptic device"}},
-      {"replaced_by", {"Participant who replaced this one in the order of enrolment"}},
+      {"replaced_by",
+       {"Id of the participant who replaced this one and inherited the enrolment number"}},
       {"after_look",
        {"Decisions about the session after its outcomes had been seen: excluded, replaced, "
         "erased"}},
@@ -157,17 +158,17 @@ Meanings of_collection() {
       {"replacement_reason", {"Why the participant was replaced"}},
       {"withdrawal_reason", {"Why the participant withdrew"}},
       {"largest_force_n", {"Largest force sent in the session's presentations", "N"}},
-      {"station", {"Station that the session was collected from; empty in a station's own file"}},
+      {"station", {"Station that recorded the session; empty in a station's own file"}},
       {"device_serial", {"Serial number of the haptic device"}},
       {"device_model", {"Model of the haptic device, as reported by it"}},
       {"device_firmware", {"Firmware of the haptic device, as reported by it"}},
       {"device_max_force_n", {"Largest force of the haptic device", "N"}},
       {"device_force_scale",
-       {"Calibration by the laboratory: felt newtons per newton of the driver, to the right, up "
-        "and towards the person"}},
+       {"Force calibration by the laboratory: felt newtons per newton of the driver along x "
+        "(right), y (up) and z (towards the person)"}},
       {"device_length_scale",
-       {"Calibration by the laboratory: true millimetres per millimetre of the driver, in the same "
-        "directions"}},
+       {"Length calibration by the laboratory: true millimetres per millimetre of the driver, "
+        "along the same axes"}},
       {"certificate",
        {"SHA-256 of the certificate of the device's acceptance, or UNVERIFIED DEVICE"}},
       {"servo_hz", {"Requested servo rate", "Hz"}},
@@ -177,8 +178,8 @@ Meanings of_collection() {
       {"pauses", {"Number of times that the session was paused"}},
       {"notes", {"Number of notes made during the session"}},
       {"answers", {"Answers of a session that has ended"}},
-      {"one_key", yes_or_no("Whether 95 % of 20 answers or more came from one key; only if that "
-                            "does not reveal outcomes")},
+      {"one_key", yes_or_no("Whether at least 95 % of 20 or more answers used one key; only if "
+                            "that does not reveal outcomes")},
   };
 }
 
@@ -191,7 +192,7 @@ Meanings of_what_was_said() {
         "",
         {{"choice", "one of several options"}, {"number", "a number"}, {"text", "words"}}}},
       {"wording", {"Wording of the question"}},
-      {"answer", {"A number, or the place of the chosen option, from 0"}},
+      {"answer", {"A number, or the index of the chosen option, from 0"}},
       {"words", {"Text of the chosen option, or typed text"}},
       {"event", {"Place of the event in its chain"}},
       {"incident", {"What happened", "", incident_levels()}},
@@ -203,15 +204,15 @@ Meanings of_what_was_said() {
        {"Which of the trial's explorations begins, from 1; if a trial presents several planes, "
         "each is explored once"}},
       {"code",
-       {"Reason of an interruption, the program's reason for a stop, code of a deviation, or cause "
-        "of a resumption"}},
+       {"Further information: reason of an interruption or of a stop by the program, code of a "
+        "deviation, or cause of a resumption"}},
       {"mark", {"Event that was sent to other instruments"}},
       {"value", {"Code of the event that was sent to other instruments"}},
       {"latency_s", {"From the event to the end of the write on the serial line", "s"}},
       {"lsl_time", {"Time of the event on the Lab Streaming Layer's clock", "s"}},
       {"lsl_s", {"Time of the event on the Lab Streaming Layer's clock", "s"}},
       {"lsl_uncertainty_s", {"Uncertainty of that clock's reading", "s"}},
-      {"safety_fault", {"Fault that the safety chain found"}},
+      {"safety_fault", {"Fault detected by the safety chain"}},
       {"device_fault", {"Fault that the device reported"}},
       {"text", {"Typed text"}},
       {"consent", {"Number of the participant's consent, from 1"}},
@@ -226,10 +227,10 @@ Meanings of_participants() {
       {"filename", {"File, below the folder of the participant's session"}},
       {"acq_time",
        {"Time of the first sample. Dates are shifted: each participant's first session opens on "
-        "1920-01-01 at 00:00:00, and later ones the true number of days after it; simulated "
+        "1920-01-01 at 00:00:00, and later sessions the true number of days after it; simulated "
         "sessions have no date"}},
-      {"age_band", {"Age as the participant gave it, in bands of ten years"}},
-      {"sex", {"Sex or gender as the participant gave it"}},
+      {"age_band", {"Age as stated by the participant, in bands of ten years"}},
+      {"sex", {"Sex or gender as stated by the participant"}},
       {"handedness",
        {"Handedness by the inventory's score: right above 60, left below -60",
         "",

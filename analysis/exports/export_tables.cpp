@@ -44,21 +44,6 @@ std::string contents_json(const record::StudyStore& store, bool blinded,
   return json_text(contents);
 }
 
-/// The kinds of events that no other export lists one by one.
-std::vector<record::EventKind> listed_kinds() {
-  using record::EventKind;
-  constexpr std::array kElsewhere = {
-      EventKind::opened,    EventKind::presented,    EventKind::first_contact, EventKind::answered,
-      EventKind::timed_out, EventKind::trace_stored, EventKind::marked,        EventKind::closed};
-  std::vector<EventKind> kinds = {EventKind::participant_noted};
-  for (const record::EventKindRow& row : record::event_kinds()) {
-    if (!belongs_to_file_chain(row.kind) && !std::ranges::count(kElsewhere, row.kind)) {
-      kinds.push_back(row.kind);
-    }
-  }
-  return kinds;
-}
-
 /// The detail of an interruption. Empty for other events, and for interruptions in virtual time.
 record::InterruptionDetail detail_of(const record::OpenedEvent& opened) {
   if (opened.event.kind != record::EventKind::interrupted || opened.secret.empty()) return {};
@@ -111,6 +96,20 @@ std::vector<ExportFile> csv_files(const std::vector<ResultTable>& tables,
 
 }  // namespace
 
+std::vector<record::EventKind> kinds_in_events_csv() {
+  using record::EventKind;
+  constexpr std::array kElsewhere = {
+      EventKind::opened,    EventKind::presented,    EventKind::first_contact, EventKind::answered,
+      EventKind::timed_out, EventKind::trace_stored, EventKind::marked,        EventKind::closed};
+  std::vector<EventKind> kinds = {EventKind::participant_noted};
+  for (const record::EventKindRow& row : record::event_kinds()) {
+    if (!belongs_to_file_chain(row.kind) && !std::ranges::count(kElsewhere, row.kind)) {
+      kinds.push_back(row.kind);
+    }
+  }
+  return kinds;
+}
+
 std::vector<ResultTable> exported_tables(const record::StudyStore& store,
                                          const std::optional<Outcomes>& outcomes,
                                          const std::vector<record::PersonalRecord>& consents) {
@@ -160,7 +159,7 @@ std::vector<ExportFile> event_files(const record::StudyStore& store, const study
                    "safety_fault", "device_fault", "flight", "simulated"},
                   {}};
   std::vector<ExportFile> files;
-  store.for_each_of(listed_kinds(), [&](const record::Event& stored) {
+  store.for_each_of(kinds_in_events_csv(), [&](const record::Event& stored) {
     const auto session = shown.find(record::session_about(stored));
     if (session == shown.end()) return;
     const record::SessionRow& row = *session->second;

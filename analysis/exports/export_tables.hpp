@@ -5,6 +5,7 @@
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/outcomes/outcomes.hpp"
 #include "analysis/report/results.hpp"
+#include "record/event.hpp"
 #include "record/personal_data.hpp"
 
 #include <filesystem>
@@ -38,7 +39,7 @@ std::vector<std::filesystem::path> export_csv(
     const std::filesystem::path& folder, const std::vector<record::PersonalRecord>& consents = {},
     const std::string& start = {});
 
-/// Writes people_tables beside those of the protocol's `export_model`.
+/// Writes people_tables beside the files of `export_r_model`.
 /// \return the files, in the order written
 /// \throws FileError if the folder or a file cannot be written
 std::vector<std::filesystem::path> export_typed_text(
@@ -56,6 +57,9 @@ std::vector<std::filesystem::path> export_events(const record::StudyStore& store
                                                  const study::StudyKey& key,
                                                  const Outcomes& outcomes,
                                                  const std::filesystem::path& folder);
+
+/// The kinds of events in events.csv: those that no other export lists one by one.
+[[nodiscard]] std::vector<record::EventKind> kinds_in_events_csv();
 
 /// The files that export_events writes.
 /// \param prefix  of every file's name

@@ -296,7 +296,7 @@ DataTable servo_table(const Collection& collection, bool simulated) {
 DataTable looks_table(const Outcomes& outcomes) {
   DataTable table{{"at", "kind", "participants", "participant", "station", "reason", "simulated"},
                   {}};
-  for (const Look& look : outcomes.looked.looks) {
+  for (const Look& look : outcomes.look_record.looks) {
     table.rows.push_back({utc_text(look.at), name_of(look.kind), std::int64_t{look.participants},
                           look.participant, std::int64_t{look.station}, look.reason,
                           flag(outcomes.simulated)});

@@ -1,5 +1,6 @@
 #include "analysis/measures/picture_set.hpp"
 #include "analysis/report/json_figures.hpp"
+#include "analysis/report/page/wording.hpp"
 #include "analysis/report/text_figures.hpp"
 #include "analysis/report/text_table.hpp"
 
@@ -23,7 +24,7 @@ std::string pictures_text(const MeasuredPictures& measured) {
          fmt::format("{:.2f}", p.original.entropy), fmt::format("{:.0f}", p.original.contrast),
          fmt::format("{:.3f}", p.original.correlation), fmt::format("{:.0f}", p.texture.contrast),
          fmt::format("{:.3f}", p.texture.correlation), fmt::format("{:.1f}", 1e3 * p.force_rms_n),
-         percent_of_share(p.renderable_share)});
+         share_figure(p.renderable_share)});
   }
   constexpr std::size_t kOneBlock = 140;
   return table.text(kOneBlock);

@@ -71,7 +71,7 @@ std::map<int, std::string> exclusion_reasons(const Outcomes& outcomes) {
 
 void add_looks(const Outcomes& outcomes, Departures& departures) {
   const int planned = outcomes.design.registration.participants;
-  for (const Look& look : outcomes.looked.looks) {
+  for (const Look& look : outcomes.look_record.looks) {
     if (!look.is_unregistered() && look.kind != LookKind::person) continue;
     const std::string station = look.station > 0 ? fmt::format(" at station {}", look.station) : "";
     if (look.kind == LookKind::person) {
@@ -120,7 +120,7 @@ void add_late_decisions(const Outcomes& outcomes, Departures& departures) {
       return reason(one);
     });
   };
-  const LookRecord& looked = outcomes.looked;
+  const LookRecord& looked = outcomes.look_record;
   std::map<int, std::string> reasons = exclusion_reasons(outcomes);
   std::set<int> without_rule = looked.excluded_afterwards;
   for (const int session : with_missed_catches(outcomes)) without_rule.erase(session);
@@ -153,7 +153,7 @@ void add_rules(const Outcomes& outcomes, Departures& departures) {
         const bool excluded = one.row.excluded && !one.row.erased;
         if (!excluded || met.contains(one.row.session)) return {};
         // Another departure gives the reason of a late exclusion.
-        const bool is_late = outcomes.looked.excluded_afterwards.contains(one.row.session);
+        const bool is_late = outcomes.look_record.excluded_afterwards.contains(one.row.session);
         return is_late ? "" : reasons[one.row.session];
       });
   if (without > 0) {

@@ -98,7 +98,7 @@ Outcomes without_identities(Outcomes outcomes) {
   }
   outcomes.incidents.clear();
   outcomes.marks.clear();
-  for (Look& look : outcomes.looked.looks) {
+  for (Look& look : outcomes.look_record.looks) {
     rename(names, look.participant);
     look.reason.clear();
   }

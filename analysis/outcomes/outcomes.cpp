@@ -198,7 +198,7 @@ Outcomes opened(const record::StudyStore& store, const study::StudyKey& key, Sho
   require_sealed_ends(events, keys);
   outcomes.collection = load_collection(events, keys);
   outcomes.visual = outcomes.collection.visual;
-  outcomes.looked = look_record(store, key);
+  outcomes.look_record = look_record(store, key);
   std::vector<record::SessionRow> shown;
   std::ranges::copy_if(rows, std::back_inserter(shown), shows);
   if (participant.empty()) {

@@ -76,7 +76,7 @@ struct Outcomes {
   int sessions_unseen = 0;
   std::vector<TrialOutcome> trials;  ///< by session and trial, without erased sessions
   study::Study design;               ///< the study file, including the rule for drawing orders
-  LookRecord looked;                 ///< looks at outcomes, and decisions after them
+  LookRecord look_record;            ///< looks at outcomes, and decisions after them
   Collection collection;
   std::vector<Characteristic> demographics{};  ///< of the participants who count
   std::vector<QuestionAnswer> answers{};       ///< of `sessions`

@@ -31,7 +31,7 @@ std::string place_of(const record::Event& event) {
 [[noreturn]] void refuse_sealed(const record::Event& event) {
   throw VerificationError(place_of(event) +
                           ": the sealed part does not open: the event is damaged, or was rewritten "
-                          "without the key; restore a backup of the database");
+                          "without the key; restore a backup of the database [does-not-open]");
 }
 
 /// Calls `visit` with an opened event and its secret text, if its session has a key.
@@ -154,7 +154,7 @@ void require_key_of(const record::StudyStore& store, const study::StudyKey& key)
   if (key.investigator_signature != commitment.investigator) {
     throw VerificationError(
         "the database names another investigator than the key: it was not created with this "
-        "study's files; give the key that belongs to it");
+        "study's files; give the key that belongs to it [other-investigator]");
   }
 }
 

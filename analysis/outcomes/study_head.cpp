@@ -72,7 +72,7 @@ Json demographics_array(const std::vector<Characteristic>& characteristics) {
   return all;
 }
 
-Json said_array(const std::vector<QuestionSummary>& questions) {
+Json questionnaire_array(const std::vector<QuestionSummary>& questions) {
   Json all = Json::array();
   for (const QuestionSummary& one : questions) {
     Json question{{"question", one.question}, {"wording", one.wording}, {"answered", one.answered}};
@@ -131,8 +131,8 @@ StudyHead head_of(const Outcomes& outcomes) {
   head.registration = outcomes.design.registration;
   head.explorations = explorations_of(outcomes);
   head.demographics = outcomes.demographics;
-  head.said = summaries_of(outcomes);
-  head.looks = outcomes.looked.looks;
+  head.closing_answers = summaries_of(outcomes);
+  head.looks = outcomes.look_record.looks;
   head.departures = departures_of(outcomes);
   head.course = course_of(outcomes, head.participants);
   return head;
@@ -141,7 +141,7 @@ StudyHead head_of(const Outcomes& outcomes) {
 void put_people(nlohmann::ordered_json& object, const StudyHead& head) {
   object["public"] = head.collection.is_public;
   object["demographics"] = demographics_array(head.demographics);
-  object["said"] = said_array(head.said);
+  object["said"] = questionnaire_array(head.closing_answers);
   object["exploration"] = explorations_array(head.explorations);
 }
 

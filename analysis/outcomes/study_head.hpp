@@ -35,18 +35,18 @@ struct StudyHead {
   int participants = 0;  ///< participants with a session that counts
   int trials = 0;        ///< trials that count
   std::vector<std::string> classes;
-  Collection collection;                       ///< how it was collected
-  record::StudyState state{};                  ///< unblinded; an interim look if not closed
-  study::Registration registration;            ///< the registration deposited before collection
-  std::vector<std::string> warnings;           ///< ways to misread the numbers
-  std::vector<Explorations> explorations{};    ///< of each method, in the order of Outcomes
-  std::vector<Characteristic> demographics{};  ///< of the participants who count, in bands
-  std::vector<QuestionSummary> said{};         ///< answers to closing questions
-  std::vector<Look> looks{};                   ///< all looks at outcomes
-  std::vector<std::string> departures{};       ///< departures_of
-  StudyCourse course{};                        ///< planned and actual numbers of people and looks
-  std::optional<PrimaryResult> primary{};      ///< if the protocol has a registered question
-  std::optional<Prevalence> prevalence{};      ///< if each participant is tested against chance
+  Collection collection;                           ///< how it was collected
+  record::StudyState state{};                      ///< unblinded; an interim look if not closed
+  study::Registration registration;                ///< the registration deposited before collection
+  std::vector<std::string> warnings;               ///< ways to misread the numbers
+  std::vector<Explorations> explorations{};        ///< of each method, in the order of Outcomes
+  std::vector<Characteristic> demographics{};      ///< of the participants who count, in bands
+  std::vector<QuestionSummary> closing_answers{};  ///< answers to closing questions
+  std::vector<Look> looks{};                       ///< all looks at outcomes
+  std::vector<std::string> departures{};           ///< departures_of
+  StudyCourse course{};                    ///< planned and actual numbers of people and looks
+  std::optional<PrimaryResult> primary{};  ///< if the protocol has a registered question
+  std::optional<Prevalence> prevalence{};  ///< if each participant is tested against chance
 };
 
 /// Fills in everything except the warnings, `primary` and `prevalence`.

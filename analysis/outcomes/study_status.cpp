@@ -407,7 +407,7 @@ std::string status_text(const StudyStatus& status, const std::vector<NextCommand
       "{}, {}{} complete{}{}\n", name_of(status.state), counted(status.complete, "participant"),
       status.planned > 0 ? fmt::format(" of {}", status.planned) : "",
       status.state.question ? "; a registered look was made" : "", status.pilot ? "; PILOT" : "");
-  if (!status.head_fault.empty()) text += "NOT AS IT WAS LEFT: " + status.head_fault + "\n";
+  if (!status.head_fault.empty()) text += "EVENTS ARE MISSING: " + status.head_fault + "\n";
   text += people_text(status);
   const auto list = [&](const char* title, const std::vector<std::string>& lines) {
     if (!lines.empty()) text += heading(title, status.simulated);

@@ -3,6 +3,7 @@
 #include "analysis/paper/paper_claims.hpp"
 #include "analysis/paper/paper_intervals.hpp"
 #include "analysis/paper/published.hpp"
+#include "analysis/report/page/wording.hpp"
 #include "analysis/report/text_figures.hpp"
 #include "analysis/statistics/proportion.hpp"
 
@@ -396,7 +397,7 @@ double published_mean() {
 void add_interval_row(Table& table, std::string name, double share, int trials_of_person) {
   const int n = kPublishedPeople * trials_of_person;
   const Proportion proportion{n, static_cast<int>(std::lround(share * n))};
-  std::vector<Cell> row = {std::move(name), percent_of_share(share),
+  std::vector<Cell> row = {std::move(name), share_figure(share),
                            fmt::format("{} of {}", proportion.correct, proportion.n),
                            percent_range(clopper_pearson_interval(proportion))};
   for (const double spread : kSpreads) {
@@ -461,8 +462,8 @@ Section figure_6() {
        accuracy_table(),
        Cited{fmt::format("Even with the largest spread that is possible, the lowest interval "
                          "ends at {}, which is {} chance ({}).",
-                         percent_of_share(least), least > chance ? "above" : "not above",
-                         percent_of_share(chance))},
+                         share_figure(least), least > chance ? "above" : "not above",
+                         share_figure(chance))},
        Cited{"We have no numbers to set beside these: no person has been tested with this program. "
              "Simulated participants can run the same study (docs/stimuli.md), but they "
              "describe a model of a hand and of a sense, not people."}}};
@@ -526,7 +527,7 @@ Section table_3(const PaperMeasures& measures, const PaperPictures& pictures) {
            "which accuracies are not, and the paper does not say whether it averaged ratios or "
            "accuracies. Without numbers of people and trials, without knowing whether the same "
            "people felt both methods, and without a spread, no interval follows from it.",
-           kPublishedDecibel, ratio, percent_of_share(adaptive), percent_of_share(tv_gabor))},
+           kPublishedDecibel, ratio, share_figure(adaptive), share_figure(tv_gabor))},
        decibel_table(adaptive, tv_gabor)}};
 }
 

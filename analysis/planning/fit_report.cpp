@@ -1,5 +1,6 @@
 #include "analysis/planning/fit_report.hpp"
 
+#include "analysis/report/page/wording.hpp"
 #include "analysis/report/text_figures.hpp"
 #include "analysis/report/text_table.hpp"
 #include "core/strict_json.hpp"
@@ -56,10 +57,11 @@ std::string swap_text(const SubjectFit& fit) {
   std::string text;
   for (const SwapCandidate& one : fit.swaps) {
     text += analysis::wrapped(
-        "  ", fmt::format("pictures of \"{}\" and \"{}\" exchanged: log likelihood "
-                          "{:+.1f}, {:.1f} needed: {}",
-                          one.labels.first, one.labels.second, one.gain, fit.swap_threshold,
-                          one.taken ? "taken" : "not taken"));
+        "  ",
+        fmt::format(
+            "pictures of \"{}\" and \"{}\" swapped: log likelihood {:+.1f}, {:.1f} needed: {}",
+            one.labels.first, one.labels.second, one.gain, fit.swap_threshold,
+            one.taken ? "taken" : "not taken"));
   }
   return text;
 }
@@ -223,8 +225,8 @@ std::string fit_text(const AccuracyFit& fit, const FitOrigin& origin) {
   std::string text = device_lines(origin) + origin.study + ": a subject for published accuracies\n";
   analysis::TextTable table({"class", "published", "expected from the fit", "difference, points"});
   for (std::size_t c = 0; c < fit.classes.size(); ++c) {
-    table.add({fit.classes[c], analysis::percent_of_share(fit.wanted[c]),
-               analysis::percent_of_share(fit.reached[c]),
+    table.add({fit.classes[c], analysis::share_figure(fit.wanted[c]),
+               analysis::share_figure(fit.reached[c]),
                fmt::format("{:+.2f}", 100.0 * (fit.reached[c] - fit.wanted[c]))});
   }
   text += table.text() + analysis::wrapped("  ", biases_text(fit.subject));

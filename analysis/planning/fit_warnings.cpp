@@ -87,21 +87,20 @@ void warn_of_guessing(const SubjectFit& fit, std::vector<std::string>& warnings)
     if (p <= kGuessing) return;
   }
   warnings.push_back(
-      "the answers cannot be distinguished from guessing: they depend on the stimulus no more than "
-      "by chance; noise and lapses have no upper limit");
+      "the answers cannot be distinguished from guessing: they do not depend on the stimulus "
+      "beyond chance; noise and lapses have no upper limit");
 }
 
 /// Warns if people differ more, or less, than in the subject model.
 void warn_of_spread(const SubjectFit& fit, std::vector<std::string>& warnings) {
   if (!fit.people || fit.people->assumed_p > kMisfit) return;
   const std::string what = fmt::format(
-      "participants differ {} than the subject says (spread of noise {:.2f}, p = {:.3g})",
+      "participants differ {} than in the subject model (spread of noise {:.2f}, p = {:.3g})",
       fit.people->spread > fit.assumed_spread ? "more" : "less", fit.assumed_spread,
       fit.people->assumed_p);
   warnings.push_back(
       fit.spread_replaced
-          ? what + fmt::format(": everything was fitted with the spread of their own "
-                               "answers, {:.2f}",
+          ? what + fmt::format(": everything was fitted with the estimated spread, {:.2f}",
                                fit.people->spread)
           : what + ": the fit does not describe these people; leave out --fix spread");
 }
@@ -133,15 +132,15 @@ void warn_of_open_ends(const SubjectFit& fit, std::vector<std::string>& warnings
   }
   if (names.empty()) return;
   warnings.push_back("an end of the profile's interval was not found within the searched range: " +
-                     names + "; regard the interval as open there");
+                     names + "; the interval is open there");
 }
 
 void warn_of_flatness(const SubjectFit& fit, std::vector<std::string>& warnings) {
   const auto r = fit.noise_lapse_correlation;
   if (r && std::abs(*r) > kHardlyApart) {
     warnings.push_back(
-        fmt::format("noise and lapse can hardly be separated (their estimates correlate {:.2f}): "
-                    "fix one of them with --fix",
+        fmt::format("noise and lapse can hardly be distinguished (their estimates correlate "
+                    "{:.2f}): fix one of them with --fix",
                     *r));
   }
   for (const ParameterEstimate& one : fit.estimates) {
@@ -153,8 +152,7 @@ void warn_of_flatness(const SubjectFit& fit, std::vector<std::string>& warnings)
     }
     const bool no_lapses = one.name == "lapse" && one.value == 0.0;
     if (one.at_bound && !no_lapses) {
-      warnings.push_back(name +
-                         " lies at an end of the searched range: the answers do not limit it");
+      warnings.push_back(name + " is at an end of the searched range: the answers do not limit it");
     }
     if (one.monte_carlo_error > kLargeMonteCarloShare * *one.standard_error) {
       warnings.push_back(name + " depends on the sample of explorations: give more --explorations");
@@ -198,17 +196,18 @@ std::vector<std::string> fit_warnings(const FitCounts& counts, const SubjectFit&
   warn_of_open_ends(fit, warnings);
   if (const ParameterEstimate* lapse = estimate_of(fit, "lapse"); lapse && lapse->value == 0.0) {
     warnings.push_back(
-        "the answers need no lapses: 0 is the most likely value, and the interval's end");
+        "the estimated lapse rate is 0, which is also the lower end of its interval");
   }
   if (counts.methods.size() > 1) {
     warnings.push_back(
-        "noise, lapse and bias are the same for all methods: methods differ only in what is felt");
+        "noise, lapse and bias are assumed equal for all methods, which differ only in their "
+        "textures");
   }
   if (const std::string ignored = keys_that_fits_ignore(fit.subject); !ignored.empty()) {
     warnings.push_back(
-        "the fit treats all trials of a person alike, with one training for everybody; it ignores "
-        "the subject model's values of " +
-        ignored + ", and so finds the noise of an average trial");
+        "the fit assumes that all trials of a person are equivalent, and one training for "
+        "everybody; it ignores the subject model's values of " +
+        ignored + ", so the estimated noise is that of an average trial");
   }
   if (fit.p && *fit.p < kMisfit) {
     warnings.push_back(

@@ -41,16 +41,17 @@ constexpr const char* kWhatItIs =
     "a simulated hand.";
 constexpr const char* kWhatPilotsSay =
     "Decibels by which a stimulus's gain lies above the one at which people of this laboratory, on "
-    "its device, would tell it from the blank plane in 79 % of three intervals: the thresholds of "
-    "its detection study (/rendering/gains/curve), carried to these stimuli by a modelled device "
-    "in a simulated hand. The blank plane itself: power above the curve.";
+    "its device, would distinguish it from the blank plane with 79 % right in three intervals: the "
+    "thresholds of its detection study (/rendering/gains/curve), carried to these stimuli by a "
+    "modelled device in a simulated hand. The blank plane itself: power above the curve.";
 constexpr const char* kWhatSimulatedPilotsSay =
     "SIMULATED: decibels above the level that simulated pilots distinguish from the blank plane "
     "with 79 % right in three intervals; a rehearsal of the detection study with people.";
 constexpr const char* kWhoseItIs =
-    "Provisional: until a detection study of pilots takes the curve's place (docs/perception.md). "
-    "The curves are other people's, passive and steady; active movement raises thresholds. Whether "
-    "people feel by them is open until human data that were not fitted are predicted.";
+    "Provisional, until a detection study with pilot participants replaces the curve "
+    "(docs/perception.md). The curves were measured on other people with passive, steady "
+    "vibrations; active movement raises thresholds. They are not validated until they predict "
+    "human data to which they were not fitted.";
 
 std::vector<std::string> devices_of(const StimulusLevels& levels) {
   std::vector<std::string> devices;
@@ -128,12 +129,12 @@ analysis::Table table_in_all(const study::Study& study, const StimulusLevels& le
   table.notes = {{levels.simulated_pilots ? kWhatSimulatedPilotsSay
                   : levels.provisional    ? kWhatItIs
                                           : kWhatPilotsSay},
-                 {"With the gains times the number in the last row, every stimulus would stand 10 "
-                  "dB up, as far as motors and stability allow."}};
+                 {"Gains multiplied by the number in the last row would raise every stimulus to 10 "
+                  "dB, as far as motors and stability allow."}};
   if (study.trials.rove_db > 0.0) {
-    table.notes.push_back(
-        {fmt::format("Of the middle of the {:g} dB over which gains are roved (/trials/rove_db).",
-                     study.trials.rove_db)});
+    table.notes.push_back({fmt::format(
+        "For the middle of the {:g} dB range over which gains are roved (/trials/rove_db).",
+        study.trials.rove_db)});
   }
   if (levels.provisional) table.notes.push_back({kWhoseItIs});
   return table;
@@ -361,10 +362,22 @@ Json json_of_all(const study::Study& study, const StimulusLevels& levels) {
           {"by_level_alone", json_by_level_alone(study, levels)}};
 }
 
-/// For the methods: on each device, from the weakest stimulus by one curve to the strongest by any.
-std::string levels_sentence(const StimulusLevels& levels) {
+/// Whether a session was felt on the model of this device, or on a device with a driver of this
+/// name.
+bool is_used(const std::string& device, const analysis::Collection& collection) {
+  const std::string recorded = device == "ideal" ? "simulated" : "simulated " + device;
+  return std::ranges::any_of(collection.sessions, [&](const analysis::SessionRecord& session) {
+    return session.row.device == recorded || session.row.device == device;
+  });
+}
+
+/// For the methods: on each device that was used, from the weakest stimulus by one curve to the
+/// strongest by any.
+std::string levels_sentence(const StimulusLevels& levels, const analysis::Collection& collection) {
+  const std::vector<std::string> devices = devices_of(levels);
   std::vector<std::string> ranges;
-  for (const std::string& device : devices_of(levels)) {
+  for (const std::string& device : devices) {
+    if (devices.size() > 1 && !is_used(device, collection)) continue;
     double low_db = std::numeric_limits<double>::max();
     double high_db = std::numeric_limits<double>::lowest();
     for (const PlaneLevels& one : levels.levels) {
@@ -372,12 +385,13 @@ std::string levels_sentence(const StimulusLevels& levels) {
       low_db = std::min(low_db, range.low_db);
       high_db = std::max(high_db, range.high_db);
     }
-    ranges.push_back(range_cell(low_db, high_db) + " dB on " + device);
+    ranges.push_back(range_cell(low_db, high_db) + " dB on " +
+                     (device == "ideal" ? "an ideal device" : device));
   }
   if (ranges.empty() || levels.stimuli.empty()) return {};
   return fmt::format(
-      "By the models of a hand and of the device, stimuli stood above the level at which they are "
-      "told from the blank plane in 79 % of three intervals by {}, {}.",
+      "By models of a hand and of the device, gains were above those at which a stimulus is "
+      "distinguished from the blank plane in 79 % of trials with three intervals by {}, {}.",
       listed(ranges),
       levels.provisional ? "over two published curves of thresholds for vibration"
                          : "by thresholds measured in this laboratory");
@@ -429,7 +443,7 @@ class LevelledResults final : public ResultsWithSection {
   analysis::Document document(const analysis::Provenance& provenance,
                               const analysis::Pictures& pictures) const override {
     analysis::Document document = ResultsWithSection::document(provenance, pictures);
-    analysis::add_to_stimuli(document, levels_sentence(levels_));
+    analysis::add_to_stimuli(document, levels_sentence(levels_, head().collection));
     return document;
   }
   std::string json() const override {
@@ -493,14 +507,14 @@ std::vector<std::string> level_warnings(const study::Study& study, const Stimulu
     if (high_db(i) < high_db(weakest)) weakest = i;
   }
   if (weak == 0) return {};
-  return {fmt::format(
-      "/rendering/{}: {} of {} stimuli stand less than {:g} dB above the threshold on {} by either "
-      "curve, {} {} dB: people may not feel them; {}",
-      study.rendering.gains ? "gains" : "pitch_mm", weak, levels.stimuli.size(),
-      simulation::kMinLevelDb, device, name_of_stimulus(study, levels.stimuli[weakest]),
-      range_cell(levels.levels[weakest], device),
-      study.rendering.gains ? "raise them"
-                            : "double it and filter_mm, with crops of half the side")};
+  return {
+      fmt::format("/rendering/{}: {} of {} stimuli are less than {:g} dB above the threshold on {} "
+                  "by either curve, {} {} dB: people may not feel them; {}",
+                  study.rendering.gains ? "gains" : "pitch_mm", weak, levels.stimuli.size(),
+                  simulation::kMinLevelDb, device, name_of_stimulus(study, levels.stimuli[weakest]),
+                  range_cell(levels.levels[weakest], device),
+                  study.rendering.gains ? "raise them"
+                                        : "double it and filter_mm, with crops of half the side")};
 }
 
 std::string range_words(const PlaneLevels& levels) {
@@ -523,12 +537,12 @@ std::unique_ptr<const analysis::Results> with_levels_note(
     std::unique_ptr<const analysis::Results> results) {
   return std::make_unique<ResultsWithSection>(
       std::move(results),
-      analysis::Section{"levels",
-                        kTitle,
-                        {analysis::Cited{"Not computed for the terminal: a simulated hand would "
-                                         "stroke every stimulus on every device. touchtrial report "
-                                         "DB --out DIR has the table, and so has touchtrial "
-                                         "prepare."}}});
+      analysis::Section{
+          "levels",
+          kTitle,
+          {analysis::Cited{"Not computed for the terminal, because a simulated hand would have to "
+                           "stroke every stimulus on every device; see touchtrial report DB --out "
+                           "DIR, or touchtrial prepare."}}});
 }
 
 }  // namespace touchtrial::planning

@@ -65,8 +65,7 @@ void put_state(nlohmann::ordered_json& object, const record::StudyState& state, 
 [[nodiscard]] nlohmann::ordered_json registration_object(const study::Registration& registration);
 /// Quartiles with their n.
 [[nodiscard]] nlohmann::ordered_json quartiles_json(const Quartiles& quartiles);
-/// Adds whether the report is public, what participants told about themselves in bands, and how
-/// hands explored.
+/// Adds whether the report is public, participants' characteristics in bands, and exploration.
 void put_people(nlohmann::ordered_json& object, const StudyHead& head);
 /// Adds what was registered, the answer, the prevalence, looks at outcomes and departures.
 void put_registered(nlohmann::ordered_json& object, const StudyHead& head);

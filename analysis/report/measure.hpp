@@ -35,6 +35,7 @@ struct Measure {
   /// Columns of a CSV file: one for a number, one for each end or member of an interval or object;
   /// an empty name leaves that part out.
   std::vector<std::string> columns{};
+  std::vector<std::string> within{};  ///< members of a member that is an object
 
   /// The same number with a note.
   [[nodiscard]] Measure with(std::string text, std::vector<Source> sources = {}) && {
@@ -118,13 +119,13 @@ template <typename Row, typename Written, typename Get>
           }};
 }
 
-/// A column that no file has, of numbers that stand in it by themselves.
+/// A column without a member of results.json.
 template <typename Row, typename Get>
 [[nodiscard]] Measure<Row> column_of(std::string title, Get get) {
   return {"", std::move(title), {}, [get](const Row& row) { return Cell(std::invoke(get, row)); }};
 }
 
-/// A member that no table has.
+/// A member without a column.
 template <typename Row, typename Get>
 [[nodiscard]] Measure<Row> member_of(std::string member, Get get) {
   return {std::move(member),
@@ -133,7 +134,7 @@ template <typename Row, typename Get>
           {}};
 }
 
-/// A number that no table has.
+/// A number without a column.
 template <typename Row, typename Get>
 [[nodiscard]] Measure<Row> number_member(std::string member, Get get) {
   return member_of<Row>(std::move(member),
@@ -161,8 +162,8 @@ template <typename Row, typename Part, typename Get>
 [[nodiscard]] MeasureList<Row> measures_in(Get get, const MeasureList<Part>& of_part) {
   MeasureList<Row> all;
   for (const Measure<Part>& one : of_part) {
-    Measure<Row> outer{one.member, one.title,      {},         {}, one.align,
-                       one.notes,  one.only_known, one.columns};
+    Measure<Row> outer{one.member, one.title,      {},          {},        one.align,
+                       one.notes,  one.only_known, one.columns, one.within};
     const auto of = [get](auto written, auto missing) {
       return [get, written, missing](const Row& row) -> decltype(missing) {
         const auto& got = std::invoke(get, row);
@@ -221,16 +222,41 @@ template <typename Row>
   return array_json(rows, [&](const Row& row) { return object_of(row, measures); });
 }
 
+/// The names of the members; of members of an object "outer.inner".
+template <typename Row>
+[[nodiscard]] std::vector<std::string> members_of(const MeasureList<Row>& measures) {
+  std::vector<std::string> all;
+  for (const Measure<Row>& one : measures) {
+    if (one.member.empty()) continue;
+    all.push_back(one.member);
+    for (const std::string& inner : one.within) all.push_back(one.member + "." + inner);
+  }
+  return all;
+}
+
 /// One member that is an object: the measures of a part of the row; null without the part.
 template <typename Row, typename Part, typename Get>
 [[nodiscard]] Measure<Row> object_in(std::string member, Get get, MeasureList<Part> of_part) {
-  return member_of<Row>(
+  std::vector<std::string> within = members_of(of_part);
+  Measure<Row> object = member_of<Row>(
       std::move(member),
       [get, of_part = std::move(of_part)](const Row& row) -> nlohmann::ordered_json {
         const auto& got = std::invoke(get, row);
         const Part* part = part_in<Part, std::remove_cvref_t<decltype(got)>>(got);
         return part == nullptr ? nlohmann::ordered_json() : object_of(*part, of_part);
       });
+  object.within = std::move(within);
+  return object;
+}
+
+/// The part as one member of results.json, and its measures as columns of a table.
+template <typename Row, typename Part, typename Get>
+[[nodiscard]] MeasureList<Row> part_of(std::string member, Get get,
+                                       const MeasureList<Part>& of_part) {
+  MeasureList<Row> all = measures_in<Row>(get, of_part);
+  for (Measure<Row>& one : all) one.member.clear();
+  all.push_back(object_in<Row>(std::move(member), get, of_part));
+  return all;
 }
 
 /// The cell of a CSV file with a number or text of results.json.

@@ -3,10 +3,12 @@
 #include "analysis/outcomes/recorded_pack.hpp"
 #include "analysis/report/methods_parts.hpp"
 #include "core/errors.hpp"
+#include "engine/rendering/field_statistics.hpp"
 #include "record/payload_json.hpp"
 
 #include <algorithm>
 #include <set>
+#include <stdexcept>
 #include <utility>
 
 namespace touchtrial::analysis {
@@ -29,19 +31,23 @@ std::optional<double> rate_of(const record::StudyStore& store) {
 }
 
 void add_pack(const engine::Pack& pack, const study::StudyKey& key, RecordedStudy& recorded) {
+  RecordedStudy read = recorded;
   try {
     for (const study::KeyedStimulus& one : key.stimuli) {
-      recorded.gains.push_back(pack.entry(one.code).gains);
-      const PlaneGeometry plane = pack.map(one.code).view().geometry;
-      if (std::ranges::find(recorded.planes, plane) == recorded.planes.end()) {
-        recorded.planes.push_back(plane);
-      }
+      const engine::Gains gains = pack.entry(one.code).gains;
+      const engine::MappedField field = pack.map(one.code);
+      const PlaneGeometry plane = field.view().geometry;
+      read.gains.push_back(gains);
+      read.lateral_rms_n.push_back(
+          engine::field_statistics(field.view(), gains, key.study.rendering).tangential_rms_n);
+      if (std::ranges::find(read.planes, plane) == read.planes.end()) read.planes.push_back(plane);
     }
   } catch (const FileError&) {
-    // What a damaged pack holds is not known.
-    recorded.gains.clear();
-    recorded.planes.clear();
+    return;  // What a damaged pack holds is not known.
+  } catch (const std::invalid_argument&) {
+    return;
   }
+  recorded = std::move(read);
 }
 
 }  // namespace

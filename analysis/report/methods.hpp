@@ -31,6 +31,7 @@ struct RecordedStudy {
   std::string pack{};                   ///< digest of the pack, hexadecimal; empty: not known
   std::optional<double> rate_hz{};      ///< of the servo, as the first trace states it
   std::vector<engine::Gains> gains{};   ///< of each stimulus; empty: no pack in reach
+  std::vector<double> lateral_rms_n{};  ///< engine::FieldStatistics::tangential_rms_n, likewise
   std::vector<PlaneGeometry> planes{};  ///< the different sizes of planes; empty likewise
 };
 

@@ -56,15 +56,33 @@ void say_question(const study::Registration& registration, Paragraph& paragraph)
                             quoted_statement(registration.primary_test)));
 }
 
-std::string validity_sentence(const study::Study& study) {
+/// ", and 12 of 480 scored trials did not meet it"
+std::string trials_words(const Outcomes& outcomes) {
+  int trials = 0;
+  int invalid = 0;
+  int unanswered = 0;
+  for (const TrialOutcome& one : outcomes.trials) {
+    if (!one.counted) continue;
+    ++trials;
+    invalid += one.valid() ? 0 : 1;
+    unanswered += one.row.answer ? 0 : 1;
+  }
+  if (trials == 0) return {};
+  return fmt::format("; {} of {} did not meet it{}", invalid, counted(trials, "scored trial"),
+                     unanswered > 0 ? fmt::format(", and {} had no answer", unanswered) : "");
+}
+
+std::string validity_sentence(const Outcomes& outcomes) {
+  const study::Study& study = outcomes.design;
   const auto& analysis = study.registration.analysis;
   const bool decides = analysis && analysis->exclusion_rules &&
                        analysis->exclusion_rules->invalid_trials.has_value();
-  return fmt::format("A trial was called valid by a rule that was fixed beforehand ({}); {}.",
+  return fmt::format("A trial was called valid by a rule that was fixed beforehand ({}); {}{}.",
                      joined_fields(study::fields_of(study.trials.validity)),
                      decides
                          ? "trials that were not counted towards the exclusion of sessions alone"
-                         : "no trial was left out for it");
+                         : "no trial was left out for it",
+                     trials_words(outcomes));
 }
 
 std::string versions_sentence(const Outcomes& outcomes, const RecordedStudy& recorded) {
@@ -94,7 +112,7 @@ Cited analysis_paragraph(const Outcomes& outcomes, const RecordedStudy& recorded
   Paragraph paragraph;
   say_question(outcomes.design.registration, paragraph);
   paragraph.say(protocol.statistics);
-  paragraph.say(validity_sentence(outcomes.design));
+  paragraph.say(validity_sentence(outcomes));
   paragraph.say(versions_sentence(outcomes, recorded));
   return paragraph.cited();
 }

@@ -1,5 +1,6 @@
 // What participants were told, saw and heard, and how a session went.
 #include "analysis/report/methods_parts.hpp"
+#include "analysis/report/page/wording.hpp"
 #include "core/hash.hpp"
 #include "core/strict_json.hpp"
 #include "core/text.hpp"
@@ -8,6 +9,9 @@
 #include "study/setting_words.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <map>
+#include <ratio>
 #include <set>
 
 #include <fmt/format.h>
@@ -48,6 +52,59 @@ std::string hash_of_texts(const study::SessionPlan& session) {
   return to_hex(sha256(bytes_of(text))).substr(0, kHashShown);
 }
 
+/// The question as screens ask it, in the participants' language.
+std::string question_on_screen(const study::Study& study, const study::Ask& ask) {
+  std::string key = ask.title();
+  if (key.empty()) {
+    const bool spoken = study.session.sight == study::Sight::blindfold;
+    key = spoken                          ? "answer_spoken_title"
+          : study.presented_methods() > 1 ? "answer_fits_title"
+                                          : "answer_title";
+  }
+  const study::Texts texts = study::texts_of(study.session);
+  const auto& screens = texts.at("screens");
+  const auto text = screens.find(key);
+  return quoted_statement(text == screens.end() ? key : text->second);
+}
+
+std::string answer_sentence(const study::Study& study, const study::Ask& ask) {
+  std::string text = "The question was " + question_on_screen(study, ask) + "; ";
+  text += study.session.sight == study::Sight::blindfold
+              ? "answers were spoken, and the experimenter entered them"
+              : "answers were given with keys or the mouse";
+  text += ", without a limit of time";
+  if (ask.scales().empty()) text += ", and could be changed once";
+  return text + ".";
+}
+
+/// What the screen shows in a trial before the question.
+/// \param is_visual  whether textures are shown on it instead of felt
+std::string screen_sentence(const study::Study& study, const study::Ask& ask, bool is_visual) {
+  if (is_visual || study.session.sight == study::Sight::blindfold) return {};
+  std::string text = "Participants began each trial by a key; while a plane was felt the screen ";
+  text += ask.planes > 1
+              ? "showed which plane of the trial it was and how much of its time was over"
+              : "was empty";
+  if (!study::practice_of(study).trials.empty()) {
+    text += ", and in practice bars of force and speed with the ranges of the instructions";
+  }
+  return text + ".";
+}
+
+/// The size of a pixel of the participants' screen, if it was the same in all sessions.
+std::string pixel_sentence(const study::Ask& ask,
+                           const std::vector<const SessionRecord*>& sessions) {
+  if (!ask.has_pictures() && ask.scales().empty()) return {};
+  std::set<std::string> sizes;
+  for (const SessionRecord* session : sessions) {
+    if (!session->station || !session->station->screen) continue;
+    const record::ScreenRecord& screen = *session->station->screen;
+    sizes.insert(fmt::format("{:.3g} mm ({})", screen.mm_per_px, screen.source));
+  }
+  if (sizes.empty()) return {};
+  return "A pixel of the participants' screen measured " + listed(sizes, " or ") + ".";
+}
+
 std::string instructions_sentence(const study::SessionPlan& session) {
   const auto own = session.instructions.find(session.language);
   const bool has_own = own != session.instructions.end() && !own->second.empty();
@@ -72,7 +129,15 @@ std::string practice_sentence(const study::Study& study,
   if (practice.trials.empty()) return "There was no practice.";
   const bool is_judged = practice.criterion > 0;
   std::string text = "Practice came first: " + study::practice_words(study);
-  if (is_judged) text += ", with feedback after each answer";
+  if (!study.practice.classes.empty()) {
+    text += fmt::format(" (textures: {})",
+                        listed(study.practice.classes, " and ", &study::StudyClass::label));
+  }
+  if (is_judged) {
+    text +=
+        ", with feedback after each answer; whoever did not reach the criterion went on to the "
+        "trials and was noted";
+  }
   const int failed = sessions_with(sessions, "practice-not-passed");
   if (failed > 0) {
     text += fmt::format("; the criterion was not reached in {}", counted(failed, "session"));
@@ -81,9 +146,9 @@ std::string practice_sentence(const study::Study& study,
 }
 
 std::string after_time(study::OnTimeout on_timeout) {
-  return on_timeout == study::OnTimeout::fade
-             ? "then the plane faded, and an answer was still asked for"
-             : "then the plane faded, and the trial ended without an answer";
+  return fmt::format("then the plane faded within {} ms, and {}", study::kFade.count(),
+                     on_timeout == study::OnTimeout::fade ? "an answer was still asked for"
+                                                          : "the trial ended without an answer");
 }
 
 std::string free_sentence(const study::Study& study) {
@@ -95,19 +160,21 @@ std::string free_sentence(const study::Study& study) {
     text += " An answer needed a touch: " + study::touch_words(trials.answer_after) + ".";
   }
   return text +
-         " Until the time was up participants could go back to the plane before they answered, and "
-         "could change an answer before they went on.";
+         " Participants ended the exploration themselves, and until the time was up could go back "
+         "to the plane before they answered.";
 }
 
 std::string clock_sentence(const study::Study& study, const study::Ask& ask,
                            const study::InContact& exploring) {
   return fmt::format(
       "Each of a trial's {} planes appeared when the stylus was more than {:g} mm above it, and "
-      "could be felt for {} s, which were counted only in contact and at {}; tones marked its "
+      "could be felt for {} s, which were counted only in contact and at {} (speed along the plane "
+      "and force of the wall without its texture), and then faded within {} ms; tones marked its "
       "beginning and end. A trial with a plane whose time had not run down within {} s was "
       "repeated.",
       ask.planes, study::kLiftedMm, number_text(exploring.seconds),
-      study::range_words(exploring.range), number_text(study.trials.explore_limit_s));
+      study::range_words(exploring.range), study::kFade.count(),
+      number_text(study.trials.explore_limit_s));
 }
 
 std::string exploring_sentence(const study::Study& study, const study::Ask& ask) {
@@ -117,10 +184,11 @@ std::string exploring_sentence(const study::Study& study, const study::Ask& ask)
   return free_sentence(study);
 }
 
-std::string feedback_sentence(const study::Ask& ask) {
+std::string feedback_sentence(const study::Study& study, const study::Ask& ask) {
   if (!ask.scales().empty()) return {};
-  return ask.feedback ? "After each answer participants were told whether it was right."
-                      : "Outside practice no feedback was given.";
+  if (ask.feedback) return "After each answer participants were told whether it was right.";
+  return study::practice_of(study).trials.empty() ? "No feedback was given."
+                                                  : "Outside practice no feedback was given.";
 }
 
 std::string confidence_sentence(const study::Ask& ask) {
@@ -138,10 +206,11 @@ std::string breaks_sentence(const study::TrialOptions& trials) {
     when.push_back(fmt::format("after {} min", number_text(trials.break_after_min)));
   }
   if (when.empty()) return {};
-  return "There was a break " + listed(when, " and ") + ".";
+  return "There was a break " + listed(when, " and ") + "; participants ended it.";
 }
 
-std::string interruption_sentence(const study::TrialOptions& trials,
+/// \param is_clocked  whether planes have a clock, so that trials are repeated that leave it running
+std::string interruption_sentence(const study::TrialOptions& trials, bool is_clocked,
                                   const std::vector<const SessionRecord*>& sessions) {
   int interruptions = 0;
   for (const SessionRecord* session : sessions) interruptions += session->interruptions;
@@ -157,8 +226,9 @@ std::string interruption_sentence(const study::TrialOptions& trials,
     }
     return {};
   };
-  return fmt::format("Presentations that a fault or a stop had interrupted ({} in all) were {}.",
-                     interruptions, became());
+  return fmt::format("Presentations that {}a fault or a stop had interrupted ({} in all) were {}.",
+                     is_clocked ? "were not explored as asked for, or that " : "", interruptions,
+                     became());
 }
 
 std::string visits_sentence(const study::VisitPlan& visits) {
@@ -172,13 +242,33 @@ std::string blinding_sentence(const StudyHead& head, const study::Study& study) 
                          : "Participants did not know what was presented, experimenters might: ";
   text +=
       "stimuli had codes for names, and schedules and answers were sealed under a key that only "
-      "the investigator had.";
+      "the investigator had. Orders were drawn with the Mersenne Twister (MT19937-64), seeded by a "
+      "secret of each participant.";
   if (!head.state.closed || !head.state.unblinded) return text;
   const auto early = std::ranges::count_if(head.looks, &Look::is_unregistered);
   if (early == 0) return text + " Outcomes were opened after the end of data collection.";
   return text + fmt::format(" Before its end outcomes were looked at {} that was not registered.",
                             early == 1 ? std::string("once in a look")
                                        : fmt::format("{} times in looks", early));
+}
+
+/// The time from a session's opening to its last answer, of people.
+std::string duration_sentence(const Outcomes& outcomes) {
+  if (outcomes.simulated) return {};
+  std::map<int, double> ends_min;
+  for (const TrialOutcome& trial : outcomes.trials) {
+    if (!trial.counted || !trial.row.answered_at) continue;
+    double& end_min = ends_min[trial.row.session];
+    end_min = std::max(
+        end_min, std::chrono::duration<double, std::ratio<60>>(*trial.row.answered_at).count());
+  }
+  if (ends_min.empty()) return {};
+  std::vector<double> minutes;
+  for (const auto& [session, end_min] : ends_min) minutes.push_back(end_min);
+  const auto [least, most] = std::ranges::minmax(minutes);
+  return fmt::format(
+      "From its opening to the last scored answer the median session lasted {} min ({} to {}).",
+      plain_figure(quartiles(minutes).median, 0), plain_figure(least, 0), plain_figure(most, 0));
 }
 
 std::string questions_sentence(const study::SessionPlan& session) {
@@ -207,18 +297,23 @@ Cited procedure_paragraph(const StudyHead& head, const Outcomes& outcomes,
   const std::vector<const SessionRecord*> sessions = counted_records(head, outcomes);
   Paragraph paragraph;
   paragraph.say(sight_sentence(study));
+  paragraph.say(pixel_sentence(ask, sessions));
   paragraph.say(masking_sentence(study, sessions));
   paragraph.say(instructions_sentence(study.session));
   paragraph.say(practice_sentence(study, sessions));
   paragraph.say(protocol.trial);
   paragraph.say(exploring_sentence(study, ask));
-  paragraph.say(feedback_sentence(ask));
+  paragraph.say(screen_sentence(study, ask, outcomes.visual));
+  paragraph.say(answer_sentence(study, ask));
+  paragraph.say(feedback_sentence(study, ask));
   paragraph.say(confidence_sentence(ask));
   paragraph.say(protocol.sequence);
   paragraph.say(visits_sentence(study.visits));
   paragraph.say(breaks_sentence(study.trials));
-  paragraph.say(interruption_sentence(study.trials, sessions));
+  paragraph.say(interruption_sentence(
+      study.trials, std::holds_alternative<study::InContact>(ask.exploring), sessions));
   paragraph.say(questions_sentence(study.session));
+  paragraph.say(duration_sentence(outcomes));
   paragraph.say(blinding_sentence(head, study));
   return paragraph.cited();
 }

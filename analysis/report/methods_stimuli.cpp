@@ -5,12 +5,14 @@
 #include "core/strict_json.hpp"
 #include "core/text.hpp"
 #include "engine/order_map.hpp"
+#include "engine/rendering/surface_model.hpp"
 #include "study/deviation_codes.hpp"
 #include "study/setting_words.hpp"
 
 #include <algorithm>
 #include <map>
 #include <set>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -119,8 +121,17 @@ std::string rate_sentence(const StudyHead& head, const std::vector<const Session
   }
   const auto [low, high] = std::ranges::minmax(rates_hz);
   const Quartiles lateness = quartiles(std::move(lateness_us));
-  const std::string nominal =
+  std::string nominal =
       recorded.rate_hz ? number_text(*recorded.rate_hz) + " Hz" : std::string("a fixed rate");
+  std::set<std::string> schedulings;
+  for (const SessionRecord* session : sessions) {
+    if (session->station && !session->station->scheduling.empty()) {
+      schedulings.insert(session->station->scheduling);
+    }
+  }
+  if (!schedulings.empty()) {
+    nominal += " by a thread of its own (scheduling: " + listed(schedulings, " or ") + ")";
+  }
   return fmt::format(
       "Forces were updated at {}; the mean rate of a trial was {} to {} Hz as measured, and the "
       "99th percentile of a tick's lateness {} µs in the median trial.",
@@ -131,12 +142,17 @@ std::string images_sentence(const Outcomes& outcomes) {
   const std::vector<study::StudyClass>& classes = outcomes.design.classes;
   std::size_t images = 0;
   for (const study::StudyClass& one : classes) images += one.images.size();
-  const std::string of = counted(static_cast<int>(images), "grey-level image");
+  const std::string of = images == 1 ? "one grey-level image (8 bits)"
+                                     : fmt::format("{} grey-level images (8 bits)", images);
   const std::string labels = listed(classes, " and ", &study::StudyClass::label);
   if (classes.size() == 1) {
     return fmt::format("Stimuli were made from {} of the texture {}.", of, labels);
   }
-  const std::string each = images == classes.size() ? ", one of each" : "";
+  const std::size_t of_first = classes.front().images.size();
+  const bool are_even = std::ranges::all_of(
+      classes, [of_first](const study::StudyClass& one) { return one.images.size() == of_first; });
+  const std::string each =
+      are_even ? fmt::format(", {} of each", of_first == 1 ? "one" : std::to_string(of_first)) : "";
   return fmt::format("Stimuli were made from {} of {} textures ({}{}).", of, classes.size(), labels,
                      each);
 }
@@ -165,11 +181,25 @@ std::string extraction_sentence(const study::Study& study) {
                      joined_fields(methods));
 }
 
+/// Whether a presented method satisfies a condition.
+template <typename Condition>
+bool any_method(const study::Study& study, const Condition& condition) {
+  const auto presented =
+      std::span(study.methods).first(static_cast<std::size_t>(study.presented_methods()));
+  return std::ranges::any_of(presented, condition);
+}
+
 bool has_method(const study::Study& study, engine::Method method) {
-  for (int i = 0; i < study.presented_methods(); ++i) {
-    if (study.methods[static_cast<std::size_t>(i)].method == method) return true;
-  }
-  return false;
+  return any_method(study,
+                    [method](const study::StudyMethod& one) { return one.method == method; });
+}
+
+/// Whether a fractional method has this mask.
+bool has_mask(const study::Study& study, engine::Norm mask) {
+  return any_method(study, [mask](const study::StudyMethod& one) {
+    return one.norm == mask &&
+           (one.method == engine::Method::adaptive || one.method == engine::Method::fixed);
+  });
 }
 
 /// The formulas of the methods that have parameters K and v.
@@ -181,10 +211,19 @@ void say_fractional(const study::Study& study, Paragraph& paragraph) {
       "Grünwald–Letnikov weights c_0 = 1, c_k = c_(k−1) (k − 1 − v) / k of the order v, and R_k "
       "the mean of the eight pixels at k steps along rows, columns and diagonals.",
       {Source::hu_song});
+  if (has_mask(study, engine::Norm::sum)) {
+    paragraph.say(
+        "With a mask divided by its sum it was T / P, with P the product of 1 − v / k over k.");
+  }
+  if (has_mask(study, engine::Norm::none)) {
+    paragraph.say(
+        "With a plain mask it was T + P (I − mean of I), with P the product of 1 − v / k over k.");
+  }
   if (!is_adaptive) return;
   paragraph.say(
-      fmt::format("The adaptive order followed from the combined norms S of the gradients of "
-                  "the four sub-bands of a four-tap Daubechies transform, with M their maximum "
+      fmt::format("The adaptive order followed from the combined norms S of the gradients (not "
+                  "normalised) of the four sub-bands of an orthonormal four-tap Daubechies "
+                  "transform, enlarged to the image's size by repetition, with M their maximum "
                   "in the image: v = 0 for S < {0:g}, S / (3 M) + 0.666 for S up to {1:g}, and "
                   "S / (2 M) + 0.499 above.",
                   engine::kFlatBelowCsgv, engine::kSteepAboveCsgv));
@@ -193,7 +232,9 @@ void say_fractional(const study::Study& study, Paragraph& paragraph) {
 std::string tv_gabor_sentence(const study::Study& study) {
   if (!has_method(study, engine::Method::tv_gabor)) return {};
   return "The TV-Gabor decomposition split I into a cartoon u and the texture T = I − u, which "
-         "minimised TV(u) + (λ / 2) ⟨T, K T⟩ with the inverse K of the kernel's spectrum.";
+         "minimised TV(u) + (λ / 2) ⟨T, K T⟩ with the inverse K of the kernel's spectrum: the sum "
+         "of the power spectra of even Gabor patches (11 x 11 pixels, standard deviation 2, less "
+         "their means), over its maximum.";
 }
 
 std::string control_sentence(const study::Study& study) {
@@ -205,17 +246,55 @@ std::string control_sentence(const study::Study& study) {
   return {};
 }
 
-/// "0.0117" or "0.0117 to 0.0203"
-std::string gain_range(const std::vector<engine::Gains>& gains, double engine::Gains::*gain) {
-  double low = gains.front().*gain;
-  double high = low;
-  for (const engine::Gains& one : gains) {
-    low = std::min(low, one.*gain);
-    high = std::max(high, one.*gain);
+/// How the stylus touches the plane, and what lies between pixels and beyond the plane.
+std::string contact_sentence(const engine::RenderingOptions& rendering) {
+  if (rendering.model == engine::ModelKind::surface) {
+    return fmt::format(
+        "The stylus was a point, in contact while e > 0; beyond the plane's edges the mirrored "
+        "texture faded within {:g} mm into the flat wall.",
+        engine::kRimMm);
   }
+  return fmt::format(
+      "The stylus was a point, in contact while {}; places p and distances d were in pixels, and "
+      "forces between the centres of pixels were interpolated bilinearly; beyond the plane's edges "
+      "lay the flat wall.",
+      rendering.reference_grey > 0.0 ? "the normal force was above 0" : "it was below the plane");
+}
+
+/// What the stiffness budget limits.
+std::string budget_sentence(const study::Study& study) {
+  const engine::RenderingOptions& rendering = study.rendering;
+  if (study.level || rendering.gains) return {};
+  return fmt::format(
+      "Stiffness was the norm (Frobenius) of the lateral force's Jacobian along the plane{}; the "
+      "gradient of the normal force had the same limit.",
+      rendering.model == engine::ModelKind::surface
+          ? fmt::format(", under a load of {:g} N", engine::kStatedLoadN)
+      : rendering.touchdown_ramp_n > 0.0 ? std::string(" and in depth")
+                                         : std::string());
+}
+
+/// The smallest and the largest number: "0.0117" or "0.0117 to 0.0203".
+std::string range_figure(const std::vector<double>& values) {
+  const auto [low, high] = std::ranges::minmax(values);
   const std::string first = fmt::format("{:.3g}", low);
   const std::string last = fmt::format("{:.3g}", high);
   return first == last ? first : first + " to " + last;
+}
+
+std::string gain_range(const std::vector<engine::Gains>& gains, double engine::Gains::*gain) {
+  std::vector<double> values;
+  for (const engine::Gains& one : gains) values.push_back(one.*gain);
+  return range_figure(values);
+}
+
+std::string strength_sentence(const study::Study& study, const RecordedStudy& recorded) {
+  if (recorded.lateral_rms_n.empty()) return {};
+  return fmt::format("Over the plane the lateral force of a stimulus had an rms of {} N{}.",
+                     range_figure(recorded.lateral_rms_n),
+                     study.rendering.model == engine::ModelKind::surface
+                         ? fmt::format(" under {:g} N", engine::kStatedLoadN)
+                         : std::string());
 }
 
 std::string prepared_gains(const study::Study& study, const RecordedStudy& recorded) {
@@ -245,16 +324,20 @@ Cited stimuli_paragraph(const StudyHead& head, const Outcomes& outcomes,
   say_fractional(study, paragraph);
   paragraph.say(tv_gabor_sentence(study));
   paragraph.say(control_sentence(study));
+  paragraph.say("Beyond its borders an image continued as its mirror image.");
   paragraph.say(
       fmt::format("The plane was a virtual wall of {}.", study::wall_words(study.rendering)));
   if (study.rendering.filter_mm > 0.0) {
-    paragraph.say(fmt::format("The heights G = 128 + T were smoothed by a {}.",
+    paragraph.say(fmt::format("The heights G = 128 + T, not rounded, were smoothed by a {}.",
                               study::filter_words(study.rendering)));
   }
   paragraph.say(
       fmt::format("Heights became forces by this model: {}.", study::force_words(study.rendering)));
+  paragraph.say(contact_sentence(study.rendering));
   paragraph.say(fmt::format("The gains were {}{}.", study::gain_words(study),
                             prepared_gains(study, recorded)));
+  paragraph.say(budget_sentence(study));
+  paragraph.say(strength_sentence(study, recorded));
   if (study.trials.rove_db > 0.0) {
     paragraph.say(fmt::format(
         "The gain of each presentation was drawn from the {} dB below the stimulus's gain.",

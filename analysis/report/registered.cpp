@@ -1,5 +1,7 @@
 #include "analysis/report/registered.hpp"
 
+#include "analysis/outcomes/departures.hpp"
+#include "analysis/report/page/wording.hpp"
 #include "analysis/report/text_figures.hpp"
 #include "analysis/statistics/group_sequential.hpp"
 #include "core/named.hpp"
@@ -7,7 +9,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <map>
 #include <set>
 
 #include <fmt/format.h>
@@ -19,7 +21,7 @@ int unregistered_of(const std::vector<Look>& looks) {
   return static_cast<int>(std::ranges::count_if(looks, &Look::is_unregistered));
 }
 
-/// Whether a session is one that the plan is about, whoever left it out later.
+/// Whether a session counts towards the planned number, even if it was excluded later.
 bool is_completed(const Outcomes& outcomes, const record::SessionRow& row) {
   return row.state == record::SessionState::completed && row.replaced_by.empty() &&
          row.visit == outcomes.design.visits_needed() && row.pilot == outcomes.pilot &&
@@ -32,15 +34,34 @@ int completed_participants(const Outcomes& outcomes) {
       [&](const SessionOutcome& session) { return is_completed(outcomes, session.row); }));
 }
 
+/// StudyCourse::all_left_out
+std::string words_on_all_left_out(const Outcomes& outcomes) {
+  const std::map<int, std::string> rules = rules_met(outcomes);
+  std::map<std::string, int> sessions;
+  for (const SessionOutcome& session : outcomes.sessions) {
+    if (!is_completed(outcomes, session.row)) continue;
+    const auto rule = rules.find(session.row.session);
+    if (rule != rules.end()) {
+      ++sessions["by a registered rule (" + rule->second + ")"];
+    } else if (session.row.excluded) {
+      ++sessions["by the experimenter"];
+    } else {
+      return "";
+    }
+  }
+  std::vector<std::string> all;
+  for (const auto& [cause, n] : sessions) all.push_back(fmt::format("{} {}", n, cause));
+  return listed(all, " and ");
+}
+
 std::string share_text(double share, bool is_difference) {
-  return fmt::format("{}{:.1f}{}", share < 0.0 ? "−" : "", 100.0 * std::abs(share),
-                     is_difference ? " points" : "%");
+  return is_difference ? plain_figure(100.0 * share, 1) + " points" : share_figure(share);
 }
 
 /// A value of the estimand, with its unit.
 std::string value_text(const PrimaryResult& result, double value) {
   if (study::is_of_thresholds(result.estimand)) {
-    return fmt::format("{}{:.1f} dB", value < 0.0 ? "−" : "", std::abs(value));
+    return plain_figure(value, 1) + " dB";
   }
   return share_text(value, result.estimand == study::Estimand::difference);
 }
@@ -59,8 +80,8 @@ std::optional<Interval> telling_interval(const PrimaryResult& result) {
   return interval && interval->low < interval->high ? interval : std::nullopt;
 }
 
-/// What the interval says of the smallest effect that was registered.
-std::string words_on_worth(const PrimaryResult& result) {
+/// Where the interval lies relative to the smallest registered effect.
+std::string words_on_smallest_effect(const PrimaryResult& result) {
   const std::optional<Interval> interval = telling_interval(result);
   if (!result.smallest_effect || !interval) return "";
   const double worth = *result.smallest_effect;
@@ -72,10 +93,11 @@ std::string words_on_worth(const PrimaryResult& result) {
     return " The interval lies below " + least + ", the smallest effect registered as relevant.";
   }
   return " The interval contains " + least +
-         ", the smallest effect registered as relevant: whether it is reached is undecided.";
+         ", the smallest effect registered as relevant, so it is undecided whether the effect is "
+         "that large.";
 }
 
-/// What the interval says of the margin: "as good" may be better, or still a little worse.
+/// Where the interval lies relative to the margin of non-inferiority.
 std::string words_on_margin(const PrimaryResult& result) {
   const std::optional<Interval> interval = telling_interval(result);
   if (!result.margin || !interval || is_equality(result)) return "";
@@ -124,7 +146,7 @@ std::string words_on_pairs(const PrimaryResult& result) {
   return words;
 }
 
-/// Of non-inferiority: the methods with which people may only have guessed.
+/// Of non-inferiority: the methods that are not shown to be above chance.
 std::string words_on_guessing(const PrimaryResult& result) {
   std::vector<std::string> arms;
   for (const AboveChance& one : result.above_chance) {
@@ -135,30 +157,29 @@ std::string words_on_guessing(const PrimaryResult& result) {
   }
   if (arms.empty()) return "";
   return fmt::format(
-      " Answers with {} are not shown to be above chance: equally bad is not as good, so nothing "
-      "follows.",
+      " Answers with {} are not shown to be above chance, so non-inferiority cannot be concluded.",
       listed(arms, " and "));
 }
 
-/// What a reader of the interval might miss: that it ends where possible values end, or that
-/// there is none.
+/// Whether the interval is truncated to the possible range, or does not exist.
 std::string words_on_ends(const PrimaryResult& result) {
   const PrimaryChoice& choice = result.registered();
   if (!result.p || !choice.estimate || choice.participants < 2) return "";
   if (!telling_interval(result)) {
     return std::string(result.crossover ? " Within an order of methods participants"
                                         : " Participants") +
-           " do not differ, so that there is no t interval; that is no certainty.";
+           " do not differ, so there is no t interval; this does not mean that the estimate is "
+           "certain.";
   }
   if (study::is_of_thresholds(result.estimand)) return "";
   const double least = result.estimand == study::Estimand::difference ? -1.0 : 0.0;
   const bool low = choice.interval->low == least && *choice.estimate > least;
   const bool high = choice.interval->high == 1.0 && *choice.estimate < 1.0;
-  if (low && high) return " The interval holds every possible value: it says nothing.";
-  return low || high ? " The interval is cut where possible values end." : "";
+  if (low && high) return " The interval contains every possible value and is uninformative.";
+  return low || high ? " The interval is truncated to the possible range." : "";
 }
 
-/// A one-sided test may reject although the two-sided interval holds what it rejects.
+/// A one-sided test may reject although the two-sided interval contains the null value.
 std::string words_on_sides(const PrimaryResult& result) {
   const std::optional<Interval> interval = telling_interval(result);
   if (!interval || !result.bound || result.margin || interval->low > result.null) return "";
@@ -177,7 +198,7 @@ bool may_stop_at_look(const PrimaryResult& result, const StudyCourse& course) {
   return course.at_registered_look && result.p && *result.p <= result.level;
 }
 
-/// What belongs to a result that ends collecting early.
+/// A caution about estimates that end collection early.
 std::string words_on_early_end(const PrimaryResult& result, const StudyCourse& course) {
   if (!may_stop_at_look(result, course) || course.completed >= course.planned) return "";
   const std::string look = fmt::format("the registered look at {}",
@@ -186,7 +207,7 @@ std::string words_on_early_end(const PrimaryResult& result, const StudyCourse& c
          "; an estimate that ends it early is too large on average.";
 }
 
-/// More participants than planned do no harm as long as nobody has seen outcomes.
+/// Collecting more participants than planned is harmless if nobody has seen outcomes.
 std::string words_on_number(const StudyCourse& course) {
   if (course.planned == 0 || course.completed <= course.planned) return "";
   return fmt::format(
@@ -209,6 +230,9 @@ std::string obstacle(const PrimaryResult& result, const StudyCourse& course) {
   if (has_one_order(result)) {
     return "All participants had the methods in the same order, so that an effect of the method "
            "and one of the period cannot be told apart.";
+  }
+  if (!course.all_left_out.empty()) {
+    return fmt::format("All completed sessions were left out: {}.", course.all_left_out);
   }
   if (!result.nothing_follows.empty()) return result.nothing_follows;
   if (is_estimate(result) && !result.registered().interval) {
@@ -260,7 +284,7 @@ std::string name_of(Verdict verdict) {
 }
 
 StudyCourse course_of(const Outcomes& outcomes, int analysed) {
-  const std::vector<Look>& looks = outcomes.looked.looks;
+  const std::vector<Look>& looks = outcomes.look_record.looks;
   StudyCourse course{
       .planned = outcomes.design.registration.participants,
       .completed = completed_participants(outcomes),
@@ -269,7 +293,8 @@ StudyCourse course_of(const Outcomes& outcomes, int analysed) {
       .pilot = outcomes.pilot,
       .has_registration = outcomes.design.registration.analysis.has_value(),
       .unregistered_looks = unregistered_of(looks),
-      .excluded_afterwards = static_cast<int>(outcomes.looked.excluded_afterwards.size())};
+      .excluded_afterwards = static_cast<int>(outcomes.look_record.excluded_afterwards.size())};
+  if (analysed == 0) course.all_left_out = words_on_all_left_out(outcomes);
   std::set<int> made;
   for (const Look& look : looks) {
     if (look.kind == LookKind::registered) made.insert(look.participants);
@@ -308,7 +333,7 @@ void judge(PrimaryResult& result, const StudyCourse& course) {
     return decide(Verdict::not_registered,
                   "The study file registers no estimand and no test, so nothing is decided here.");
   }
-  const std::string worth = words_on_worth(result) + words_on_margin(result) +
+  const std::string worth = words_on_smallest_effect(result) + words_on_margin(result) +
                             words_on_ends(result) + (result.note.empty() ? "" : " " + result.note);
   const std::string hindered = obstacle(result, course);
   if (!hindered.empty()) return decide(Verdict::undecided, hindered + worth);

@@ -18,7 +18,7 @@ enum class Verdict {
   supported,       ///< the registered test rejects, in the registered direction
   not_supported,   ///< it does not, and the smallest relevant effect is excluded, or was not stated
   undecided,       ///< the study cannot tell, or not by the registered test
-  estimated,       ///< an estimate was registered, without a test, and here it is
+  estimated,       ///< an estimate was registered, without a test
   not_registered,  ///< nothing was registered that could be decided
 };
 
@@ -46,7 +46,7 @@ struct PrimaryPair {
   std::optional<double> p{};  ///< the larger one of the two one-sided tests
 };
 
-/// Whether people can do it at all with a method.
+/// Whether people are above chance with a method.
 struct AboveChance {
   std::string method;
   std::optional<double> mean{};  ///< accuracy
@@ -74,10 +74,9 @@ struct PrimaryResult {
   std::optional<CrossoverEstimate> crossover{};
   std::optional<CrossoverPermutation> permutation{};
   std::vector<PrimaryPair> pairs{};  ///< of an equality: all differences, of the registered choice
-  /// Of non-inferiority, by the registered choice: two methods that fail alike are not as good as
-  /// each other.
+  /// Of non-inferiority, by the registered choice: two methods at chance are not equally good.
   std::vector<AboveChance> above_chance{};
-  /// Why nothing follows from the data, whatever a test says, in a sentence; empty: something may.
+  /// Why no conclusion is possible, whatever the test, in a sentence; may be empty.
   std::string nothing_follows{};
   std::string note{};  ///< what belongs to the estimate, in a sentence; may be empty
   Verdict verdict = Verdict::not_registered;
@@ -102,6 +101,9 @@ struct StudyCourse {
   int excluded_afterwards = 0;          ///< sessions excluded after outcomes were seen
   bool at_registered_look = false;      ///< the report is of an interim look that was registered
   std::vector<int> registered_looks{};  ///< participants at those that were made, ascending
+  /// By what every completed session was left out: "4 by a registered rule (more than 5 missed
+  /// catch trials)"; empty unless all were.
+  std::string all_left_out{};
 };
 
 [[nodiscard]] StudyCourse course_of(const Outcomes& outcomes, int analysed);
@@ -113,7 +115,8 @@ struct StudyCourse {
 
 /// Decides on the registered question: sets `verdict` and `because`.
 ///
-/// It is undecided if all participants had one order of two methods in blocks, if nothing follows
+/// It is undecided if all participants were left out or had one order of two methods in blocks, if
+/// nothing follows
 /// from the data, if the test or the interval needs more participants, if the study is open, ended
 /// before its planned number of participants, or has a p that is within its level after an
 /// unregistered look, or after a registered one with more participants than planned; and if p is

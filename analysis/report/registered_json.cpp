@@ -25,7 +25,7 @@ Json standards_array(const std::vector<study::RegisteredStandard>& standards) {
   });
 }
 
-/// What a registration of thresholds has; what it cannot have is null.
+/// A registration about thresholds; members that do not apply are null.
 Json registered_thresholds(const study::Registration& registration) {
   const study::RegisteredAnalysis& analysis = *registration.analysis;
   const bool tested = analysis.estimand != study::Estimand::mean_threshold;
@@ -89,9 +89,10 @@ Json above_chance_array(const std::vector<AboveChance>& methods) {
 void put_estimation(Json& object, const PrimaryResult& primary) {
   if (study::is_of_thresholds(primary.estimand)) {
     put_method(object,
-               "estimate, interval and bounds in dB: mean over participants, each of whom weighs "
-               "the same, of the normal distribution that is most likely for everybody, those "
-               "without a threshold by their bounds; interval: profile likelihood at "
+               "estimate, interval and bounds in dB: mean of the normal distribution over "
+               "participants that is most likely for everybody; who has no threshold enters by the "
+               "likeliest one if that lies inside the levels, else by its side; interval: profile "
+               "likelihood at "
                "interval_level (1 - alpha, or 1 - 2 alpha with a margin), which is Student's if "
                "everybody has a threshold; p of the registered choice alone",
                {"student1908", "tobin1958"});
@@ -210,7 +211,7 @@ MeasureList<Prevalence> prevalence_measures() {
               {Source::ince}),
       interval_of<Row>("interval", "95% (%)", share_range, &Row::interval),
       member_of<Row>("passed", &Row::passed)
-          .shown("passed alone",
+          .shown("passed individually",
                  [](const Row& one) { return fmt::format("{}/{}", one.passed, one.participants); }),
       member_of<Row>("participants", &Row::participants),
       number_of<Row>("level", "by chance alone", share_figure, &Row::level),

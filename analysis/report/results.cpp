@@ -1,11 +1,15 @@
 #include "analysis/report/results.hpp"
 
+#include "analysis/exports/export_folder.hpp"
 #include "analysis/report/page/frame_sections.hpp"
 #include "core/errors.hpp"
+#include "core/text.hpp"
 #include "study/protocol.hpp"
 
 #include <map>
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace touchtrial::analysis {
 namespace {
@@ -15,7 +19,8 @@ std::map<std::string_view, const ProtocolAnalysis*>& known_analyses() {
   return all;
 }
 
-/// Leaves of a report's head the registered estimate, its interval and test, and what is in clear.
+/// Removes from a report's head all but the registered estimate, its interval and test, and what is
+/// in clear.
 void keep_question(StudyHead& head, Collection in_clear) {
   head.collection = std::move(in_clear);
   head.warnings.clear();
@@ -101,10 +106,34 @@ std::vector<TrialColumn> ProtocolAnalysis::trial_columns(const Outcomes&) const 
   return {};
 }
 
-std::vector<std::filesystem::path> ProtocolAnalysis::export_model(
-    const record::StudyStore&, const Outcomes& outcomes, const std::filesystem::path&) const {
-  throw UsageError("--format r: the protocol " + outcomes.design.protocol_name() +
-                   " has no model for R; choose csv, json, bids or psych-ds");
+std::optional<RModel> ProtocolAnalysis::r_model(const Outcomes&) const {
+  return std::nullopt;
+}
+
+std::string r_script_of(const RModel& model, const Outcomes& outcomes) {
+  return fmt::format(
+      "# {1} of the study {2}{3}. Run: Rscript {0}.R\n"
+      "# Needs lme4; reads {0}.csv beside this file. What it means: {0}.md.\n{4}",
+      model.name, model.title, one_line(outcomes.study), outcomes.simulated ? " (SIMULATED)" : "",
+      model.script);
+}
+
+std::vector<std::filesystem::path> export_r_model(const record::StudyStore& store,
+                                                  const Outcomes& outcomes,
+                                                  const std::filesystem::path& folder) {
+  const std::optional<RModel> model = analysis_of(outcomes.design).r_model(outcomes);
+  if (!model) {
+    throw UsageError("--format r: the protocol " + outcomes.design.protocol_name() +
+                     " has no model for R; choose csv, json, bids or psych-ds");
+  }
+  const std::string notes = fmt::format(
+      "# {} of {}\n\n{}{}", model->title, one_line(outcomes.study),
+      outcomes.simulated ? "SIMULATED: every participant is a program.\n\n" : "", model->notes);
+  const record::StudyCommitment& commitment = store.commitment();
+  return write_export(folder, {commitment.study, commitment.study_id, "r"},
+                      {text_file(model->name + ".csv", csv_text(model->table)),
+                       text_file(model->name + ".R", r_script_of(*model, outcomes)),
+                       text_file(model->name + ".md", notes)});
 }
 
 void add_analysis(std::string_view protocol, const ProtocolAnalysis& analysis) {

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -54,7 +55,7 @@ class Results {
                                           const Pictures& pictures) const = 0;
 };
 
-/// Results whose page ends with the study's methods, if a page is wished for and its source known.
+/// Results whose page ends with the study's methods, if a page is requested and its source known.
 /// \param outcomes  from which the results were made
 [[nodiscard]] std::unique_ptr<const Results> with_methods(std::unique_ptr<const Results> results,
                                                           const Outcomes& outcomes,
@@ -71,8 +72,21 @@ class Results {
 struct ResultTable {
   std::string file;  ///< the file's name
   DataTable table;
-  bool has_words = false;  ///< of people: for its reader alone
+  bool has_words = false;  ///< personal data: for its reader alone
 };
+
+/// A model that R fits to a study's trials, and the content of its files, whose first lines the
+/// frame adds.
+struct RModel {
+  std::string title;   ///< "Mixed model"
+  std::string name;    ///< of the files, without extension: "mixed_model"
+  DataTable table;     ///< NAME.csv
+  std::string script;  ///< NAME.R, which needs lme4 and reads the table
+  std::string notes;   ///< NAME.md
+};
+
+/// The whole text of NAME.R.
+[[nodiscard]] std::string r_script_of(const RModel& model, const Outcomes& outcomes);
 
 /// The part of a protocol that analyses outcomes. Stateless and thread-safe.
 class ProtocolAnalysis {
@@ -90,15 +104,19 @@ class ProtocolAnalysis {
   /// Their names are known to meaning_of (exports/dataset.hpp).
   /// \param outcomes  must outlive the columns
   [[nodiscard]] virtual std::vector<TrialColumn> trial_columns(const Outcomes& outcomes) const;
-  /// Writes the files of `export --format r`: a table, a script that fits a model to it, and
-  /// instructions.
-  /// \return the files, in the order in which they were written
-  /// \throws UsageError if the protocol has no such model
-  /// \throws FileError if the folder or a file cannot be written
-  virtual std::vector<std::filesystem::path> export_model(
-      const record::StudyStore& store, const Outcomes& outcomes,
-      const std::filesystem::path& folder) const;
+  /// The model of `export --format r`.
+  /// \return nothing if the protocol has none
+  /// \throws UsageError if this study can have none
+  [[nodiscard]] virtual std::optional<RModel> r_model(const Outcomes& outcomes) const;
 };
+
+/// Writes NAME.csv, NAME.R and NAME.md of the protocol's model.
+/// \return the files, in the order in which they were written
+/// \throws UsageError if the study has no model
+/// \throws FileError as write_export does
+std::vector<std::filesystem::path> export_r_model(const record::StudyStore& store,
+                                                  const Outcomes& outcomes,
+                                                  const std::filesystem::path& folder);
 
 /// Registers a protocol's analysis. Call before the first report. Not thread-safe.
 /// \param protocol  the protocol's name; both arguments must outlive the program's use of them

@@ -1,23 +1,13 @@
-/// \file Numbers as text, with a decimal point in every locale, and "-" for a missing number.
+/// \file Words about simulated numbers and their device, and p values with all their digits.
 #pragma once
 
-#include "analysis/statistics/proportion.hpp"
 #include "core/text.hpp"
 
-#include <optional>
 #include <set>
 #include <string>
 
 namespace touchtrial::analysis {
 
-/// "87.5%" for 87.5
-[[nodiscard]] std::string percent(std::optional<double> percentage, int decimals);
-/// "87.5%" for 0.875
-[[nodiscard]] std::string percent_of_share(std::optional<double> share);
-[[nodiscard]] std::string percent_of(const Proportion& proportion);
-
-/// A number with its sign; zero has none.
-[[nodiscard]] std::string signed_figure(std::optional<double> figure, int decimals);
 /// Three significant digits, never "0".
 [[nodiscard]] std::string p_value(double p);
 
@@ -30,7 +20,7 @@ using touchtrial::counted;
 /// \param recorded  as sessions record their device (record::SessionRow), or kStatedPeople
 /// \return empty for none
 [[nodiscard]] std::string device_words(const std::set<std::string>& recorded);
-/// In place of a recorded device: nobody feels, people's accuracies are stated.
+/// In place of a recorded device if people's accuracies are stated.
 inline constexpr const char* kStatedPeople = "stated";
 /// What is said first of simulated numbers: "simulated on: modelled device touch"; empty for none.
 /// \param device  device_words

@@ -223,8 +223,8 @@ double median_of(std::span<const Bounds> people, double Bounds::*end) {
   return 0.5 * (ends[half - 1] + ends[half]);
 }
 
-Lack lack_of(int participants, std::span<const double> values) {
-  if (2 * values.size() < static_cast<std::size_t>(participants)) return Lack::most;
+Lack lack_of(std::size_t people, std::span<const double> values) {
+  if (2 * values.size() < people) return Lack::most;
   if (values.size() < 2) return Lack::values;
   const auto [least, most] = std::ranges::minmax(values);
   return without_noise(most - least) == 0.0 ? Lack::spread : Lack::nothing;
@@ -265,13 +265,15 @@ Bounds difference_of(const Bounds& first, const Bounds& second) noexcept {
 CensoredMean censored_mean(std::span<const Bounds> people, double level) {
   require_level(level);
   require_bounds(people);
-  CensoredMean result{.participants = static_cast<int>(people.size())};
+  CensoredMean result;
+  result.open = static_cast<int>(std::ranges::count(people, Bounds{}));
+  result.participants = static_cast<int>(people.size()) - result.open;
   if (people.empty()) return result;
   const std::vector<double> values = known_values(people);
   result.exact = static_cast<int>(values.size());
   result.median_within = {median_of(people, &Bounds::low), median_of(people, &Bounds::high)};
   if (result.median_within.exact()) result.median = result.median_within.low;
-  result.lack = lack_of(result.participants, values);
+  result.lack = lack_of(people.size(), values);
   const bool all_known = values.size() == people.size();
   if (result.lack == Lack::nothing && !all_known) {
     put_likely(result, people, level);
@@ -289,7 +291,7 @@ std::optional<double> censored_p(std::span<const Bounds> people, double null, Si
   require_bounds(people);
   require_finite(std::span(&null, 1), "a test of a mean");
   const std::vector<double> values = known_values(people);
-  if (lack_of(static_cast<int>(people.size()), values) != Lack::nothing) return std::nullopt;
+  if (lack_of(people.size(), values) != Lack::nothing) return std::nullopt;
   if (values.size() == people.size()) return t_test_p(values, null, sides);
   const NormalLikelihood likelihood(people);
   const double mean = likelihood.most_likely_mean();

@@ -30,14 +30,15 @@ struct Bounds {
 enum class Lack {
   nothing,
   values,  ///< fewer than two are known: no interval, and no mean unless there is one participant
-  most,    ///< more than half are not known: no mean
+  most,    ///< more than half are not known, counting those without any bound: no mean
   spread,  ///< the known ones are all alike: no interval, and a mean only within everybody's bounds
 };
 
 /// In the unit of the values.
 struct CensoredMean {
-  int participants = 0;  ///< including those without any bound
-  int exact = 0;         ///< of them, those with a known value
+  int participants = 0;  ///< with a value or a bound
+  int exact = 0;         ///< of them, those with a value
+  int open = 0;          ///< beside them, those without any bound, who have no share in the mean
   std::optional<double> mean{};
   std::optional<Interval> interval{};
   std::optional<double> sd{};      ///< between participants

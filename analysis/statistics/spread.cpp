@@ -14,10 +14,11 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// The participants' shares, and how much they deviate if their probabilities have some variance.
-class Deviation {
+/// The sum of squared distances of participants' shares, weighted as if their probabilities had
+/// some variance.
+class CochransQ {
  public:
-  explicit Deviation(std::span<const Proportion> participants) {
+  explicit CochransQ(std::span<const Proportion> participants) {
     for (const Proportion& one : participants) {
       require_possible(one);
       if (one.n < 1) throw std::invalid_argument("a spread needs participants with n >= 1");
@@ -27,12 +28,12 @@ class Deviation {
     }
     if (shares_.empty()) return;
     const double mean = mean_of(shares_);
-    largest_ = mean * (1.0 - mean);
+    max_variance_ = mean * (1.0 - mean);
   }
 
   [[nodiscard]] std::size_t participants() const { return shares_.size(); }
   /// The variance of probabilities that are only 0 or 1.
-  [[nodiscard]] double largest() const { return largest_; }
+  [[nodiscard]] double max_variance() const { return max_variance_; }
 
   /// Squared distances from the weighted mean, divided by the variances; falls as `variance` grows.
   [[nodiscard]] double at(double variance) const {
@@ -40,7 +41,8 @@ class Deviation {
     double sum = 0.0;
     double squares = 0.0;
     for (std::size_t i = 0; i < shares_.size(); ++i) {
-      const double weight = 1.0 / (largest_ / trials_[i] + variance * (1.0 - 1.0 / trials_[i]));
+      const double weight =
+          1.0 / (max_variance_ / trials_[i] + variance * (1.0 - 1.0 / trials_[i]));
       weights += weight;
       sum += weight * shares_[i];
       squares += weight * shares_[i] * shares_[i];
@@ -51,10 +53,10 @@ class Deviation {
   /// The variance at which the deviation is `wanted`, within [0, largest].
   [[nodiscard]] double variance_at(double wanted) const {
     if (at(0.0) <= wanted) return 0.0;
-    if (at(largest_) >= wanted) return largest_;
+    if (at(max_variance_) >= wanted) return max_variance_;
     std::uintmax_t steps = 200;
     const auto [a, b] = boost::math::tools::toms748_solve(
-        [&](double variance) { return at(variance) - wanted; }, 0.0, largest_,
+        [&](double variance) { return at(variance) - wanted; }, 0.0, max_variance_,
         boost::math::tools::eps_tolerance<double>(50), steps);
     return 0.5 * (a + b);
   }
@@ -62,18 +64,18 @@ class Deviation {
  private:
   std::vector<double> trials_;
   std::vector<double> shares_;
-  double largest_ = 0.0;
+  double max_variance_ = 0.0;
 };
 
 }  // namespace
 
 std::optional<Spread> spread_of(std::span<const Proportion> participants, double level) {
   require_level(level);
-  const Deviation deviation(participants);
-  if (deviation.participants() < 2 || deviation.largest() <= 0.0) return std::nullopt;
-  const auto freedom = static_cast<double>(deviation.participants() - 1);
+  const CochransQ q(participants);
+  if (q.participants() < 2 || q.max_variance() <= 0.0) return std::nullopt;
+  const auto freedom = static_cast<double>(q.participants() - 1);
   const boost::math::chi_squared_distribution<> chi_squared(freedom);
-  const auto spread = [&](double wanted) { return std::sqrt(deviation.variance_at(wanted)); };
+  const auto spread = [&](double wanted) { return std::sqrt(q.variance_at(wanted)); };
   const double tail = 0.5 * (1.0 - level);
   return Spread{
       spread(freedom),

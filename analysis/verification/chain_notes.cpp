@@ -27,10 +27,10 @@ void add_clock_notes(std::vector<std::string>& notes, std::span<const record::Ev
     const double back_s =
         std::chrono::duration<double>(before).count() - std::chrono::duration<double>(at).count();
     if (back_s <= static_cast<double>(kUnnoted.count())) continue;
-    notes.push_back(fmt::format(
-        "{}, event {}: the clock went back by {:.0f} s, from {} to {}; times around it are "
-        "uncertain",
-        name, chain[i].sequence, back_s, utc_text(before), utc_text(at)));
+    notes.push_back(
+        fmt::format("{}, event {}: the clock was set back by {:.0f} s, from {} to {}; times around "
+                    "it are uncertain",
+                    name, chain[i].sequence, back_s, utc_text(before), utc_text(at)));
   }
 }
 
@@ -43,7 +43,7 @@ void add_moves(std::vector<std::string>& notes, std::span<const record::Event> c
     const std::string also = record::body_of<record::HeadsBody>(event).also;
     if (before) {
       notes.push_back(
-          one_line(fmt::format("{}, event {}: the second head file is {} from then on", name,
+          one_line(fmt::format("{}, event {}: from here on the second head file is {}", name,
                                event.sequence, also.empty() ? "dropped" : "in " + also)));
     }
     before = also;

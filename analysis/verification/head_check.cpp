@@ -48,16 +48,16 @@ std::string missing_from_station(const record::HeadReading& reading, const Stati
 }  // namespace
 
 std::string HeadCheck::fault() const {
-  return lacks + (lacks.empty() || gone.empty() ? "" : "; ") + gone;
+  return missing + (missing.empty() || missing_files.empty() ? "" : "; ") + missing_files;
 }
 
 std::string HeadCheck::words() const {
-  if (!lacks.empty()) return "NOT AS IT WAS LEFT: " + lacks;
-  if (!vouched) return gone.empty() ? "no head file was compared" : gone;
+  if (!missing.empty()) return "EVENTS ARE MISSING: " + missing;
+  if (!confirmed) return missing_files.empty() ? "no head file was compared" : missing_files;
   return fmt::format("up to head {} (event {}, {} acknowledged), by {}{}",
-                     record::head_digits(*vouched), vouched->file.length,
-                     counted(vouched->acknowledged, "answer"), counted(compared, "head file"),
-                     gone.empty() ? "" : "; " + gone);
+                     record::head_digits(*confirmed), confirmed->file.length,
+                     counted(confirmed->acknowledged, "answer"), counted(compared, "head file"),
+                     missing_files.empty() ? "" : "; " + missing_files);
 }
 
 HeadCheck check_heads(const record::StudyStore& store, const fs::path& database,
@@ -83,25 +83,26 @@ HeadCheck check_heads(const record::StudyStore& store, const fs::path& database,
       if (!head.reading->damage.empty()) {
         check.notes.push_back(one_line(head.file.string() + ": " + head.reading->damage));
       }
-      if (!check.vouched || known.file.length > check.vouched->file.length) check.vouched = known;
+      if (!check.confirmed || known.file.length > check.confirmed->file.length)
+        check.confirmed = known;
       const std::vector<record::Loss> missing = record::losses(known, store);
       if (missing.empty()) continue;
-      add(check.lacks, head.file.string() + ": " + listed(missing, "; ", &record::Loss::what));
+      add(check.missing, head.file.string() + ": " + listed(missing, "; ", &record::Loss::what));
     }
     std::erase_if(heads, [](const record::KnownHead& head) { return head.reading.has_value(); });
     // A moved head file is replaced by its copy.
     if (std::ssize(heads) <= stand_ins) return check;
-    check.gone = listed(heads, " and ",
-                        [](const record::KnownHead& head) { return one_line(head.file.string()); });
-    check.gone += heads.size() == 1 ? " is gone" : " are gone";
-    check.gone +=
-        ", which the database has on record; restore it, or give `touchtrial verify` a copy with "
+    check.missing_files = listed(
+        heads, " and ", [](const record::KnownHead& head) { return one_line(head.file.string()); });
+    check.missing_files += heads.size() == 1 ? " is gone" : " are gone";
+    check.missing_files +=
+        ", but the database refers to it; restore it, or give `touchtrial verify` a copy with "
         "--head-file or the last head with --head";
   } catch (const record::DamagedStore&) {
     throw;
   } catch (const Error& error) {
     // A damaged chain cannot list the head files.
-    add(check.lacks, error.what());
+    add(check.missing, error.what());
   }
   return check;
 }
@@ -118,21 +119,21 @@ StationsCheck check_stations(const record::StudyStore& store,
     chains.emplace(identity ? identity->name : std::to_string(station), std::move(chain));
   }
   for (const auto& [name, signer] : signers) trusted.push_back(signer);
-  std::set<std::string> vouched;
+  std::set<std::string> confirmed;
   for (const fs::path& file : given) {
     try {
       const auto reading = record::HeadFile(file).reading(trusted);
       if (!reading) throw FileError("there is no " + file.string());
-      vouched.insert(reading->record.station);
+      confirmed.insert(reading->record.station);
       if (const std::string lack = missing_from_station(*reading, chains); !lack.empty()) {
-        add(check.lacks, lack);
+        add(check.missing, lack);
       }
     } catch (const FileError& error) {
-      add(check.lacks, error.what());
+      add(check.missing, error.what());
     }
   }
   for (const auto& [name, signer] : signers) {
-    if (vouched.contains(name)) continue;
+    if (confirmed.contains(name)) continue;
     const auto found = chains.find(name);
     if (found == chains.end()) {
       add(check.absent, "station " + name);

@@ -16,15 +16,13 @@ namespace touchtrial::analysis {
 
 /// The result of comparing a database with its head files.
 struct HeadCheck {
-  /// What is missing from the database, or why it or a head file cannot be read; empty: nothing is
-  /// missing.
-  std::string lacks;
-  /// Recorded head files that no longer exist, in words; empty: none.
-  std::string gone;
+  /// Missing events, or why the database or a head file cannot be read; empty: none.
+  std::string missing;
+  /// Message about recorded head files that no longer exist; empty: none.
+  std::string missing_files;
   int compared = 0;  ///< head files
-  /// The record of the head file with the longest chain, which vouches for the database's end up to
-  /// there.
-  std::optional<record::HeadRecord> vouched{};
+  /// The record of the head file with the longest chain: the database is confirmed up to there.
+  std::optional<record::HeadRecord> confirmed{};
   std::vector<std::string> notes{};  ///< remarks that are not faults
 
   /// Both faults, joined; empty: there is none.
@@ -33,7 +31,7 @@ struct HeadCheck {
   [[nodiscard]] std::string words() const;
 };
 
-/// Holds a database against the head files that lie beside it or are on record.
+/// Compares a database with its head files: those beside it, and those that it records.
 /// \param given  further head files, which may replace missing ones
 /// \throws DamagedStore if the database cannot be read
 [[nodiscard]] HeadCheck check_heads(const record::StudyStore& store,
@@ -42,9 +40,9 @@ struct HeadCheck {
 
 /// The result of comparing a collected study's stations with the head files of their own databases.
 struct StationsCheck {
-  std::string lacks;   ///< missing stations or chain ends that a head file has; empty: none
-  std::string absent;  ///< other stations of the key that are absent; empty: none
-  std::string ends;    ///< chain ends of stations whose head file was not given; empty: none
+  std::string missing;  ///< missing stations or chain ends that a head file has; empty: none
+  std::string absent;   ///< other stations of the key that are absent; empty: none
+  std::string ends;     ///< chain ends of stations whose head file was not given; empty: none
 };
 
 /// \param signers  public halves of all stations that the study's key lists, by name

@@ -121,7 +121,8 @@ void add_heads(const record::StudyStore& store, const StudyFiles& files, const s
                Verification& verification) {
   HeadCheck heads = check_heads(store, files.database, files.heads);
   const bool is_end = !head.empty() && to_hex(store.file_head().hash).starts_with(head);
-  if (is_end && !heads.gone.empty()) verification.notes.push_back(std::exchange(heads.gone, {}));
+  if (is_end && !heads.missing_files.empty())
+    verification.notes.push_back(std::exchange(heads.missing_files, {}));
   const std::string fault = heads.fault();
   verification.notes.insert(verification.notes.end(), heads.notes.begin(), heads.notes.end());
   if (heads.compared > 0 || !fault.empty()) {
@@ -157,7 +158,7 @@ void add_stations(const record::StudyStore& store, const StudyFiles& files,
                  " is absent, which is a loss unless it had no sessions; give its head file with "
                  "--head-file"};
   }
-  if (!stations.lacks.empty()) check = {"stations", CheckState::failed, stations.lacks};
+  if (!stations.missing.empty()) check = {"stations", CheckState::failed, stations.missing};
   verification.checks.push_back(std::move(check));
 }
 

@@ -319,7 +319,8 @@ std::string check_head(const record::StudyStore& store, const std::string& head)
       std::string("no event of the file's chain has the given hash: its end was cut off, or it was "
                   "rewritten") +
       (store.stations() > 0 ? ", as collecting does when sessions are added; give a station's head"
-                            : ""));
+                            : "") +
+      " [unknown-head]");
 }
 
 template <typename Work>

@@ -111,19 +111,19 @@ AcceptanceTerminal::AcceptanceTerminal(const std::string& driver,
       "Each step is described before it starts. Enter continues, s skips the step, q ends.\nCtrl-C "
       "switches the force off at once, at any time.\n");
   run_.wait_until_ready(kReadyLimitS);
-  require_going_on();
+  require_not_aborted();
   info_ = device_->info();
 }
 
 device::SafetyLimits AcceptanceTerminal::limits() const {
   device::SafetyLimits limits = limits_;
-  limits.max_force_n = std::min(limits.max_force_n, most_n_);
+  limits.max_force_n = std::min(limits.max_force_n, max_n_);
   return limits;
 }
 
-void AcceptanceTerminal::limit_force(double most_n) {
-  most_n_ = most_n;
-  run_.limit_force(most_n);
+void AcceptanceTerminal::limit_force(double max_n) {
+  max_n_ = max_n;
+  run_.limit_force(max_n);
 }
 
 device::ServoReport AcceptanceTerminal::run(const std::string& name,
@@ -132,7 +132,7 @@ device::ServoReport AcceptanceTerminal::run(const std::string& name,
       run_.run([&](std::int64_t) { return name; }, measurement, measurement,
                measurement.seconds() + kMoreTimeS, [&] { return measurement.done(); });
   if (!report) throw AcceptanceStopped{};
-  require_going_on();
+  require_not_aborted();
   return *report;
 }
 
@@ -156,11 +156,11 @@ device::Consent AcceptanceTerminal::ready(const device::Prompt& prompt) {
   }
 }
 
-std::optional<double> AcceptanceTerminal::weight_n(device::DeviceAxis axis, double least_n,
-                                                   double most_n) {
+std::optional<double> AcceptanceTerminal::weight_n(device::DeviceAxis axis, double min_n,
+                                                   double max_n) {
   const std::string range =
-      fmt::format("{:.0f} to {:.0f} g, or {:.2f} to {:.2f} N", least_n / kNewtonsPerGram,
-                  std::floor(most_n / kNewtonsPerGram), least_n, most_n);
+      fmt::format("{:.0f} to {:.0f} g, or {:.2f} to {:.2f} N", min_n / kNewtonsPerGram,
+                  std::floor(max_n / kNewtonsPerGram), min_n, max_n);
   show(fmt::format("\nAxis {}. {}\n", device::name_of(axis), instruction_for(axis)));
   while (true) {
     const std::string line = answer_to(fmt::format(
@@ -168,7 +168,7 @@ std::optional<double> AcceptanceTerminal::weight_n(device::DeviceAxis axis, doub
     if (line == "s") return std::nullopt;
     if (line == "q") throw AcceptanceStopped{};
     if (const auto force_n = newtons_in(line);
-        force_n && *force_n >= least_n * (1.0 - 1e-9) && *force_n <= most_n) {
+        force_n && *force_n >= min_n * (1.0 - 1e-9) && *force_n <= max_n) {
       return force_n;
     }
     show("that is not a weight in this range\n");
@@ -195,7 +195,7 @@ void AcceptanceTerminal::show(const std::string& text) {
   std::cerr << text << (text.ends_with('\n') || text.ends_with(' ') ? "" : "\n") << std::flush;
 }
 
-void AcceptanceTerminal::require_going_on() const {
+void AcceptanceTerminal::require_not_aborted() const {
   if (run_.stop() != AttendedStop::none) throw AcceptanceStopped{};
 }
 

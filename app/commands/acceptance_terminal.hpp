@@ -30,25 +30,25 @@ class AcceptanceTerminal final : public device::AcceptanceBench, public device::
 
   [[nodiscard]] device::DeviceInfo info() const override { return info_; }
   [[nodiscard]] device::SafetyLimits limits() const override;
-  void limit_force(double most_n) override;
+  void limit_force(double max_n) override;
   [[nodiscard]] device::ServoReport run(const std::string& name,
                                         device::Measurement& measurement) override;
   [[nodiscard]] std::optional<device::ServoReport> run_suspended(
       device::Measurement& measurement) override;
 
   [[nodiscard]] device::Consent ready(const device::Prompt& prompt) override;
-  [[nodiscard]] std::optional<double> weight_n(device::DeviceAxis axis, double least_n,
-                                               double most_n) override;
+  [[nodiscard]] std::optional<double> weight_n(device::DeviceAxis axis, double min_n,
+                                               double max_n) override;
   [[nodiscard]] std::optional<double> temperature_c(const std::string& question) override;
   [[nodiscard]] std::string ask_observation(const std::string& question) override;
   void show(const std::string& text) override;
 
  private:
-  void require_going_on() const;
+  void require_not_aborted() const;
 
   std::unique_ptr<device::HapticDevice> device_;
   device::SafetyLimits limits_;
-  double most_n_ = std::numeric_limits<double>::infinity();  ///< of limit_force
+  double max_n_ = std::numeric_limits<double>::infinity();  ///< of limit_force
   AttendedRun run_;
   device::DeviceInfo info_;
 };

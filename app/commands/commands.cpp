@@ -221,9 +221,9 @@ void add_seed_option(CLI::App& command, std::uint64_t& seed, const std::string& 
 }
 
 CLI::Option* add_count_option(CLI::App& command, const std::string& name, int& count,
-                              const std::string& meaning, int least, int most) {
+                              const std::string& meaning, int min, int max) {
   return command.add_option(name, count, meaning)
-      ->check(CLI::Range(least, most))
+      ->check(CLI::Range(min, max))
       ->capture_default_str();
 }
 

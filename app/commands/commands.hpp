@@ -156,9 +156,9 @@ void add_rate_option(CLI::App& command, double& rate_hz);
 
 /// --seed: a whole number from 0 to 2^64 - 1. The parser itself would accept -1 for 2^64 - 1.
 void add_seed_option(CLI::App& command, std::uint64_t& seed, const std::string& meaning);
-/// A whole number from `least` to `most`, whose default the help shows.
+/// A whole number from `min` to `max`, whose default the help shows.
 CLI::Option* add_count_option(CLI::App& command, const std::string& name, int& count,
-                              const std::string& meaning, int least, int most);
+                              const std::string& meaning, int min, int max);
 /// --jobs, by default as many as there are logical cores.
 void add_jobs_option(CLI::App& command, int& jobs);
 /// --yes: does not ask; see confirm of app/terminal/console.hpp.

@@ -24,7 +24,7 @@ namespace touchtrial::app {
 namespace {
 
 constexpr int kOldestYears = 130;
-constexpr std::size_t kLongestVersion = 64;  // bytes
+constexpr std::size_t kMaxVersionBytes = 64;  // bytes
 
 struct ConsentArguments {
   std::filesystem::path database;
@@ -108,10 +108,11 @@ int record_consent(const ConsentArguments& arguments) {
     throw UsageError("consent: " + in_quotes(record.participant) + " is not a participant id; " +
                      std::string(record::kParticipantIdRule));
   }
-  if (record.consent_version.size() > kLongestVersion ||
+  if (record.consent_version.size() > kMaxVersionBytes ||
       printable(record.consent_version) != record.consent_version) {
-    throw UsageError(fmt::format(
-        "consent: --version is the name of a form: one line of at most {} bytes", kLongestVersion));
+    throw UsageError(
+        fmt::format("consent: --version is the name of a form: one line of at most {} bytes",
+                    kMaxVersionBytes));
   }
   confirm_id("consent", arguments.database, record.participant, arguments.yes);
   if (!arguments.details.empty() && ::isatty(STDIN_FILENO) != 0) {

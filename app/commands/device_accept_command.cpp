@@ -64,8 +64,8 @@ std::string emulated_word(const std::string& model) {
 /// "-certificate.json".
 fs::path file_beside(const fs::path& certificate, const std::string& ending) {
   std::string stem = certificate.stem().string();
-  const std::string usual = "-certificate";
-  if (ending != ".html" && stem.ends_with(usual)) stem.resize(stem.size() - usual.size());
+  const std::string suffix = "-certificate";
+  if (ending != ".html" && stem.ends_with(suffix)) stem.resize(stem.size() - suffix.size());
   return certificate.parent_path() / (stem + ending);
 }
 

@@ -136,7 +136,7 @@ std::vector<device::ConformanceCheck> checks_of(const ConformArguments& argument
                                                 const device::DeviceSettings& settings,
                                                 bool is_plugin, device::SchedulingPolicy policy) {
   const device::ConformanceOptions options = options_of(arguments);
-  device::PacedClock clock(device::PacedClock::usual_spin(policy));
+  device::PacedClock clock(device::PacedClock::default_spin(policy));
   if (is_plugin) return device::check_plugin_conformance(settings.plugin, clock, options);
   device::ConformanceSubject subject;
   // Opens the driver itself, without the lab's scales.

@@ -36,7 +36,7 @@ enum class WorkspaceSource {
   maker,   ///< the manufacturer's data for all these devices; none was read
   model,   ///< a device model; none was read
   device,  ///< the connected device
-  none,    ///< the device reports positions on the plane, whatever its size
+  none,    ///< the device reports positions on the plane, regardless of its size
 };
 
 struct StudyFit {
@@ -83,7 +83,7 @@ std::string workspace_text(const StudyFit& fit) {
            " has no workspace; connect the device, or give a model file with a workspace\n";
   }
   if (!fit.workspace) return "accepts any plane: it has no frame of its own\n";
-  const Vec3 size = fit.workspace->greatest_mm - fit.workspace->least_mm;
+  const Vec3 size = fit.workspace->max_mm - fit.workspace->min_mm;
   return fmt::format("workspace {:.1f} x {:.1f} x {:.1f} mm{}, {}\n", size.x, size.y, size.z,
                      fit.workspace->shape == device::WorkspaceShape::ellipsoid ? " (rounded)" : "",
                      source_words(fit));
@@ -106,8 +106,8 @@ ordered_json workspace_json(const StudyFit& fit) {
   const bool rounded = fit.workspace->shape == device::WorkspaceShape::ellipsoid;
   return {{"from", word_for(fit.source)},
           {"shape", rounded ? "ellipsoid" : "box"},
-          {"least_mm", vec_json(fit.workspace->least_mm)},
-          {"greatest_mm", vec_json(fit.workspace->greatest_mm)}};
+          {"least_mm", vec_json(fit.workspace->min_mm)},
+          {"greatest_mm", vec_json(fit.workspace->max_mm)}};
 }
 
 /// The part of the plane covered by all pictures of a study, as in a session.
@@ -307,11 +307,11 @@ int fit(const DeviceFitArguments& arguments) {
   if (!fit.fit.fits) {
     throw DeviceError(device::misfit_text(fit.device, fit.plane, *fit.workspace, fit.fit));
   }
-  const fs::path usual = fit.driver + "-certificate.json";
-  const bool has_usual = !fit.driver.empty() && is_there(usual);
-  if (!arguments.certificate.empty() || has_usual) {
-    check_with_certificate(arguments.certificate.empty() ? usual : arguments.certificate, study,
-                           fit);
+  const fs::path default_file = fit.driver + "-certificate.json";
+  const bool has_default = !fit.driver.empty() && is_there(default_file);
+  if (!arguments.certificate.empty() || has_default) {
+    check_with_certificate(arguments.certificate.empty() ? default_file : arguments.certificate,
+                           study, fit);
   }
   const std::string warning = device::check_stiffness(fit.rendered, fit.limits);
   if (!warning.empty()) spdlog::warn("{}", warning);

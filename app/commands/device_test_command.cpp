@@ -52,9 +52,9 @@ double seconds_of(std::int64_t ticks, const device::ServoReport& report) {
 }
 
 std::string phase_text(const TestPhase& phase, const device::ServoReport& run) {
-  return fmt::format("{:<8} {:5.1f} s, contact {:5.1f} s, greatest force {:.2f} N\n", phase.name,
+  return fmt::format("{:<8} {:5.1f} s, contact {:5.1f} s, maximum force {:.2f} N\n", phase.name,
                      seconds_of(phase.felt.ticks, run), seconds_of(phase.felt.contact_ticks, run),
-                     phase.felt.greatest_force_n);
+                     phase.felt.max_force_n);
 }
 
 const char* words_for(const device::ServoReport& run, bool quit) {
@@ -102,7 +102,7 @@ nlohmann::ordered_json phase_json(const TestPhase& phase, const device::ServoRep
   return {{"phase", phase.name},
           {"ticks", phase.felt.ticks},
           {"contact_s", seconds_of(phase.felt.contact_ticks, run)},
-          {"greatest_force_n", phase.felt.greatest_force_n}};
+          {"greatest_force_n", phase.felt.max_force_n}};
 }
 
 nlohmann::ordered_json run_json(const device::ServoReport& run) {

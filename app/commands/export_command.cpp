@@ -92,8 +92,7 @@ std::vector<fs::path> write_files(const ExportArguments& arguments, const record
   }
   if (format == "r") {
     require_outcomes(store, outcomes, "a model contains outcomes");
-    std::vector<fs::path> files =
-        analysis::analysis_of(outcomes->design).export_model(store, *outcomes, arguments.folder);
+    std::vector<fs::path> files = analysis::export_r_model(store, *outcomes, arguments.folder);
     for (fs::path& file :
          analysis::export_typed_text(store, *outcomes, arguments.folder, consents)) {
       files.push_back(std::move(file));

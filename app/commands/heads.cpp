@@ -146,8 +146,8 @@ void warn_if_on_one_disk(const record::HeadFiles& files, const record::StudyStor
   const bool is_alone = paths.size() < 2 || is_on_disk_of(fs::absolute(paths.back()), database);
   if (!is_alone || store.commitment().simulated) return;
   spdlog::warn(
-      "{}: the head of the study is kept on the database's own disk alone, and would be lost with "
-      "it; name a folder on another disk with --heads",
+      "{}: the head of the study is stored only on the database's disk, and would be lost with it; "
+      "name a folder on another disk with --heads",
       one_line(database.string()));
 }
 
@@ -184,9 +184,10 @@ void set_head_writer(record::StudyStore& store, const fs::path& database, const 
   std::vector<record::Loss> missing = losses_of(store, readings);
   add_gone(missing, known, own, options);
   if (!missing.empty() && options.accept_loss.empty()) {
-    throw StoreError(one_line(database.string()) + ": is not as it was left: " + words_on(missing) +
+    throw StoreError(one_line(database.string()) +
+                     ": lacks events that its head file records: " + words_on(missing) +
                      "; restore the database and its -wal from a complete copy, or continue with "
-                     "--accept-loss REASON, which is recorded");
+                     "--accept-loss REASON, which is recorded [lost-events]");
   }
   if (missing.empty() && !options.accept_loss.empty()) warn_of_no_loss();
   std::string also = store.heads_on_record().value_or("");
@@ -218,7 +219,8 @@ void require_head_beside(const fs::path& database) {
   const std::vector<record::Loss> missing = losses_of(store, readings_of(known));
   if (missing.empty()) return;
   throw VerificationError(
-      one_line(database.string()) + ": is not as it was left: " + words_on(missing) +
+      one_line(database.string()) +
+      ": lacks events that its head file records: " + words_on(missing) +
       "; take the database and its -wal from a complete copy, or record the loss at its "
       "station, for instance with `touchtrial note --accept-loss REASON`");
 }

@@ -53,7 +53,7 @@ struct NewQuestion {
   std::string option;
   std::string text;
   CLI::Validator allowed;
-  std::function<std::string(const Answers&)> usual;  ///< the default, for Return and --yes
+  std::function<std::string(const Answers&)> default_value;  ///< the default, for Return and --yes
   bool (*is_asked)(const Answers&) = [](const Answers&) { return true; };
 };
 
@@ -66,7 +66,7 @@ struct NewArguments {
   bool yes = false;
 };
 
-constexpr const char* kUsualName = "my-study";
+constexpr const char* kDefaultName = "my-study";
 constexpr std::size_t kMaxGroups = 16;
 
 bool is_plain_name(std::string_view name) {
@@ -146,7 +146,7 @@ std::vector<NewQuestion> new_questions() {
   return {
       {"--name", "Name of the study",
        allowed_if(is_plain_name, "must have 1 to 64 of the characters 0-9 A-Z a-z _ -", "NAME"),
-       always(kUsualName)},
+       always(kDefaultName)},
       {"--protocol",
        "Protocol: " + listed(protocols, " or ") +
            "; for thresholds, copy a ready study with touchtrial examples",
@@ -182,9 +182,10 @@ std::vector<NewQuestion> new_questions() {
   };
 }
 
-std::string typed_answer(const NewQuestion& question, const std::string& usual) {
+std::string typed_answer(const NewQuestion& question, const std::string& default_value) {
   for (;;) {
-    const std::string prompt = question.text + (usual.empty() ? ": " : " [" + usual + "]: ");
+    const std::string prompt =
+        question.text + (default_value.empty() ? ": " : " [" + default_value + "]: ");
     std::fputs(prompt.c_str(), stderr);
     std::string line;
     if (!std::getline(std::cin, line)) {
@@ -193,7 +194,7 @@ std::string typed_answer(const NewQuestion& question, const std::string& usual) 
                        "; nothing was written: answer the questions, or give --yes for the usual "
                        "answers");
     }
-    if (line.empty()) return usual;
+    if (line.empty()) return default_value;
     const std::string wrong = question.allowed(line);
     if (wrong.empty()) return line;
     std::fputs((one_line(line + ": " + wrong) + "\n").c_str(), stderr);
@@ -213,9 +214,10 @@ stimuli::ImportOptions import_options(const NewArguments& arguments) {
 
 /// Asks for another size and number of crops that the photographs can provide.
 void ask_crops(NewArguments& arguments, const stimuli::CropsDoNotFit& now) {
-  const auto answer = [](const char* option, const char* text, int low, int high, int usual) {
+  const auto answer = [](const char* option, const char* text, int low, int high,
+                         int default_value) {
     const NewQuestion question{option, text, number_within(low, high), {}};
-    return *number_in<int>(typed_answer(question, std::to_string(usual)));
+    return *number_in<int>(typed_answer(question, std::to_string(default_value)));
   };
   arguments.size_px =
       answer("--size", "Side of a picture, pixels", stimuli::kMinCropSizePx,
@@ -256,13 +258,14 @@ void try_pictures(NewArguments& arguments, const NewQuestion& question, bool typ
 /// \return the default size of pictures, pixels: of those whose plane the device reaches, in tens
 /// \param device  "" : none
 int size_for(const std::string& device) {
-  constexpr int kUsual = stimuli::kDefaultStimulusSizePx;
-  if (device.empty()) return kUsual;
-  const PlaneGeometry usual{engine::RenderingOptions{}.pitch_mm, kUsual, kUsual};
+  constexpr int kDefaultSide = stimuli::kDefaultStimulusSizePx;
+  if (device.empty()) return kDefaultSide;
+  const PlaneGeometry default_plane{engine::RenderingOptions{}.pitch_mm, kDefaultSide,
+                                    kDefaultSide};
   const PlaneGeometry fits =
-      device::fit_plane(usual, device::model_of_device(device).workspace).largest;
+      device::fit_plane(default_plane, device::model_of_device(device).workspace).largest;
   const int side = std::min(fits.width_px, fits.height_px);
-  return std::max(side == kUsual ? side : side / 10 * 10, stimuli::kMinCropSizePx);
+  return std::max(side == kDefaultSide ? side : side / 10 * 10, stimuli::kMinCropSizePx);
 }
 
 /// Asks the questions without options. The default name is the folder's.
@@ -273,10 +276,11 @@ void interview(NewArguments& arguments) {
   for (const NewQuestion& question : new_questions()) {
     const bool is_given = arguments.answers.contains(question.option);
     if (!is_given) {
-      std::string usual = question.usual(arguments.answers);
-      if (question.option == "--name" && is_plain_name(folder)) usual = folder;
+      std::string default_value = question.default_value(arguments.answers);
+      if (question.option == "--name" && is_plain_name(folder)) default_value = folder;
       const bool is_asked = !arguments.yes && question.is_asked(arguments.answers);
-      arguments.answers[question.option] = is_asked ? typed_answer(question, usual) : usual;
+      arguments.answers[question.option] =
+          is_asked ? typed_answer(question, default_value) : default_value;
     }
     if (question.option == "--device" && arguments.size_px == 0) {
       arguments.size_px = size_for(arguments.answers.at(question.option));
@@ -368,15 +372,15 @@ std::string filled_line(std::string_view line, const Fillings& fillings) {
 std::string filled_in(const std::string& text, const Fillings& fillings) {
   std::string filled;
   std::istringstream lines(text);
-  bool stands = true;
+  bool is_kept = true;
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with("#if ")) {
-      stands = fillings.contains(std::string_view(line).substr(4));
+      is_kept = fillings.contains(std::string_view(line).substr(4));
     } else if (line == "#else") {
-      stands = !stands;
+      is_kept = !is_kept;
     } else if (line == "#end") {
-      stands = true;
-    } else if (stands) {
+      is_kept = true;
+    } else if (is_kept) {
       filled += filled_line(line, fillings);
     }
   }

@@ -85,17 +85,17 @@ std::string plan_json(const study::StudyKey& key, const study::PackPlace& place)
 std::string groups_text(const study::StudyKey& key, int participants, bool json) {
   const std::vector<std::string>& labels = key.study.groups.labels;
   if (labels.empty()) throw UsageError("plan: the study has no groups; leave --groups out");
-  nlohmann::ordered_json dealt = nlohmann::ordered_json::array();
+  nlohmann::ordered_json assignments = nlohmann::ordered_json::array();
   std::string text;
   for (int number = 1; number <= participants; ++number) {
     const auto group = key.group_of(number, study::Draws::people);
     if (!group) continue;
     const std::string& label = labels[static_cast<std::size_t>(*group)];
-    dealt.push_back({{"enrolment", number}, {"group", label}});
+    assignments.push_back({{"enrolment", number}, {"group", label}});
     text += fmt::format("{:>7}  {}\n", number, label);
   }
   if (json) {
-    const nlohmann::ordered_json document = {{"study", key.study.name}, {"groups", dealt}};
+    const nlohmann::ordered_json document = {{"study", key.study.name}, {"groups", assignments}};
     return json_text(document);
   }
   return fmt::format("{}\n number  group\n{}", key.study.name, text) +

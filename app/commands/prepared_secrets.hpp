@@ -22,7 +22,7 @@ class PreparedSecrets {
   /// \param passphrase  whether to protect a new or unprotected key by a passphrase, which is asked
   ///   for
   /// \throws UsageError if the key is a simulated study's, or another study's
-  /// \throws FileError if a station's file or pack exists but its key is gone, or a file cannot be
+  /// \throws FileError if a station's file or pack exists but its key is missing, or a file cannot be
   ///   read or written
   PreparedSecrets(const study::Study& study, const study::PackPlace& place, bool passphrase);
 

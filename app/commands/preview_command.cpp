@@ -41,7 +41,7 @@ struct PreviewArguments {
 
 constexpr std::chrono::milliseconds kPreviewPause{10};
 /// Only a hanging window exceeds this.
-constexpr std::chrono::minutes kPreviewPatience{5};
+constexpr std::chrono::minutes kPreviewTimeout{5};
 
 class Preview {
  public:
@@ -78,7 +78,7 @@ class Preview {
     ParticipantWindowOptions wanted = window_options(arguments_.window, study_);
     if (arguments_.mouse) wanted.pointer = &pointer_;
     if (arguments_.console) wanted.console = &console_;
-    wanted.least_touch = {0.0, 0.0};  // nothing is felt
+    wanted.min_touch = {0.0, 0.0};  // nothing is felt
     wanted.interval_pause = std::chrono::hours(24);
     wanted.turn = [this](int pages) {
       turn_ = pages == 0 ? Turn::end : pages < 0 ? Turn::back : Turn::next;
@@ -89,7 +89,7 @@ class Preview {
   }
 
   void require_shown() {
-    if (!window_.wait_until_shown(kPreviewPatience)) {
+    if (!window_.wait_until_shown(kPreviewTimeout)) {
       throw DeviceError("preview: the window shows nothing; check the graphics driver");
     }
   }
@@ -164,7 +164,7 @@ class Preview {
 
   Turn wait_for_turn(const PreviewScreen& screen) {
     for (;;) {
-      if (window_.gone()) return Turn::end;
+      if (window_.end_reason()) return Turn::end;
       if (const Turn turn = turn_.exchange(Turn::none); turn != Turn::none) return turn;
       if (screen.step) {
         if (window_.attend(*screen.step)) return Turn::answered;

@@ -23,7 +23,7 @@ struct ProcedureArguments {
 
 /// Answers as typed: "1,0,1"; empty: none.
 /// \throws UsageError if a part is neither 0 nor 1
-std::vector<bool> answers_named(std::string_view text) {
+std::vector<bool> parse_answers(std::string_view text) {
   std::vector<bool> answers;
   for (std::size_t begin = 0; !text.empty() && begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
@@ -39,7 +39,7 @@ std::vector<bool> answers_named(std::string_view text) {
 }
 
 int show_procedure(const ProcedureArguments& arguments) {
-  const std::vector<bool> answers = answers_named(arguments.answers);
+  const std::vector<bool> answers = parse_answers(arguments.answers);
   const study::Study study = study::load_study(arguments.study);
   print(planning::planner_of(study, "`procedure`").procedure(study, arguments.track, answers));
   return 0;

@@ -45,14 +45,15 @@ void write_report(const ReportArguments& arguments, const analysis::ReportFiles&
   print((arguments.folder / "report.html").string() + "\n");
 }
 
-/// What the head files say. A public report has neither folders nor ids.
+/// Compares the database with its head files. A public report shows neither folders nor ids.
 analysis::HeadCheck heads_for(const record::StudyStore& store, const ReportArguments& arguments) {
   analysis::HeadCheck heads = analysis::check_heads(store, arguments.database);
-  if (!heads.lacks.empty())
+  if (!heads.missing.empty())
     spdlog::warn("{}: {}", one_line(arguments.database.string()), heads.words());
   if (!arguments.is_public) return heads;
-  if (!heads.lacks.empty()) heads.lacks = "the database lacks something that its head file knows";
-  if (!heads.gone.empty()) heads.gone = "a head file is gone";
+  if (!heads.missing.empty())
+    heads.missing = "the database lacks events that its head file records";
+  if (!heads.missing_files.empty()) heads.missing_files = "a head file is missing";
   return heads;
 }
 
@@ -60,19 +61,19 @@ analysis::Provenance provenance_for(const record::StudyStore& store,
                                     const ReportArguments& arguments) {
   analysis::Provenance provenance =
       analysis::provenance_of(store, arguments.database.filename().string());
-  provenance.vouched = arguments.heads.words();
-  provenance.lacks = !arguments.heads.lacks.empty();
+  provenance.head_summary = arguments.heads.words();
+  provenance.is_incomplete = !arguments.heads.missing.empty();
   if (arguments.is_public) provenance.state.unblinding_reason.clear();
   return provenance;
 }
 
-/// Adds to the JSON object of a report up to which head its database's end is vouched for.
-std::string with_vouched(const std::string& text, const analysis::HeadCheck& heads) {
+/// Adds the confirmed head of the database to the JSON object of a report.
+std::string with_confirmed_head(const std::string& text, const analysis::HeadCheck& heads) {
   auto object = nlohmann::ordered_json::parse(text);
   object["vouched"] = {{"head", nullptr}, {"head_files", heads.compared}, {"fault", heads.fault()}};
-  if (heads.vouched) {
-    object["vouched"]["head"] = {{"length", heads.vouched->file.length},
-                                 {"hash", to_hex(heads.vouched->file.hash)}};
+  if (heads.confirmed) {
+    object["vouched"]["head"] = {{"length", heads.confirmed->file.length},
+                                 {"hash", to_hex(heads.confirmed->file.hash)}};
   }
   return json_text(object);
 }
@@ -92,7 +93,7 @@ void refuse_while_blind(const record::StudyState& state, const ReportArguments& 
 
 int report_quality(const record::StudyStore& store, const ReportArguments& arguments) {
   const analysis::QualityReport quality = analysis::make_quality(store);
-  const std::string json = with_vouched(analysis::quality_json(quality), arguments.heads);
+  const std::string json = with_confirmed_head(analysis::quality_json(quality), arguments.heads);
   const analysis::Document document =
       analysis::quality_document(quality, provenance_for(store, arguments));
   if (!arguments.folder.empty()) {
@@ -126,7 +127,7 @@ int write_outcomes(const record::StudyStore& store, const analysis::Outcomes& ou
   }
   analysis::ReportFiles files =
       analysis::report_files(results.document(provenance, figures.pictures),
-                             with_vouched(results.json(), arguments.heads));
+                             with_confirmed_head(results.json(), arguments.heads));
   files.insert(figures.files.begin(), figures.files.end());
   write_report(arguments, files);
   return 0;
@@ -135,7 +136,7 @@ int write_outcomes(const record::StudyStore& store, const analysis::Outcomes& ou
 void print_results(const record::StudyStore& store, const analysis::Results& results,
                    const ReportArguments& arguments) {
   print(arguments.json
-            ? with_vouched(results.json(), arguments.heads)
+            ? with_confirmed_head(results.json(), arguments.heads)
             : analysis::document_text(results.document(provenance_for(store, arguments), {}),
                                       columns_of_output()));
 }
@@ -151,7 +152,7 @@ int report_question(const record::StudyStore& store, const ReportArguments& argu
   } else {
     write_report(arguments,
                  analysis::report_files(answer->document(provenance_for(store, arguments), {}),
-                                        with_vouched(answer->json(), arguments.heads)));
+                                        with_confirmed_head(answer->json(), arguments.heads)));
   }
   return 0;
 }

@@ -4,6 +4,7 @@
 #include "app/windows/participant/card_screen.hpp"
 #include "app/windows/participant/participant_window.hpp"
 #include "core/errors.hpp"
+#include "core/units.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -25,12 +26,12 @@ int calibrate_screen(const ParticipantWindowOptions& options) {
   const auto card = std::make_shared<CardScreen>(before.mm_per_unit);
   bool is_measured = false;
   run_beside(window, [&] {
-    while (!is_measured && !window.gone()) is_measured = window.attend(card).has_value();
+    while (!is_measured && !window.end_reason()) is_measured = window.attend(card).has_value();
   });
   if (!is_measured) throw UsageError("screen calibrate: cancelled; nothing was saved");
   keep_measured_screen(before.monitor, card->mm_per_unit());
   print(fmt::format("{}\n{:.5f} mm a pixel, {:.1f} pixels an inch; kept in {}\n", before.monitor,
-                    card->mm_per_unit(), 25.4 / card->mm_per_unit(), file.string()));
+                    card->mm_per_unit(), kMmPerInch / card->mm_per_unit(), file.string()));
   return 0;
 }
 

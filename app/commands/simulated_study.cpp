@@ -31,7 +31,7 @@ void refuse_existing(const std::filesystem::path& path) {
   }
 }
 
-/// Writes a head file over the one of a database that is gone.
+/// Writes a head file over the one of a database that no longer exists.
 void write_head_beside(const std::filesystem::path& made, const std::filesystem::path& place) {
   refuse_link(place);
   std::error_code error;

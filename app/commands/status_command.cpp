@@ -194,12 +194,13 @@ struct NextSession {
 
 /// Whether the planned number of participants has been reached, so that no new one is due.
 bool all_planned_present(const analysis::StudyStatus& status) {
-  std::set<std::string> came;
+  std::set<std::string> participants;
   for (const analysis::PersonStatus& one : status.people) {
-    const bool stands = one.state == "complete" || one.state == "open" || one.state == "stopped";
-    if (stands) came.insert(one.participant);
+    const bool is_planned =
+        one.state == "complete" || one.state == "open" || one.state == "stopped";
+    if (is_planned) participants.insert(one.participant);
   }
-  return status.planned > 0 && static_cast<int>(came.size()) >= status.planned;
+  return status.planned > 0 && static_cast<int>(participants.size()) >= status.planned;
 }
 
 /// The next participant: that of an open session, one who has consented or replaces another, one
@@ -244,11 +245,11 @@ std::string run_line(const StatusArguments& arguments, const FilesBeside& beside
   const std::string study = beside.study.empty() ? "STUDY" : shell_word(beside.study.string());
   std::string line = "touchtrial run " + study + " --participant " + shell_word(next.participant) +
                      " --db " + shell_word(arguments.database.string());
-  const bool is_usual =
+  const bool is_default =
       beside.study.empty() || beside.station_file.empty() ||
       beside.station_file.lexically_normal() ==
           pack_place_for(beside.study, {}).station(words.station).lexically_normal();
-  if (!is_usual) {
+  if (!is_default) {
     line += " --station-file " + shell_word(beside.station_file.string());
   } else if (words.station != study::kOnlyStation) {
     line += " --station " + shell_word(words.station);

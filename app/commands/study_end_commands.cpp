@@ -129,8 +129,8 @@ void confirm_look(const record::StudyStore& store, const UnblindArguments& argum
       registered ? "the answer to the registered question, from " : "the outcomes of ";
   const std::string when = !one && arguments.interim ? ", while collection continues" : "";
   confirm(arguments.database.string() + ": this lets " + what + who + " be seen" + when +
-              "; it is recorded and cannot be taken back; whoever sees them is no longer blind, "
-              "and later exclusions say that outcomes had been seen",
+              "; it is recorded and cannot be undone; anyone who sees them is no longer blind, and "
+              "later exclusions say that outcomes had been seen",
           arguments.yes);
 }
 

@@ -56,10 +56,11 @@ std::string absolute_name(const std::filesystem::path& file) {
 
 /// Damaged entries are ignored.
 nlohmann::json remembered_keys() {
-  constexpr std::uintmax_t kLargest = 1U << 20U;
+  constexpr std::uintmax_t kMaxFileBytes = 1U << 20U;
   const std::filesystem::path path = memory_path();
   if (path.empty() || !is_there(path)) return nlohmann::json::object();
-  nlohmann::json keys = nlohmann::json::parse(text_of(read_file(path, kLargest)), nullptr, false);
+  nlohmann::json keys =
+      nlohmann::json::parse(text_of(read_file(path, kMaxFileBytes)), nullptr, false);
   return keys.is_object() ? keys : nlohmann::json::object();
 }
 

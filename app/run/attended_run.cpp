@@ -26,7 +26,7 @@ constexpr std::chrono::nanoseconds kOnTerminal = 250ms;
 constexpr std::chrono::nanoseconds kOnPipe = 1s;
 
 /// Time between two polls of keys, signals and the servo.
-constexpr auto kBetweenFrames = 16ms;
+constexpr auto kFrameInterval = 16ms;
 
 /// The longest delay of a signal while an answer is typed.
 constexpr int kAnswerPollMs = 100;
@@ -70,13 +70,14 @@ std::optional<std::string> attended_answer(const std::string& question) {
   std::fputs(question.c_str(), stderr);
   std::fflush(stderr);
   std::chrono::nanoseconds quiet_since = device::monotonic_now();
-  bool told = false;
+  bool is_announced = false;
   while (const std::optional<std::string> line = line_of_input()) {
     const std::chrono::nanoseconds now = device::monotonic_now();
     if (!has_keys || !line->empty() || now - quiet_since >= kFreshPress) return line;
     quiet_since = now;
-    if (!told) std::fputs("release Enter, read, and press it again after a second\n", stderr);
-    told = true;
+    if (!is_announced)
+      std::fputs("release Enter, read, and press it again after a second\n", stderr);
+    is_announced = true;
   }
   return std::nullopt;
 }
@@ -119,11 +120,11 @@ std::optional<device::ServoReport> AttendedRun::run(const PhaseName& phase,
                                  .heat = &heat_,
                                  .parameters = &parameters_};
   device::RunningServo running(thread_, control_, [&] {
-    device::PacedClock clock(device::PacedClock::usual_spin(thread_.scheduling().policy));
+    device::PacedClock clock(device::PacedClock::default_spin(thread_.scheduling().policy));
     report = device::run_servo(device_, force, sink, options_, clock, hooks);
   });
   while (running.runs()) {
-    std::this_thread::sleep_for(kBetweenFrames);
+    std::this_thread::sleep_for(kFrameInterval);
     take_keys();
     if (is_done && is_done()) control_.finish();
     show(phase);
@@ -159,8 +160,8 @@ void AttendedRun::wait_until_ready(double limit_s) {
   }
 }
 
-void AttendedRun::limit_force(double most_n) noexcept {
-  options_.limits.max_force_n = std::min(max_force_n_, most_n);
+void AttendedRun::limit_force(double max_n) noexcept {
+  options_.limits.max_force_n = std::min(max_force_n_, max_n);
 }
 
 std::string AttendedRun::flight_record() const {

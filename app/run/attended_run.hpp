@@ -77,8 +77,8 @@ class AttendedRun {
   void wait_until_ready(double limit_s);
 
   /// Limits the force of later runs, within the limits of the constructor.
-  /// \param most_n  > 0
-  void limit_force(double most_n) noexcept;
+  /// \param max_n  > 0
+  void limit_force(double max_n) noexcept;
 
   /// Lets the keys + and - scale all forces in steps of 10 %, from 10 % to 100 %.
   void let_choose_strength() noexcept { chooses_strength_ = true; }

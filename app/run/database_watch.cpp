@@ -100,11 +100,11 @@ std::string save_copy(const fs::path& database, const record::StudyStore& store)
       std::error_code ignored;
       fs::copy_file(beside_database(database, ".head"), beside_database(name, ".head"), ignored);
       return fmt::format(
-          "what was recorded is in {}; find out which file is the study's before "
+          "the recorded events are in {}; find out which file is the study's before "
           "the next session",
           one_line(name.string()));
     } catch (const Error& error) {
-      return fmt::format("what was recorded could not be saved ({})", error.what());
+      return fmt::format("the recorded events could not be saved ({})", error.what());
     }
   }
 }

@@ -47,7 +47,7 @@ class DialogueTexts {
   explicit DialogueTexts(const study::SessionPlan& plan)
       : language_(plan.language), texts_(study::texts_of(plan)) {}
 
-  [[nodiscard]] std::string say(
+  [[nodiscard]] std::string text(
       const char* key, const std::vector<std::pair<std::string, std::string>>& values = {}) const {
     return filled(texts_.at("dialogue").at(key), values);
   }
@@ -64,8 +64,8 @@ class DialogueTexts {
   /// kAgeBands, as displayed.
   [[nodiscard]] std::vector<std::string> ages() const {
     std::vector<std::string> bands(kAgeBands.begin(), kAgeBands.end());
-    bands.front() = say("age_under", {{"years", "18"}});
-    bands.back() = say("age_from", {{"years", "70"}});
+    bands.front() = text("age_under", {{"years", "18"}});
+    bands.back() = text("age_from", {{"years", "70"}});
     return bands;
   }
   /// kHands, as displayed.
@@ -94,14 +94,15 @@ ParticipantAnswers ask_participant(const AskQuestions& ask, const ParticipantQue
   const std::string& version = questions.session.consent_version;
   ParticipantAnswers person;
   person.id = questions.proposed;
-  const std::string consent =
-      version.empty() ? texts.say("consent") : texts.say("consent_version", {{"consent", version}});
+  const std::string consent = version.empty()
+                                  ? texts.text("consent")
+                                  : texts.text("consent_version", {{"consent", version}});
   for (std::string remark = questions.note;;) {
-    const std::string id = texts.say("id") + (remark.empty() ? "" : "\n" + remark);
+    const std::string id = texts.text("id") + (remark.empty() ? "" : "\n" + remark);
     const study::Questionnaire first{
         "participant",
         {{"participant", study::QuestionKind::text, texts.translated(id), {}, true},
-         texts.choice("consent", consent, {texts.say("yes"), texts.say("no")}, true)}};
+         texts.choice("consent", consent, {texts.text("yes"), texts.text("no")}, true)}};
     const std::vector<std::string> answers = ask({&first, person.id});
     person.id = answers.at(0);
     person.has_consented = answers.at(1) == "0";
@@ -111,8 +112,8 @@ ParticipantAnswers ask_participant(const AskQuestions& ask, const ParticipantQue
   if (!person.has_consented) return person;
   const study::Questionnaire second{
       "person",
-      {texts.choice("age", texts.say("age"), texts.ages(), false),
-       texts.choice("hand", texts.say("hand"), texts.hands(), false)}};
+      {texts.choice("age", texts.text("age"), texts.ages(), false),
+       texts.choice("hand", texts.text("hand"), texts.hands(), false)}};
   const std::vector<std::string> answers = ask({&second});
   person.age_band = option_in(kAgeBands, answers.at(0));
   person.hand = option_in(kHands, answers.at(1));
@@ -121,9 +122,9 @@ ParticipantAnswers ask_participant(const AskQuestions& ask, const ParticipantQue
 
 namespace {
 
-/// \throws UsageError if the window is gone or a signal ends the program
+/// \throws UsageError if the window is closed or a signal ends the program
 std::vector<std::string> answers_in(ParticipantWindow& window, const session::QuestionStep& step) {
-  while (!window.gone() && EndingSignals::which() == 0) {
+  while (!window.end_reason() && EndingSignals::which() == 0) {
     if (const auto reply = window.attend(step)) return reply->answers;
   }
   const std::string stopped = EndingSignals::message();
@@ -189,40 +190,41 @@ int visit_of(const RunOptions& options, const KnownPeople& people, const std::st
 ParticipantQuestions questions_for(const RunOptions& options, const study::StationKey& key,
                                    const KnownPeople& people) {
   const DialogueTexts texts(key.study.session);
-  const auto refusal_for = [texts, of = std::to_string(key.study.visits.count)](
-                               const analysis::UpcomingVisit& next) {
-    return texts.say("next_visit",
-                     {{"id", next.participant}, {"visit", std::to_string(next.visit)}, {"of", of}});
-  };
+  const auto refusal_for =
+      [texts, of = std::to_string(key.study.visits.count)](const analysis::UpcomingVisit& next) {
+        return texts.text(
+            "next_visit",
+            {{"id", next.participant}, {"visit", std::to_string(next.visit)}, {"of", of}});
+      };
   ParticipantQuestions questions;
   questions.session = key.study.session;
-  std::string said;  // the id that was already questioned
+  std::string questioned_id;  // the id that was already questioned
   if (options.visit == 1 && !people.visits.empty() && people.visits.front().is_due(utc_now())) {
-    said = people.visits.front().participant;
-    questions.proposed = said;
+    questioned_id = people.visits.front().participant;
+    questions.proposed = questioned_id;
     questions.note = refusal_for(people.visits.front());
   } else if (options.visit == 1) {
     questions.proposed = proposed_participant(people.sessions, key.station);
   }
   questions.refusal = [&options, &people, texts, refusal_for,
-                       said](const std::string& id) mutable -> std::string {
-    if (!record::is_participant_id(id)) return texts.say("id_rule");
-    const bool is_mentioned = std::exchange(said, id) == id;
+                       questioned_id](const std::string& id) mutable -> std::string {
+    if (!record::is_participant_id(id)) return texts.text("id_rule");
+    const bool is_mentioned = std::exchange(questioned_id, id) == id;
     if (const analysis::UpcomingVisit* const next = people.next_visit(id)) {
       if (options.visit > 1) return "";
       // A mistyped id must not become another participant's next visit.
       if (next->is_due(utc_now())) return is_mentioned ? "" : refusal_for(*next);
-      return texts.say(
+      return texts.text(
           "too_early",
           {{"id", id}, {"visit", std::to_string(next->visit)}, {"time", utc_words(*next->from)}});
     }
     if (people.last_visit(id) > 0) {
       const bool may_be = options.visit > 1 || options.on_existing != OnExisting::refuse;
-      return may_be ? "" : texts.say("has_session", {{"id", id}});
+      return may_be ? "" : texts.text("has_session", {{"id", id}});
     }
     const auto meant = likely_id(id, people.ids);
     if (!meant || is_mentioned) return "";
-    return texts.say("looks_like", {{"known", *meant}, {"id", id}});
+    return texts.text("looks_like", {{"known", *meant}, {"id", id}});
   };
   return questions;
 }

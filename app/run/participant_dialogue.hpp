@@ -47,7 +47,7 @@ using AskQuestions = std::function<std::vector<std::string>(const session::Quest
 /// Asks for the participant in a separate window on the experimenter's monitor, or on the
 /// participant's if there is no other, and records the consent beside the database.
 /// \return the options with the participant's id, the visit number, and a remark
-/// \throws UsageError if the window is gone or a signal ends the program before there are answers,
+/// \throws UsageError if the window is closed or a signal ends the program before there are answers,
 ///   or if the study names a consent form and the participant has not signed it
 /// \throws DeviceError as ParticipantWindow
 [[nodiscard]] RunOptions with_participant(const RunOptions& options, const study::StationKey& key);

@@ -79,7 +79,7 @@ ParticipantWindowOptions window_options(const RunOptions& options, const study::
   window.pictures = answer_pictures(study);
   window.pitch_mm = study.rendering.pitch_mm;
   window.has_several_methods = study.presented_methods() > 1;
-  window.least_touch = study.trials.answer_after;
+  window.min_touch = study.trials.answer_after;
   window.ask = study::ask_of(study);
   window.stiffness_n_per_mm = study.rendering.stiffness_n_per_mm;
   return window;
@@ -88,10 +88,10 @@ ParticipantWindowOptions window_options(const RunOptions& options, const study::
 namespace {
 
 std::string window_end_reason(const ParticipantWindow& window) {
-  const auto gone = window.gone();
-  if (!gone || *gone == WindowGone::signal) return "";
-  return *gone == WindowGone::closed ? "the participant's window was closed"
-                                     : "the participant's monitor was unplugged";
+  const auto end_reason = window.end_reason();
+  if (!end_reason || *end_reason == WindowEnd::signal) return "";
+  return *end_reason == WindowEnd::closed ? "the participant's window was closed"
+                                          : "the participant's monitor was unplugged";
 }
 
 /// While another program locks the database: shows why the session waits.
@@ -120,13 +120,13 @@ class FocusWatch {
 
   [[nodiscard]] std::optional<session::ExperimenterRequest> request() {
     using Kind = session::ExperimenterRequest::Kind;
-    constexpr std::chrono::milliseconds kPatience{500};
+    constexpr std::chrono::milliseconds kFocusTimeout{500};
     const std::chrono::milliseconds lost = window_.out_of_reach();
     if (window_.take_out_of_reach() && !std::exchange(is_recorded_, true)) {
       return session::ExperimenterRequest{Kind::deviation, kWhat, "focus-lost"};
     }
     const bool is_in_trial = window_.is_exploring() || window_.is_answering();
-    if (lost >= kPatience && is_in_trial && !std::exchange(has_paused_, true)) {
+    if (lost >= kFocusTimeout && is_in_trial && !std::exchange(has_paused_, true)) {
       return session::ExperimenterRequest{Kind::pause, kWhat, ""};
     }
     if (lost > std::chrono::milliseconds{}) return std::nullopt;

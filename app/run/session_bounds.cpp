@@ -168,12 +168,12 @@ EnteredSession next_visit(const RunOptions& options, const RunStudy& study, RunD
                     last.visit, utc_words(before), utc_words(utc_now())));
   }
   if (in_days && !is_clock_wrong && days < plan.min_days) {
-    const auto least = std::chrono::duration<double, std::ratio<86'400>>(plan.min_days);
+    const auto min_gap = std::chrono::duration<double, std::ratio<86'400>>(plan.min_days);
     refuse(
         fmt::format("comes {:.1f} days after visit {} by this machine's clock, and the study has "
                     "at least {} days between visits: come back after {}",
                     days, last.visit, plan.min_days,
-                    utc_words(before + std::chrono::ceil<nanoseconds>(least))));
+                    utc_words(before + std::chrono::ceil<nanoseconds>(min_gap))));
   }
   EnteredSession entered = new_session(options, study, database, last.enrolment, describe);
   if (is_clock_wrong) {
@@ -496,10 +496,14 @@ std::string EndingSignals::message() {
   return "";
 }
 
-RunExperimenter::RunExperimenter(session::Experimenter& inner, std::function<std::string()> gone,
+RunExperimenter::RunExperimenter(session::Experimenter& inner,
+                                 std::function<std::string()> end_reason,
                                  std::function<std::optional<session::ExperimenterRequest>()> more,
                                  std::function<std::string()> alert)
-    : inner_(inner), gone_(std::move(gone)), more_(std::move(more)), alert_(std::move(alert)) {}
+    : inner_(inner),
+      end_reason_(std::move(end_reason)),
+      more_(std::move(more)),
+      alert_(std::move(alert)) {}
 
 void RunExperimenter::show(const session::SessionStatus& status) {
   session::SessionStatus shown = status;
@@ -509,7 +513,7 @@ void RunExperimenter::show(const session::SessionStatus& status) {
 
 std::optional<session::ExperimenterRequest> RunExperimenter::request() {
   std::string why = EndingSignals::message();
-  if (why.empty()) why = gone_();
+  if (why.empty()) why = end_reason_();
   if (!why.empty())
     return session::ExperimenterRequest{session::ExperimenterRequest::Kind::leave, why, ""};
   if (auto request = more_ ? more_() : std::nullopt) return request;

@@ -74,10 +74,10 @@ class EndingSignals {
 class RunExperimenter final : public session::Experimenter {
  public:
   /// \param inner  must outlive this object
-  /// \param gone  reason to end the program other than signals; "": none
+  /// \param end_reason  reason to end the program other than signals; "": none
   /// \param more  further requests, such as those of the sound; empty: none
   /// \param alert  SessionStatus::alert; empty: none
-  RunExperimenter(session::Experimenter& inner, std::function<std::string()> gone,
+  RunExperimenter(session::Experimenter& inner, std::function<std::string()> end_reason,
                   std::function<std::optional<session::ExperimenterRequest>()> more = {},
                   std::function<std::string()> alert = {});
 
@@ -91,7 +91,7 @@ class RunExperimenter final : public session::Experimenter {
 
  private:
   session::Experimenter& inner_;
-  std::function<std::string()> gone_;
+  std::function<std::string()> end_reason_;
   std::function<std::optional<session::ExperimenterRequest>()> more_;
   std::function<std::string()> alert_;
 };

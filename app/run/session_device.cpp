@@ -111,8 +111,8 @@ device::LabLimits SessionDevice::limits() const {
   const double scale = accepted_ ? accepted_->largest_scale() : 1.0;
   if (scale <= 1.0) return limits;
   const auto lower = [&](std::optional<double>& limit, double of_device) {
-    const double most = std::min(limit.value_or(of_device), of_device);
-    if (most > 0.0) limit = most / scale;
+    const double max_n = std::min(limit.value_or(of_device), of_device);
+    if (max_n > 0.0) limit = max_n / scale;
   };
   lower(limits.max_force_n, info_.max_force_n);
   if (info_.continuous_force_n > 0.0) lower(limits.continuous_force_n, info_.continuous_force_n);

@@ -40,7 +40,7 @@ constexpr Cue kCues[] = {Cue::plane_on,     Cue::plane_off,    Cue::too_hard,
 // The marks of intervals.
 constexpr double kMarkHz = 1000.0;
 constexpr double kPipS = 0.12;
-constexpr double kBetweenPipsS = 0.12;
+constexpr double kPipGapS = 0.12;
 constexpr double kLongMarkS = 0.45;
 constexpr double kToneRampS = 0.01;
 
@@ -68,7 +68,7 @@ void add_silence(std::vector<float>& samples, double rate_hz, double seconds) {
 /// Adds short pips, whose count is the number of an interval.
 void add_pips(std::vector<float>& samples, double rate_hz, int count) {
   for (int i = 0; i < count; ++i) {
-    if (i > 0) add_silence(samples, rate_hz, kBetweenPipsS);
+    if (i > 0) add_silence(samples, rate_hz, kPipGapS);
     add_tone(samples, rate_hz, kMarkHz, kMarkHz, kPipS, kMarkAmplitude);
   }
 }

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kQuestions = 3;
-constexpr std::size_t kLongestPassphrase = 4096;
+constexpr std::size_t kMaxPassphraseBytes = 4096;
 
 /// Switches the terminal to raw input without echo; Ctrl-C is read as a key, so that the terminal
 /// is always restored.
@@ -61,7 +61,7 @@ std::string typed_line() {
         line.pop_back();  // remaining bytes of a multi-byte character
       }
       if (!line.empty()) line.pop_back();
-    } else if (static_cast<unsigned char>(key) >= ' ' && line.size() < kLongestPassphrase) {
+    } else if (static_cast<unsigned char>(key) >= ' ' && line.size() < kMaxPassphraseBytes) {
       line += key;
     }
   }
@@ -89,7 +89,7 @@ std::string first_line_of(const fs::path& source) {
   std::ifstream file(source);
   std::string line;
   char letter = 0;
-  while (line.size() < kLongestPassphrase && file.get(letter) && letter != '\n') line += letter;
+  while (line.size() < kMaxPassphraseBytes && file.get(letter) && letter != '\n') line += letter;
   if (!line.empty() && line.back() == '\r') line.pop_back();
   if (line.empty()) {
     throw FileError(one_line(source.string()) +

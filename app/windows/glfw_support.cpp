@@ -4,6 +4,7 @@
 #include "core/files.hpp"
 #include "core/hash.hpp"
 #include "core/strict_json.hpp"
+#include "core/units.hpp"
 #include "device/device_settings.hpp"
 
 #include <algorithm>
@@ -21,8 +22,6 @@
 
 namespace touchtrial::app {
 namespace {
-
-constexpr double kMmPerInch = 25.4;
 
 /// The area of the window on the monitor, window units squared.
 int overlap(GLFWwindow* window, GLFWmonitor* monitor) {
@@ -46,11 +45,11 @@ GLFWmonitor* monitor_of(GLFWwindow* window) {
   int count = 0;
   GLFWmonitor** monitors = glfwGetMonitors(&count);
   GLFWmonitor* best = glfwGetPrimaryMonitor();
-  int most = 0;
+  int max_shown = 0;
   for (int i = 0; i < count; ++i) {
     const int shown = overlap(window, monitors[i]);
-    if (shown > most) best = monitors[i];
-    most = std::max(most, shown);
+    if (shown > max_shown) best = monitors[i];
+    max_shown = std::max(max_shown, shown);
   }
   return best;
 }
@@ -116,8 +115,8 @@ std::string identity_of(GLFWmonitor* monitor, const GLFWvidmode& mode) {
 std::map<std::string, double> read_measured_screens(const std::filesystem::path& file) {
   std::map<std::string, double> screens;
   if (file.empty() || !is_there(file)) return screens;
-  constexpr std::uintmax_t kLargest = 1U << 20U;
-  const Bytes content = read_file(file, kLargest);
+  constexpr std::uintmax_t kMaxFileBytes = 1U << 20U;
+  const Bytes content = read_file(file, kMaxFileBytes);
   const JsonObject root = parse_strict_json(text_of(content), file.string()).object({"screens"});
   for (const JsonValue& item : root.at("screens").items(0, kMaxScreens)) {
     const JsonObject screen = item.object({"monitor", "mm_per_unit"});

@@ -4,6 +4,7 @@
 /// screens".
 #pragma once
 
+#include "core/units.hpp"
 #include "engine/pictures/colour_image.hpp"
 
 #include <filesystem>
@@ -33,9 +34,9 @@ void hint_opengl_3_2();
 
 /// The scale of the monitor that shows the largest part of a window.
 struct ScreenScale {
-  double mm_per_unit = 25.4 / 96.0;  ///< millimetres on the screen for one window unit
-  bool is_known = false;             ///< measured, or the monitor states a plausible size
-  float density = 1.0F;              ///< factor for all sizes; 1 at 96 window units per inch
+  double mm_per_unit = kMmPerInch / 96.0;  ///< millimetres on the screen for one window unit
+  bool is_known = false;                   ///< measured, or the monitor states a plausible size
+  float density = 1.0F;                    ///< factor for all sizes; 1 at 96 window units per inch
   double refresh_hz = 60.0;
   /// The monitor: its name, resolution, stated size and, if available, a hash of its EDID (the
   /// monitor's self-description).

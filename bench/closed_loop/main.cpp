@@ -18,7 +18,7 @@
 namespace touchtrial::bench {
 namespace {
 
-constexpr double kUsualMmPerS = 100.0;
+constexpr double kTypicalMmPerS = 100.0;
 
 /// A Markdown table head with its rule.
 void print_heading(const std::string& names) {
@@ -54,7 +54,7 @@ void print_touchdowns(const Textures& textures, const engine::RenderingOptions& 
     const engine::RenderingModel model(views[i], options, gains[i]);
     for (std::uint64_t seed = 1; seed <= kLandings; ++seed) {
       const Touchdown landing = touch_down(
-          model, views[i].geometry, {.speed_mm_s = kUsualMmPerS, .time_s = 2.0, .seed = seed});
+          model, views[i].geometry, {.speed_mm_s = kTypicalMmPerS, .time_s = 2.0, .seed = seed});
       rms.push_back(landing.rms_n);
       first.push_back(landing.step_n);
       within.push_back(landing.largest_step_n);
@@ -106,8 +106,9 @@ void print_chatter(const Textures& textures) {
         const Plane<double> middle = middle_of(texture);
         for (std::uint64_t seed = 1; seed <= 2; ++seed) {
           vibration.push_back(stroke_texture(middle, options, {.seed = seed}).vibration_mm_s);
-          lost.push_back(stroke_texture(middle, options, {.speed_mm_s = kUsualMmPerS, .seed = seed})
-                             .lost_contacts_per_s);
+          lost.push_back(
+              stroke_texture(middle, options, {.speed_mm_s = kTypicalMmPerS, .seed = seed})
+                  .lost_contacts_per_s);
         }
       }
       fmt::print("| {} | {} | {:.4f} | {:.4f} | {:.1f} | {:.1f} |\n", name_of(model), stiffness,

@@ -16,7 +16,7 @@
 namespace touchtrial::bench {
 namespace {
 
-constexpr double kCutHz = 30.0;
+constexpr double kCutoffHz = 30.0;
 constexpr double kLandingS = 1.0;
 
 /// Two first-order high-pass filters in series.
@@ -31,8 +31,8 @@ class HighPass {
   }
 
  private:
-  static constexpr double kShare =
-      2.0 * std::numbers::pi * kCutHz / (2.0 * std::numbers::pi * kCutHz + device::kServoRateHz);
+  static constexpr double kShare = 2.0 * std::numbers::pi * kCutoffHz /
+                                   (2.0 * std::numbers::pi * kCutoffHz + device::kServoRateHz);
   std::array<Vec3, 2> slow_{};
 };
 
@@ -41,8 +41,8 @@ class ChatterSink final : public device::SampleSink {
   explicit ChatterSink(double push_n) : push_n_(push_n) {}
 
   void record(const device::ServoSample& sample) noexcept override {
-    const Vec3 fast = high_pass_.of(device::kServoRateHz * (sample.position_mm - before_mm_));
-    before_mm_ = sample.position_mm;
+    const Vec3 fast = high_pass_.of(device::kServoRateHz * (sample.position_mm - previous_mm_));
+    previous_mm_ = sample.position_mm;
     const bool touches = sample.force_n.z > 0.0;
     if (static_cast<double>(sample.tick) >= kLandingS * device::kServoRateHz) {
       ++ticks_;
@@ -62,7 +62,7 @@ class ChatterSink final : public device::SampleSink {
  private:
   double push_n_;
   HighPass high_pass_;
-  Vec3 before_mm_;
+  Vec3 previous_mm_;
   bool touched_ = false;
   std::int64_t ticks_ = 0;
   std::int64_t lost_ = 0;
@@ -74,7 +74,7 @@ class TouchdownSink final : public device::SampleSink {
  public:
   void record(const device::ServoSample& sample) noexcept override {
     const Vec2 lateral_n{sample.force_n.x, sample.force_n.y};
-    const double step_n = norm(lateral_n - before_n_);
+    const double step_n = norm(lateral_n - previous_n_);
     if (in_contact_ == 0 && sample.force_n.z > 0.0) touchdown_.step_n = step_n;
     if (in_contact_ > 0 || sample.force_n.z > 0.0) ++in_contact_;
     if (in_contact_ <= kLandingTicks) {
@@ -84,7 +84,7 @@ class TouchdownSink final : public device::SampleSink {
       ++ticks_;
       squares_ += lateral_n.x * lateral_n.x + lateral_n.y * lateral_n.y;
     }
-    before_n_ = lateral_n;
+    previous_n_ = lateral_n;
   }
 
   [[nodiscard]] Touchdown touchdown() const {
@@ -96,7 +96,7 @@ class TouchdownSink final : public device::SampleSink {
  private:
   static constexpr int kLandingTicks = 20;
   Touchdown touchdown_;
-  Vec2 before_n_;
+  Vec2 previous_n_;
   int in_contact_ = 0;  ///< ticks since the first with contact, that one included
   std::int64_t ticks_ = 0;
   double squares_ = 0.0;

@@ -20,10 +20,8 @@ constexpr double kShakeMoreN = 0.4;   ///< beyond friction
 constexpr double kSoftestWall = 0.1;  ///< N/mm
 constexpr double kWallFactor = 1.3;
 constexpr double kStiffestWall = 1.0;  ///< where the maker states no limit
-constexpr double kMinSwingMm = 0.15;
 constexpr double kStepsOfSwing = 3.0;
 constexpr double kNoisesOfSwing = 4.0;
-constexpr double kMinContactS = 1.0;
 constexpr int kWarmMinutes = 20;
 constexpr double kMinuteS = 60.0;
 
@@ -124,7 +122,7 @@ class Procedure {
     return certificate_.step_mm ? certificate_.step_mm->value : 0.0;
   }
   /// Smaller swings are ignored.
-  [[nodiscard]] double least_swing_mm() const {
+  [[nodiscard]] double min_swing_mm() const {
     const double noise_mm = certificate_.rest ? certificate_.rest->noise_mm : 0.0;
     return std::max({kMinSwingMm, kStepsOfSwing * step_mm(), kNoisesOfSwing * noise_mm});
   }
@@ -300,7 +298,7 @@ class Procedure {
         wall.ended = kLeftOut;
         break;
       }
-      WallTrial run(stiffness, least_swing_mm(), forces_.hold_n);
+      WallTrial run(stiffness, min_swing_mm(), forces_.hold_n);
       runs_.measure("wall", run);
       if (run.oscillated()) {
         wall.oscillates_n_per_mm = stiffness;

@@ -55,8 +55,8 @@ class AcceptancePerson {
   [[nodiscard]] virtual Consent ready(const Prompt& prompt) = 0;
   /// Asks for a force along an axis: a weight, or the reading of a spring scale.
   /// \return N, in the range; nothing: the person has none
-  [[nodiscard]] virtual std::optional<double> weight_n(DeviceAxis axis, double least_n,
-                                                       double most_n) = 0;
+  [[nodiscard]] virtual std::optional<double> weight_n(DeviceAxis axis, double min_n,
+                                                       double max_n) = 0;
   /// \return a temperature in degrees Celsius; nothing: there is no thermometer
   [[nodiscard]] virtual std::optional<double> temperature_c(const std::string& question) = 0;
   /// \return the person's observation, in their words; may be empty
@@ -72,8 +72,8 @@ class AcceptanceBench {
   /// They apply to every run.
   [[nodiscard]] virtual SafetyLimits limits() const = 0;
   /// Sets a stricter force limit than the bench's own for later runs.
-  /// \param most_n  > 0
-  virtual void limit_force(double most_n) = 0;
+  /// \param max_n  > 0
+  virtual void limit_force(double max_n) = 0;
   /// \param name  of the run, at most 8 letters
   /// \throws touchtrial::Error if a person or a signal stopped it
   [[nodiscard]] virtual ServoReport run(const std::string& name, Measurement& measurement) = 0;
@@ -113,7 +113,7 @@ struct AcceptanceForces {
 
 /// Runs the acceptance. A wrong sign or a fault ends it at once, with a certificate that states
 /// this.
-/// \throws whatever bench and person throw
+/// \throws what bench and person throw
 [[nodiscard]] Acceptance accept_device(AcceptanceBench& bench, AcceptancePerson& person,
                                        const AcceptanceOptions& options);
 

@@ -15,8 +15,8 @@ namespace touchtrial::device {
 namespace {
 
 /// A number that prints like its limit (three digits, whole percents) does not exceed it.
-constexpr double kAlikeShare = 0.004;
-constexpr double kAlikePercent = 0.5;
+constexpr double kEqualShare = 0.004;
+constexpr double kEqualPercent = 0.5;
 
 std::string axis_words(const AxisResult& axis) {
   return "axis " + std::string(name_of(axis.axis));
@@ -42,15 +42,15 @@ void judge_push(const AxisResult& axis, const std::optional<PushResult>& push, c
   }
 }
 
-void judge_above(const std::string& where, const char* what, double value, double most,
+void judge_above(const std::string& where, const char* what, double value, double limit,
                  const char* unit, std::vector<std::string>& failures) {
-  if (value <= most * (1.0 + kAlikeShare)) return;
+  if (value <= limit * (1.0 + kEqualShare)) return;
   failures.push_back(
-      fmt::format("{}{} is {:.3g} {}, more than {:g} {}", where, what, value, unit, most, unit));
+      fmt::format("{}{} is {:.3g} {}, more than {:g} {}", where, what, value, unit, limit, unit));
 }
 
 /// \return ": " and the reason, if one was noted for this axis
-std::string why_no_delay(DeviceAxis axis, const std::vector<NotMeasured>& not_measured) {
+std::string reason_for_no_delay(DeviceAxis axis, const std::vector<NotMeasured>& not_measured) {
   const std::string what = "delay on axis " + std::string(name_of(axis));
   const auto found = std::ranges::find_if(
       not_measured, [&](const NotMeasured& one) { return one.what.ends_with(what); });
@@ -63,7 +63,7 @@ void judge_delay(const AxisResult& axis, const std::vector<NotMeasured>& not_mea
   if (!axis.delay_ms) {
     if (axis.delay_left_out) return;
     failures.push_back(where + "the delay was not measured" +
-                       why_no_delay(axis.axis, not_measured));
+                       reason_for_no_delay(axis.axis, not_measured));
     return;
   }
   const Measured& delay = *axis.delay_ms;
@@ -78,10 +78,10 @@ void judge_delay(const AxisResult& axis, const std::vector<NotMeasured>& not_mea
       refuse("more than");
       break;
     case DelayVerdict::not_shown:
-      refuse("not shown to be at most");
+      refuse("not proven to be at most");
       break;
     case DelayVerdict::unclear:
-      refuse("too unclear to be shown to be at most");
+      refuse("too uncertain to be at most");
       break;
   }
 }
@@ -96,7 +96,7 @@ void judge_axis_result(const AxisResult& axis, double force_scale,
     judge_push(axis, axis.minus, "against it", failures);
   }
   if (const auto scale = axis.scale()) {
-    if (std::abs(scale->value - 1.0) > kForceTolerance + 0.01 * kAlikePercent) {
+    if (std::abs(scale->value - 1.0) > kForceTolerance + 0.01 * kEqualPercent) {
       failures.push_back(fmt::format(
           "{}delivers {:.0f} % of the commanded force, more than {:.0f} % off; if the "
           "weight was right, set force_scale on this axis to {:.2f} in the device "
@@ -157,7 +157,7 @@ std::vector<std::string> Certificate::failures() const {
     }
   }
   if (wall && wall->oscillates_n_per_mm > 0.0 && wall->stable_n_per_mm <= 0.0) {
-    failures.push_back(fmt::format("the softest wall that was tried, {:.2g} N/mm, swings",
+    failures.push_back(fmt::format("the softest wall that was tested, {:.2g} N/mm, oscillates",
                                    wall->oscillates_n_per_mm));
   }
   if (warm && std::abs(warm->before_n) > 0.0) {
@@ -216,7 +216,7 @@ std::string check_certificate(const Certificate& certificate, const DeviceInfo& 
   if (certificate.made > now + kCertificateLead) {
     throw DeviceError(device.name + ": its certificate was made at " +
                       utc_text(certificate.made.time_since_epoch()) +
-                      ", which is still to come; set the clock of this machine" + remedy);
+                      ", which is in the future; set the clock of this machine" + remedy);
   }
   if (now - certificate.made > kCertificateAge) {
     const auto days = std::chrono::duration_cast<std::chrono::days>(now - certificate.made).count();
@@ -234,11 +234,11 @@ void require_stable(const Certificate& certificate, double stiffness_n_per_mm) {
   if (!certificate.wall || certificate.wall->oscillates_n_per_mm <= 0.0) return;
   if (stiffness_n_per_mm < certificate.wall->oscillates_n_per_mm) return;
   if (certificate.wall->stable_n_per_mm <= 0.0) {
-    throw DeviceError(fmt::format(
-        "{}: even the softest wall of its acceptance, {:.2g} N/mm, oscillated, and no wall was "
-        "stable; find out why (delay, gains, a loose joint), and run touchtrial device accept {} "
-        "again",
-        certificate.driver, certificate.wall->oscillates_n_per_mm, certificate.driver));
+    throw DeviceError(
+        fmt::format("{}: even the softest wall of its acceptance, {:.2g} N/mm, oscillated, and no "
+                    "wall was stable; find the cause (delay, gains, a loose joint), and run "
+                    "touchtrial device accept {} again",
+                    certificate.driver, certificate.wall->oscillates_n_per_mm, certificate.driver));
   }
   throw DeviceError(fmt::format(
       "{}: a wall of {:.2g} N/mm oscillated in its acceptance, and the study's wall has {:.2g} "
@@ -255,8 +255,8 @@ DeviceModel model_of(const Certificate& certificate, const DeviceInfo& device) {
       (certificate.emulated.empty() ? std::string("device accept")
                                     : "a rehearsal on the model " + certificate.emulated) +
       ", " + utc_text(certificate.made.time_since_epoch());
-  const auto take = [&](const char* key, double value, double most, double& into) {
-    into = std::clamp(value, 0.0, most);
+  const auto take = [&](const char* key, double value, double limit, double& into) {
+    into = std::clamp(value, 0.0, limit);
     if (into == 0.0) return;
     model.provenance[key] = {
         source, certificate.emulated.empty() ? Confidence::measured : Confidence::derived};

@@ -27,12 +27,12 @@ constexpr NumberRange kScale{.low = kMinScale, .high = kMaxScale};
 constexpr std::size_t kMaxEntries = 1000;
 constexpr const char* kByHand = "the file was changed by hand";
 
-About needed(std::string_view meaning) {
+KeyInfo needed(std::string_view meaning) {
   return {.meaning = meaning, .required = true};
 }
 
 template <typename Part, typename Describe>
-void part_if(ObjectIo& io, std::string_view key, std::optional<Part>& part, const About& about,
+void part_if(ObjectIo& io, std::string_view key, std::optional<Part>& part, const KeyInfo& about,
              const Describe& describe) {
   io.optional(key, part, about, [&](ValueIo& value, Part& one) { value.part(one, describe); });
 }
@@ -47,7 +47,7 @@ void describe_measured(ObjectIo& io, std::string_view key, std::optional<Measure
 
 void describe_push(ObjectIo& io, PushResult& push) {
   io.number("force_n", push.force_n, kSize, needed("of the last step"));
-  io.truth("moved", push.moved, needed("whether the handle moved by 2 mm"));
+  io.boolean("moved", push.moved, needed("whether the handle moved by 2 mm"));
   io.number("along_mm", push.along_mm, kSigned, needed("moved in the force's direction"));
   io.number("across_mm", push.across_mm, kSize, needed("moved across it"));
 }
@@ -55,7 +55,7 @@ void describe_push(ObjectIo& io, PushResult& push) {
 void describe_weight(ObjectIo& io, WeighResult& weight) {
   io.number("expected_n", weight.expected_n, kAboveZero, needed("of the weight or scale"));
   io.number("measured_n", weight.measured_n, kSize,
-            needed("the additional force that was commanded with it"));
+            needed("additional force commanded with the weight"));
   io.number("error_n", weight.error_n, kSize, needed("of `measured_n`"));
 }
 
@@ -63,7 +63,7 @@ void describe_weight(ObjectIo& io, WeighResult& weight) {
 void describe_scale(ObjectIo& io, const AxisResult& axis) {
   std::optional<Measured> stated = axis.scale();
   describe_measured(io, "scale", stated,
-                    "delivered over commanded force, which `force_scale` has corrected: "
+                    "delivered over commanded force, after correction by `force_scale`: "
                     "`expected_n` over `measured_n`");
   io.rule([&](const JsonValue& place, const JsonObject& object) {
     if (!object.find("scale")) stated.reset();
@@ -85,30 +85,31 @@ void describe_axis(ObjectIo& io, AxisResult& axis) {
   io.number("load_n", axis.load_n, kSigned, {"commanded for the empty handle"});
   describe_scale(io, axis);
   describe_measured(io, "friction_n", axis.friction_n,
-                    "of slow strokes; at the handle if there is a `scale`, else in commanded "
-                    "newtons, like the two below");
+                    "from slow strokes; this and the next two are in newtons at the handle if "
+                    "there is a `scale`, else in commanded newtons");
   describe_measured(io, "mass_kg", axis.mass_kg, "apparent mass", kAboveZero);
   describe_measured(io, "viscous_n_s_per_m", axis.viscous_n_s_per_m,
-                    "friction in proportion to speed");
+                    "friction proportional to speed");
   describe_measured(io, "delay_ms", axis.delay_ms, "from a command to its force");
-  io.truth("delay_left_out", axis.delay_left_out,
-           {.meaning = "the person left the shake out, so that a missing delay does not fail the "
-                       "device",
-            .written = axis.delay_left_out});
+  io.boolean(
+      "delay_left_out", axis.delay_left_out,
+      {.meaning =
+           "the person skipped the shaking, so that a missing delay does not fail the device",
+       .written = axis.delay_left_out});
 }
 
 void describe_rest(ObjectIo& io, RestFigures& rest) {
   io.number("noise_mm", rest.noise_mm, kSize,
-            needed("standard deviation, the norm over the three axes"));
+            needed("standard deviation, norm over the three axes"));
   io.number("drift_mm", rest.drift_mm, kSize,
             needed("from the first to the second half of the run"));
 }
 
 void describe_wall(ObjectIo& io, WallResult& wall) {
   io.number("stable_n_per_mm", wall.stable_n_per_mm, kSize,
-            needed("the stiffest that did not oscillate; 0: none"));
+            needed("the stiffest wall that did not oscillate; 0: none"));
   io.number("oscillates_n_per_mm", wall.oscillates_n_per_mm, kSize,
-            needed("the first that did; 0: none did"));
+            needed("the first wall that oscillated; 0: none"));
   io.text("ended", wall.ended, {}, needed("why the trials ended"));
   io.rule([&](const JsonValue& /*place*/, const JsonObject& object) {
     if (wall.oscillates_n_per_mm > 0.0 && wall.stable_n_per_mm >= wall.oscillates_n_per_mm) {
@@ -120,9 +121,10 @@ void describe_wall(ObjectIo& io, WallResult& wall) {
 
 void describe_warm(ObjectIo& io, WarmResult& warm) {
   io.number("before_n", warm.before_n, kSigned, needed("force for the load"));
-  io.number("after_n", warm.after_n, kSigned, needed("the same twenty minutes later"));
+  io.number("after_n", warm.after_n, kSigned,
+            needed("force for the same load twenty minutes later"));
   io.number("before_c", warm.before_c, kSigned,
-            {.meaning = "temperature of the motors' housing, typed in", .unit = "°C"});
+            {.meaning = "temperature of the motors' housing, as entered", .unit = "°C"});
   io.number("after_c", warm.after_c, kSigned, {.meaning = "likewise", .unit = "°C"});
 }
 
@@ -154,29 +156,29 @@ std::chrono::sys_seconds creation_time(const JsonValue& place) {
 
 void describe_origin(ObjectIo& io, Certificate& certificate) {
   std::string kind(kCertificateKind);
-  io.text("kind", kind, {.in_words = "`touchtrial device acceptance 3`"}, needed("of the file"));
+  io.text("kind", kind, {.description = "`touchtrial device acceptance 3`"}, needed("of the file"));
   io.text("driver", certificate.driver, {}, needed("name of the driver"));
   io.text("model", certificate.model, {}, needed("as the device reports it"));
   io.text("serial", certificate.serial, {}, needed("likewise"));
   io.text("firmware", certificate.firmware, {}, needed("likewise"));
   io.text("program", certificate.program, {}, needed("version of the program"));
   std::string made = utc_text(certificate.made.time_since_epoch());
-  io.text("made", made, {.in_words = "`2026-01-31T12:00:00Z`"}, needed("UTC"));
+  io.text("made", made, {.description = "`2026-01-31T12:00:00Z`"}, needed("UTC"));
   io.rule([&](const JsonValue& /*place*/, const JsonObject& object) {
     certificate.made = creation_time(object.at("made"));
   });
   io.text("emulated", certificate.emulated, {},
           needed("the device model of a rehearsal; empty: a device"));
-  io.member("force_scale", needed("of the device settings, in force for all that was measured"),
-            true, [&](ValueIo& value) { value.axes(certificate.scale.force, kScale); });
+  io.member("force_scale", needed("of the device settings, applied to all measurements"), true,
+            [&](ValueIo& value) { value.axes(certificate.scale.force, kScale); });
   io.member("length_scale", needed("likewise"), true,
             [&](ValueIo& value) { value.axes(certificate.scale.length, kScale); });
   io.text("fault", certificate.fault, {},
-          needed("of the device, which ended the acceptance; empty: none"));
+          needed("the device fault that ended the acceptance; empty: none"));
 }
 
 void describe_axes(ValueIo& io, std::vector<AxisResult>& axes) {
-  io.list(axes, {.most = kDeviceAxes.size()},
+  io.list(axes, {.max = kDeviceAxes.size()},
           [](ValueIo& value, AxisResult& axis) { value.part(axis, describe_axis); });
   io.rule([&](const JsonValue& place) {
     const std::vector<JsonValue> items = place.items(0, kDeviceAxes.size());
@@ -194,22 +196,22 @@ void describe_certificate(ObjectIo& io, Certificate& certificate) {
   describe_origin(io, certificate);
   part_if(io, "rest", certificate.rest, {"the handle lying still"}, describe_rest);
   describe_measured(io, "step_mm", certificate.step_mm, "encoder step");
-  io.member("axes", needed("those that were tried, as below"), true,
+  io.member("axes", needed("the axes that were tested, as below"), true,
             [&](ValueIo& value) { describe_axes(value, certificate.axes); });
-  part_if(io, "wall", certificate.wall, {"trials with a wall of increasing stiffness"},
+  part_if(io, "wall", certificate.wall, {"trials with walls of increasing stiffness"},
           describe_wall);
   part_if(io, "warm", certificate.warm, {"the force for a load, before and after twenty minutes"},
           describe_warm);
-  io.list("not_measured", certificate.not_measured, {.most = kMaxEntries},
-          needed("`what` is missing, and `why`"),
+  io.list("not_measured", certificate.not_measured, {.max = kMaxEntries},
+          needed("`what` was not measured, and `why`"),
           [](ValueIo& value, NotMeasured& one) { value.part(one, describe_not_measured); });
   std::vector<std::string> failures = certificate.failures();
-  io.list("failures", failures, {.most = kMaxEntries},
-          needed("why the device is refused, a line each; for people, `passed` is computed from "
+  io.list("failures", failures, {.max = kMaxEntries},
+          needed("reasons for a failure, one per line; for people only: `passed` is computed from "
                  "the results"),
           [](ValueIo& value, std::string& line) { value.text(line, {}); });
   bool passed = certificate.passed();
-  io.truth("passed", passed, needed("whether there is none"));
+  io.boolean("passed", passed, needed("whether there is none"));
   io.rule([&](const JsonValue& /*place*/, const JsonObject& object) {
     if (passed != certificate.passed()) {
       object.at("passed").refuse(std::string("does not follow from the results; ") + kByHand);
@@ -240,8 +242,8 @@ Certificate parse_certificate(const std::string& text, const std::string& source
 }
 
 ReadCertificate read_certificate(const std::filesystem::path& path) {
-  constexpr std::uintmax_t kLargest = 1U << 20U;
-  const Bytes content = read_file(path, kLargest);
+  constexpr std::uintmax_t kMaxFileBytes = 1U << 20U;
+  const Bytes content = read_file(path, kMaxFileBytes);
   return {parse_certificate(text_of(content), path.string()), sha256(content)};
 }
 

@@ -60,13 +60,13 @@ ValueOrReason<StrokeFigures> HandleRuns::empty_strokes(std::string_view step, De
 ValueOrReason<WeighResult> HandleRuns::weigh(std::string_view step, DeviceAxis axis,
                                              const EmptyHandle& empty, double step_mm) {
   const AcceptanceForces forces = acceptance_forces(bench_.info(), bench_.limits());
-  const double most_n = std::min(forces.weight_n, forces.hold_n) - std::abs(empty.load_n) -
-                        empty.friction_n - kStrokeShareN;
-  if (most_n < kMinWeightN) {
+  const double max_n = std::min(forces.weight_n, forces.hold_n) - std::abs(empty.load_n) -
+                       empty.friction_n - kStrokeShareN;
+  if (max_n < kMinWeightN) {
     return {{}, "the handle's own load and friction leave no room for a weight"};
   }
   if (skip_.contains(step)) return {{}, std::string(kLeftOut)};
-  const std::optional<double> weight_n = person_.weight_n(axis, kMinWeightN, most_n);
+  const std::optional<double> weight_n = person_.weight_n(axis, kMinWeightN, max_n);
   if (!weight_n) return {{}, "no weight"};
   if (!consents({step, Grip::loaded, axis,
                  "Hold the handle in the middle with the weight on it. Let go slowly within 2 s of "

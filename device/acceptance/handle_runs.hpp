@@ -29,6 +29,11 @@ struct EmptyHandle {
   double friction_n = 0.0;
 };
 
+/// At a virtual wall: the smallest swing that counts as oscillation, and the shortest time in
+/// contact.
+inline constexpr double kMinSwingMm = 0.15;
+inline constexpr double kMinContactS = 1.0;
+
 /// Guides one person through single runs on one bench. Every function may throw DeviceFailed, and
 /// exceptions of person and bench. Private to the folders of acceptance and bring-up.
 class HandleRuns {

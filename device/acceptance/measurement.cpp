@@ -9,16 +9,16 @@ namespace {
 
 constexpr double kRestMm = 0.3;         ///< a handle is at rest within this distance
 constexpr double kRestS = 0.4;          ///< for this long
-constexpr double kLongestWaitS = 10.0;  ///< for rest
-constexpr double kSmoothShare = 0.05;   ///< of a new reading: about 20 ms
+constexpr double kMaxRestWaitS = 10.0;  ///< for rest
+constexpr double kSmoothing = 0.05;     ///< of a new reading: about 20 ms
 constexpr double kPushReachMm = 15.0;
 constexpr double kStrokeReachMm = 40.0;
 constexpr double kSupportRampS = 1.0;
 constexpr double kHeldSwingMm = 0.6;
 constexpr double kTurnAtMm = 22.0;  ///< shaken strokes reverse here at the latest
 constexpr double kTurnAtMmS = 400.0;
-constexpr double kLongestPushS = 0.15;
-constexpr double kShortestPushS = 0.008;
+constexpr double kMaxPushS = 0.15;
+constexpr double kMinPushS = 0.008;
 constexpr double kCentringNPerMm = 0.02;
 constexpr double kHighPassHz = 12.0;
 constexpr double kSwingsWithinS = 0.45;  ///< eight half swings: at least 9 Hz, more than a hand
@@ -31,9 +31,9 @@ double triangle(double periods) noexcept {
   return phase < 0.75 ? 2.0 - 4.0 * phase : 4.0 * phase - 4.0;
 }
 
-Vec3 shortened_to(Vec3 force_n, double most_n) noexcept {
+Vec3 shortened_to(Vec3 force_n, double max_n) noexcept {
   const double size_n = norm(force_n);
-  return size_n <= most_n ? force_n : (most_n / size_n) * force_n;
+  return size_n <= max_n ? force_n : (max_n / size_n) * force_n;
 }
 
 }  // namespace
@@ -48,8 +48,8 @@ Vec3 direction_of(DeviceAxis axis) noexcept {
           axis == DeviceAxis::z ? 1.0 : 0.0};
 }
 
-Measurement::Measurement(double seconds, double most_n, double reach_mm)
-    : seconds_(seconds), most_n_(most_n), reach_mm_(reach_mm) {
+Measurement::Measurement(double seconds, double max_n, double reach_mm)
+    : seconds_(seconds), max_n_(max_n), reach_mm_(reach_mm) {
   // A run starts before the device is ready, and ends with a fade.
   samples_.reserve(static_cast<std::size_t>((seconds + 2.0) * kServoRateHz));
 }
@@ -64,7 +64,7 @@ Vec3 Measurement::force_n(const DeviceSample& sample) noexcept {
   }
   const double time_s = static_cast<double>(ticks_++) * kServoTickS;
   const Vec3 force = next_n(sample, time_s);
-  return done() ? Vec3{} : shortened_to(force, most_n_);
+  return done() ? Vec3{} : shortened_to(force, max_n_);
 }
 
 void Measurement::record(const ServoSample& sample) noexcept {
@@ -82,7 +82,7 @@ bool SwingDetector::swings(double place_mm, double time_s) noexcept {
   // A steady motion becomes a constant after the first filter and zero after the second.
   slow_mm_[1] += share * (first_mm - slow_mm_[1]);
   const double fast_mm = first_mm - slow_mm_[1];
-  if (std::abs(fast_mm) >= least_mm_ && fast_mm * peak_mm_ <= 0.0) {
+  if (std::abs(fast_mm) >= min_mm_ && fast_mm * peak_mm_ <= 0.0) {
     const std::size_t at = half_swings_++ % peaks_mm_.size();
     times_s_[at] = time_s;
     peak_mm_ = peaks_mm_[at] = fast_mm;
@@ -125,31 +125,31 @@ Vec3 Listening::next_n(const DeviceSample& sample, double time_s) noexcept {
   return {};
 }
 
-AxisPush::AxisPush(DeviceAxis axis, double most_n)
-    : Measurement(2.0 * (kLongestWaitS + kStepS * kMaxN / kStepN + 1.0), std::min(most_n, kMaxN),
+AxisPush::AxisPush(DeviceAxis axis, double max_n)
+    : Measurement(2.0 * (kMaxRestWaitS + kStepS * kMaxN / kStepN + 1.0), std::min(max_n, kMaxN),
                   kPushReachMm),
       direction_(direction_of(axis)),
-      most_step_n_(std::min(most_n, kMaxN)) {}
+      max_step_n_(std::min(max_n, kMaxN)) {}
 
 Vec3 AxisPush::next_n(const DeviceSample& sample, double time_s) noexcept {
   if (!has_place_) {
     has_place_ = true;
     smooth_mm_ = from_mm_ = sample.position_mm;
   }
-  smooth_mm_ = smooth_mm_ + kSmoothShare * (sample.position_mm - smooth_mm_);
+  smooth_mm_ = smooth_mm_ + kSmoothing * (sample.position_mm - smooth_mm_);
   if (!pushes_) {
     wait_for_rest(time_s);
     return {};
   }
   const double step = std::floor((time_s - since_s_) / kStepS) + 1.0;
-  const double force_n = std::min(step * kStepN, most_step_n_);
+  const double force_n = std::min(step * kStepN, max_step_n_);
   if (norm(smooth_mm_ - from_mm_) >= kMovedMm) {
     end_push(true, force_n);
     waited_s_ = since_s_ = time_s;
     return {};
   }
-  if (step * kStepN > most_step_n_ + 0.5 * kStepN) {
-    end_push(false, most_step_n_);
+  if (step * kStepN > max_step_n_ + 0.5 * kStepN) {
+    end_push(false, max_step_n_);
     waited_s_ = since_s_ = time_s;
     return {};
   }
@@ -166,7 +166,7 @@ void AxisPush::wait_for_rest(double time_s) noexcept {
     pushes_ = true;
     from_mm_ = smooth_mm_;
     since_s_ = time_s;
-  } else if (time_s - waited_s_ > kLongestWaitS) {
+  } else if (time_s - waited_s_ > kMaxRestWaitS) {
     figures_.reached_rest = false;
     finish();
   }
@@ -190,9 +190,9 @@ void AxisPush::end_push(bool moved, double force_n) noexcept {
   from_mm_ = smooth_mm_;
 }
 
-SlowStrokes::SlowStrokes(DeviceAxis axis, Vec3 support_n, const HoldGains& gains, double most_n,
+SlowStrokes::SlowStrokes(DeviceAxis axis, Vec3 support_n, const HoldGains& gains, double max_n,
                          double hold_s)
-    : Measurement(hold_s + kPeriods * kPeriodS, most_n, kStrokeReachMm),
+    : Measurement(hold_s + kPeriods * kPeriodS, max_n, kStrokeReachMm),
       axis_(axis),
       support_n_(support_n),
       gains_(gains),
@@ -222,8 +222,8 @@ Vec3 SlowStrokes::next_n(const DeviceSample& sample, double time_s) noexcept {
 }
 
 ShakenStrokes::ShakenStrokes(DeviceAxis axis, Vec3 support_n, double push_n, const HoldGains& gains,
-                             double most_n)
-    : Measurement(begins_s() + kShakeS, most_n, kStrokeReachMm),
+                             double max_n)
+    : Measurement(begins_s() + kShakeS, max_n, kStrokeReachMm),
       axis_(axis),
       support_n_(support_n),
       push_n_(push_n),
@@ -241,14 +241,14 @@ Vec3 ShakenStrokes::next_n(const DeviceSample& sample, double time_s) noexcept {
   const Vec3 axis = direction_of(axis_);
   const double along_mm = dot(sample.position_mm - start_mm(), axis);
   const double along_mm_s = dot(sample.velocity_mm_s, axis);
-  const double gone = (time_s - begins_s()) / kShakeS;
-  const double way_mm = kLongestMm + gone * (kShortestMm - kLongestMm);
+  const double progress = (time_s - begins_s()) / kShakeS;
+  const double stroke_mm = kMaxStrokeMm + progress * (kMinStrokeMm - kMaxStrokeMm);
   const double pushed_s = time_s - turned_s_;
   const auto sign = static_cast<double>(sign_);
   const bool is_far = sign * along_mm > kTurnAtMm;
-  const bool is_long = sign * (along_mm - turned_mm_) > way_mm || sign * along_mm_s > kTurnAtMmS ||
-                       pushed_s > kLongestPushS;
-  if (is_far || (is_long && pushed_s > kShortestPushS)) {
+  const bool is_long = sign * (along_mm - turned_mm_) > stroke_mm ||
+                       sign * along_mm_s > kTurnAtMmS || pushed_s > kMaxPushS;
+  if (is_far || (is_long && pushed_s > kMinPushS)) {
     sign_ = -sign_;
     turned_s_ = time_s;
     turned_mm_ = along_mm;
@@ -258,10 +258,10 @@ Vec3 ShakenStrokes::next_n(const DeviceSample& sample, double time_s) noexcept {
   return across_n + (dot(support_n_, axis) + push_n) * axis;
 }
 
-WallTrial::WallTrial(double stiffness_n_per_mm, double least_mm, double most_n)
-    : Measurement(kTrialS, most_n, std::numeric_limits<double>::infinity()),
+WallTrial::WallTrial(double stiffness_n_per_mm, double min_mm, double max_n)
+    : Measurement(kTrialS, max_n, std::numeric_limits<double>::infinity()),
       stiffness_(stiffness_n_per_mm),
-      detector_(least_mm) {}
+      detector_(min_mm) {}
 
 Vec3 WallTrial::next_n(const DeviceSample& sample, double time_s) noexcept {
   if (time_s >= seconds()) finish();

@@ -34,7 +34,7 @@ class Measurement : public ForceSource, public SampleSink {
 
   /// The longest time that the run takes.
   [[nodiscard]] double seconds() const noexcept { return seconds_; }
-  /// Whether it is complete or has given up; its force is then zero.
+  /// Whether it is complete or was cancelled; its force is then zero.
   [[nodiscard]] bool done() const noexcept { return done_.load(std::memory_order_acquire); }
   /// Whether the force was switched off because the handle left the place of the measurement.
   [[nodiscard]] bool ran_away() const noexcept { return ran_away_; }
@@ -46,9 +46,9 @@ class Measurement : public ForceSource, public SampleSink {
 
  protected:
   /// \param seconds  > 0
-  /// \param most_n  of the force's norm, >= 0
+  /// \param max_n  of the force's norm, >= 0
   /// \param reach_mm  at a greater distance from its start the handle counts as run away
-  Measurement(double seconds, double most_n, double reach_mm);
+  Measurement(double seconds, double max_n, double reach_mm);
 
   /// \param time_s  since the first ready sample
   [[nodiscard]] virtual Vec3 next_n(const DeviceSample& sample, double time_s) noexcept = 0;
@@ -58,7 +58,7 @@ class Measurement : public ForceSource, public SampleSink {
 
  private:
   double seconds_;
-  double most_n_;
+  double max_n_;
   double reach_mm_;
   std::int64_t ticks_ = 0;
   Vec3 start_mm_;
@@ -71,13 +71,13 @@ class Measurement : public ForceSource, public SampleSink {
 /// swings within 0.45 s, none below half of the first. Private to this folder.
 class SwingDetector {
  public:
-  /// \param least_mm  smaller swings are ignored
-  explicit SwingDetector(double least_mm) noexcept : least_mm_(least_mm) {}
+  /// \param min_mm  smaller swings are ignored
+  explicit SwingDetector(double min_mm) noexcept : min_mm_(min_mm) {}
   /// Called at every tick.
   [[nodiscard]] bool swings(double place_mm, double time_s) noexcept;
 
  private:
-  double least_mm_;
+  double min_mm_;
   bool has_place_ = false;
   std::array<double, 2> slow_mm_{};   ///< states of the high-pass
   double peak_mm_ = 0.0;              ///< of the current half swing, signed
@@ -143,8 +143,8 @@ class AxisPush final : public Measurement {
     std::optional<Push> minus;
   };
 
-  /// \param most_n  > 0; limited to kMaxN
-  AxisPush(DeviceAxis axis, double most_n);
+  /// \param max_n  > 0; limited to kMaxN
+  AxisPush(DeviceAxis axis, double max_n);
   /// Call after the run.
   [[nodiscard]] const Figures& figures() const noexcept { return figures_; }
 
@@ -154,7 +154,7 @@ class AxisPush final : public Measurement {
   void end_push(bool moved, double force_n) noexcept;
 
   Vec3 direction_;
-  double most_step_n_;
+  double max_step_n_;
   int sign_ = 1;
   bool pushes_ = false;
   double since_s_ = 0.0;   ///< start of rest or push
@@ -183,9 +183,9 @@ class SlowStrokes final : public Measurement {
   static constexpr double kLettingGoS = 2.5;  ///< before the strokes, for the hand to let go
 
   /// \param support_n  known load, carried in addition to the spring
-  /// \param most_n  of the force's norm
+  /// \param max_n  of the force's norm
   /// \param hold_s  how long the handle is held before the strokes, >= kLettingGoS
-  SlowStrokes(DeviceAxis axis, Vec3 support_n, const HoldGains& gains, double most_n,
+  SlowStrokes(DeviceAxis axis, Vec3 support_n, const HoldGains& gains, double max_n,
               double hold_s = kLettingGoS);
 
   [[nodiscard]] DeviceAxis axis() const noexcept { return axis_; }
@@ -208,12 +208,12 @@ class SlowStrokes final : public Measurement {
 class ShakenStrokes final : public Measurement {
  public:
   static constexpr double kShakeS = 10.0;
-  static constexpr double kLongestMm = 16.0;
-  static constexpr double kShortestMm = 5.0;
+  static constexpr double kMaxStrokeMm = 16.0;
+  static constexpr double kMinStrokeMm = 5.0;
 
   /// \param push_n  > 0
   ShakenStrokes(DeviceAxis axis, Vec3 support_n, double push_n, const HoldGains& gains,
-                double most_n);
+                double max_n);
 
   [[nodiscard]] DeviceAxis axis() const noexcept { return axis_; }
   [[nodiscard]] double push_n() const noexcept { return push_n_; }
@@ -239,8 +239,8 @@ class WallTrial final : public Measurement {
   static constexpr double kTrialS = 6.0;
   static constexpr double kDepthMm = 3.0;  ///< of the floor below the handle's first place
 
-  /// \param least_mm  smaller swings are ignored
-  WallTrial(double stiffness_n_per_mm, double least_mm, double most_n);
+  /// \param min_mm  smaller swings are ignored
+  WallTrial(double stiffness_n_per_mm, double min_mm, double max_n);
 
   [[nodiscard]] bool oscillated() const noexcept { return oscillated_; }
   /// Time in contact.

@@ -97,20 +97,20 @@ struct AxisStep {
 
 AxisStep axis_step(const EvenSeries& series) {
   constexpr std::size_t kHalf = 25;  // ticks to either side, for the speed
-  constexpr double kSlowestMmS = 1.0;
-  constexpr std::size_t kFewest = 100;
+  constexpr double kMinSpeedMmS = 1.0;
+  constexpr std::size_t kMinSamples = 100;
   std::vector<double> changes;
   std::size_t moving = 0;
   const std::vector<double>& x = series.position_mm;
   for (std::size_t i = kHalf; i + kHalf < x.size(); ++i) {
     const double mm_s = (x[i + kHalf] - x[i - kHalf]) / (2.0 * kHalf * kServoTickS);
-    if (std::abs(mm_s) < kSlowestMmS) continue;
+    if (std::abs(mm_s) < kMinSpeedMmS) continue;
     ++moving;
     const double change = std::abs(x[i] - x[i - 1]);
     if (change > 1e-9) changes.push_back(change);
   }
   AxisStep step;
-  if (moving < kFewest || changes.size() < kFewest / 2) return step;
+  if (moving < kMinSamples || changes.size() < kMinSamples / 2) return step;
   step.moved = true;
   step.step_mm = quantile_of(changes, 0.5);
   step.spread_mm = 0.5 * (quantile_of(changes, 0.75) - quantile_of(changes, 0.25));
@@ -170,9 +170,9 @@ class LeastSquares {
   FitRow right_{};
 };
 
-constexpr int kEarliestDelay = -2;  ///< ticks
-constexpr int kLatestDelay = 30;
-constexpr std::size_t kDelays = kLatestDelay - kEarliestDelay + 1;
+constexpr int kMinDelay = -2;  ///< ticks
+constexpr int kMaxDelay = 30;
+constexpr std::size_t kDelays = kMaxDelay - kMinDelay + 1;
 
 /// One window: means with the smooth weight, SI units.
 struct Window {
@@ -183,7 +183,7 @@ struct Window {
 
   /// Linear interpolation of forces between ticks.
   [[nodiscard]] double force_at(double delay) const {
-    const double at = delay - kEarliestDelay;
+    const double at = delay - kMinDelay;
     const auto below =
         static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(kDelays - 2)));
     const double share = at - static_cast<double>(below);
@@ -262,7 +262,7 @@ std::vector<Window> windows_in(const EvenSeries& series, TickRange ticks, std::s
   const WindowWeight weight(half);
   const std::vector<double>& x = series.position_mm;
   std::vector<Window> windows;
-  const std::size_t first = ticks.from + half + static_cast<std::size_t>(kLatestDelay) + kEdge;
+  const std::size_t first = ticks.from + half + static_cast<std::size_t>(kMaxDelay) + kEdge;
   for (std::size_t middle = first; middle + half + kEdge < ticks.end; middle += half / 2) {
     Window window;
     const bool keeps = turning == Turning::kept;
@@ -274,7 +274,7 @@ std::vector<Window> windows_in(const EvenSeries& series, TickRange ticks, std::s
       window.velocity += weight.first[i] * offset_m;
       const auto at = static_cast<std::ptrdiff_t>(middle - half + i);
       for (std::size_t k = 0; k < kDelays; ++k) {
-        const std::ptrdiff_t sent = at - (kEarliestDelay + static_cast<std::ptrdiff_t>(k));
+        const std::ptrdiff_t sent = at - (kMinDelay + static_cast<std::ptrdiff_t>(k));
         window.force_n[k] += weight.value[i] * series.force_n[static_cast<std::size_t>(sent)];
       }
     }
@@ -349,9 +349,9 @@ std::optional<WindowFit> best_fit(const std::vector<Window>& windows, double fri
   constexpr double kFine = 0.25;  // ticks
   double squares = 0.0;
   for (const Window& window : windows) squares += window.acceleration * window.acceleration;
-  double best_delay = kEarliestDelay;
+  double best_delay = kMinDelay;
   std::optional<LinearFit> best;
-  for (double delay = kEarliestDelay; delay <= kLatestDelay; delay += kFine) {
+  for (double delay = kMinDelay; delay <= kMaxDelay; delay += kFine) {
     const std::optional<LinearFit> fit = fit_at(windows, friction_n, delay, n);
     if (!fit) return std::nullopt;
     if (best && fit->squares >= best->squares) continue;
@@ -387,10 +387,10 @@ WindowFits fits_of(const std::vector<std::vector<Window>>& by_length, double fri
     if (fit && (!fits.best || fit->unexplained < fits.best->unexplained)) fits.best = fit;
   }
   if (free.empty()) return fits;
-  const auto [least, greatest] =
+  const auto [min, max] =
       std::ranges::minmax(free, {}, [](const WindowFit& fit) { return fit.delay_ticks; });
   const WindowFit& clearest = *std::ranges::min_element(free, {}, &WindowFit::unexplained);
-  const double spread = greatest.delay_ticks - least.delay_ticks;
+  const double spread = max.delay_ticks - min.delay_ticks;
   if (clearest.unexplained > kRigidUnexplained || spread > kAgreeingTicks) return fits;
   const double ms = 1000.0 * kServoTickS;
   fits.delay_ms = Measured{clearest.delay_ticks * ms,
@@ -421,11 +421,11 @@ struct Turn {
 
 std::vector<Turn> turns_in(const EvenSeries& series, TickRange ticks, double push_n,
                            std::size_t apart) {
-  constexpr std::size_t kLongest = 6;  // ticks of a reversal
+  constexpr std::size_t kMaxReversal = 6;  // ticks of a reversal
   const std::vector<double>& f = series.force_n;
   std::vector<std::size_t> begins;
-  for (std::size_t i = ticks.from + 1; i + kLongest < ticks.end; ++i) {
-    const bool continues = !begins.empty() && i - begins.back() < kLongest;
+  for (std::size_t i = ticks.from + 1; i + kMaxReversal < ticks.end; ++i) {
+    const bool continues = !begins.empty() && i - begins.back() < kMaxReversal;
     if (!continues && std::abs(f[i] - f[i - 1]) > 0.4 * push_n) begins.push_back(i);
   }
   std::vector<Turn> turns;
@@ -433,10 +433,10 @@ std::vector<Turn> turns_in(const EvenSeries& series, TickRange ticks, double pus
     const std::size_t i = begins[k];
     if (i - begins[k - 1] < apart || begins[k + 1] - i < apart) continue;
     const double from_n = f[i - 1];
-    const double to_n = f[i + kLongest - 1];
+    const double to_n = f[i + kMaxReversal - 1];
     if (std::abs(to_n - from_n) < push_n) continue;
     double late = 0.0;
-    for (std::size_t j = i; j < i + kLongest; ++j) late += (to_n - f[j]) / (to_n - from_n);
+    for (std::size_t j = i; j < i + kMaxReversal; ++j) late += (to_n - f[j]) / (to_n - from_n);
     turns.push_back({static_cast<double>(i) + late, to_n > from_n ? 1.0 : -1.0});
   }
   return turns;
@@ -457,13 +457,13 @@ double bend_after(double ticks, double lag_ticks) {
 std::optional<double> bend_at(const std::vector<double>& x, double bend, double way, double half,
                               double lag_ticks) {
   LeastSquares sums;
-  const double greatest = bend_after(half, lag_ticks);
+  const double max = bend_after(half, lag_ticks);
   const auto first = static_cast<std::size_t>(std::ceil(bend - half));
   const auto last = static_cast<std::size_t>(std::floor(bend + half));
   for (std::size_t i = first; i <= last; ++i) {
     const double ticks = static_cast<double>(i) - bend;
     const double t = ticks / half;
-    sums.add({1.0, t, t * t, bend_after(ticks, lag_ticks) / greatest}, x[i] - x[first]);
+    sums.add({1.0, t, t * t, bend_after(ticks, lag_ticks) / max}, x[i] - x[first]);
   }
   const auto with = sums.solve(4);
   const auto without = sums.solve(3);
@@ -475,8 +475,8 @@ std::optional<double> bend_at(const std::vector<double>& x, double bend, double 
 
 /// \name The range of delays searched for a bend, ticks
 ///@{
-constexpr double kEarliestBend = -2.0;
-constexpr double kLatestBend = 14.0;
+constexpr double kMinBendDelay = -2.0;
+constexpr double kMaxBendDelay = 14.0;
 ///@}
 
 /// The reversals around which the longer segments fit into the recording.
@@ -484,7 +484,7 @@ std::vector<Turn> turns_within(const std::vector<Turn>& turns, TickRange ticks, 
   std::vector<Turn> within;
   for (const Turn& turn : turns) {
     if (turn.at < static_cast<double>(ticks.from) + 2.0 * half) continue;
-    if (turn.at + kLatestBend + 2.0 * half > static_cast<double>(ticks.end)) continue;
+    if (turn.at + kMaxBendDelay + 2.0 * half > static_cast<double>(ticks.end)) continue;
     within.push_back(turn);
   }
   return within;
@@ -502,9 +502,9 @@ struct BendingDelay {
 std::optional<BendingDelay> bending_delay(const EvenSeries& series, const std::vector<Turn>& turns,
                                           double half) {
   constexpr double kFine = 0.25;
-  constexpr auto kPlaces = static_cast<std::size_t>((kLatestBend - kEarliestBend) / kFine) + 1;
+  constexpr auto kPlaces = static_cast<std::size_t>((kMaxBendDelay - kMinBendDelay) / kFine) + 1;
   const auto delay_of = [&](std::ptrdiff_t place) {
-    return kEarliestBend + kFine * static_cast<double>(place);
+    return kMinBendDelay + kFine * static_cast<double>(place);
   };
   std::vector<double> sums(kPlaces, 0.0);
   std::vector<double> best_of_turn;
@@ -550,11 +550,11 @@ std::optional<double> explained_around(const std::vector<double>& x, double turn
   LeastSquares sums;
   const auto first = static_cast<std::size_t>(std::ceil(turn - kBefore));
   const auto last = static_cast<std::size_t>(std::floor(turn + kBehind));
-  const double greatest = bend_after(kBehind - delay, lag_ticks);
+  const double max = bend_after(kBehind - delay, lag_ticks);
   for (std::size_t i = first; i <= last; ++i) {
     const double ticks = static_cast<double>(i) - turn;
     const double t = ticks / kBehind;
-    sums.add({1.0, t, t * t, bend_after(ticks - delay, lag_ticks) / greatest}, x[i] - x[first]);
+    sums.add({1.0, t, t * t, bend_after(ticks - delay, lag_ticks) / max}, x[i] - x[first]);
   }
   const auto solution = sums.solve(4);
   if (!solution) return std::nullopt;
@@ -564,10 +564,10 @@ std::optional<double> explained_around(const std::vector<double>& x, double turn
 std::optional<LaggingDelay> lagging_delay(const EvenSeries& series,
                                           const std::vector<Turn>& turns) {
   constexpr std::array kLags = {0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0};
-  constexpr double kLatest = 10.0;
+  constexpr double kMaxLaggingDelay = 10.0;
   std::optional<LaggingDelay> best;
   for (const double lag : kLags) {
-    for (double delay = kEarliestBend; delay <= kLatest; delay += 1.0) {
+    for (double delay = kMinBendDelay; delay <= kMaxLaggingDelay; delay += 1.0) {
       double sum = 0.0;
       for (const Turn& turn : turns) {
         const auto explained = explained_around(series.position_mm, turn.at, delay, lag);
@@ -607,7 +607,7 @@ ValueOrReason<Measured> delay_by_turns(const EvenSeries& series, TickRange ticks
   const double ms = 1000.0 * kServoTickS;
   if (near->at_an_end || (far->at_an_end && !slow)) {
     return {std::nullopt, "no bend follows the turns of the push within " +
-                              std::to_string(std::lround(kLatestBend * ms)) +
+                              std::to_string(std::lround(kMaxBendDelay * ms)) +
                               " ms: the delay is longer, or something held the handle"};
   }
   double bend = near->ticks + kTurnsEarlyTicks;
@@ -631,8 +631,8 @@ ValueOrReason<ShakeFigures> no_shake(std::string why) {
 
 std::optional<RestFigures> rest_figures(std::span<const ServoSample> samples) {
   constexpr std::size_t kSettling = 500;
-  constexpr std::size_t kFewest = 1000;
-  if (samples.size() < kSettling + kFewest) return std::nullopt;
+  constexpr std::size_t kMinSamples = 1000;
+  if (samples.size() < kSettling + kMinSamples) return std::nullopt;
   const auto still = samples.subspan(kSettling);
   Vec3 halves[2];
   double squares = 0.0;
@@ -686,10 +686,10 @@ ValueOrReason<StrokeFigures> stroke_figures(const SlowStrokes& strokes, double s
   std::vector<double> sums;
   std::vector<double> differences;
   StrokeFigures figures;
-  const auto [least, greatest] = std::minmax_element(x.begin() + static_cast<std::ptrdiff_t>(from),
-                                                     x.begin() + static_cast<std::ptrdiff_t>(end));
-  const double middle_mm = 0.5 * (*least + *greatest);
-  if (*greatest - *least <= kStepsOfMotion * step_mm) {
+  const auto [min, max] = std::minmax_element(x.begin() + static_cast<std::ptrdiff_t>(from),
+                                              x.begin() + static_cast<std::ptrdiff_t>(end));
+  const double middle_mm = 0.5 * (*min + *max);
+  if (*max - *min <= kStepsOfMotion * step_mm) {
     return {std::nullopt, "the handle moved less than five encoder steps"};
   }
   for (int p = 0; p < SlowStrokes::kPeriods; ++p) {
@@ -737,11 +737,10 @@ ValueOrReason<ShakeFigures> shake_figures(const ShakenStrokes& strokes, double f
   const std::size_t from = ticks_of(ShakenStrokes::begins_s());
   const std::size_t end = from + ticks_of(ShakenStrokes::kShakeS) - 1;
   if (series.position_mm.size() < end) return no_shake("the run ended early");
-  const double least_mm = step_mm > 0.0 ? step_mm : kUnknownStepMm;
+  const double min_mm = step_mm > 0.0 ? step_mm : kUnknownStepMm;
   std::vector<std::vector<Window>> by_length;
   for (const std::size_t half : kHalves) {
-    std::vector<Window> windows =
-        windows_in(series, {from, end}, half, least_mm, Turning::left_out);
+    std::vector<Window> windows = windows_in(series, {from, end}, half, min_mm, Turning::left_out);
     if (windows.size() >= kMinWindows) by_length.push_back(std::move(windows));
   }
   if (by_length.empty()) {
@@ -754,7 +753,7 @@ ValueOrReason<ShakeFigures> shake_figures(const ShakenStrokes& strokes, double f
     friction_n -= 0.001 * SlowStrokes::kSpeedMmS * viscous;
     fits = fits_of(by_length, friction_n);
   }
-  const std::optional<WindowFit> slow = slow_fit(series, {from, end}, friction_n, least_mm);
+  const std::optional<WindowFit> slow = slow_fit(series, {from, end}, friction_n, min_mm);
   const std::optional<WindowFit>& best = fits.best;
   if (!best) return no_shake("the mass cannot be estimated from the handle's motion");
   if (best->unexplained > kMaxUnexplained) {

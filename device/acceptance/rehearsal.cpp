@@ -9,8 +9,8 @@ namespace {
 
 /// The scripted person's hand and weights.
 constexpr double kRehearsedWeightN = 1.0;
-constexpr double kWayMm = 8.0;  ///< slow motion to either side
-constexpr double kLongestWayS = 6.0;
+constexpr double kStrokeMm = 8.0;  ///< slow motion to either side
+constexpr double kStrokePeriodS = 6.0;
 constexpr double kCarriedMm = 20.0;
 constexpr double kLiftDelayS = 1.0;
 constexpr double kPressN = 0.7;
@@ -47,8 +47,8 @@ Consent Rehearsal::ready(const Prompt& prompt) {
   return Consent::go;
 }
 
-std::optional<double> Rehearsal::weight_n(DeviceAxis /*axis*/, double /*least_n*/, double most_n) {
-  weight_n_ = std::min(kRehearsedWeightN, most_n);
+std::optional<double> Rehearsal::weight_n(DeviceAxis /*axis*/, double /*min_n*/, double max_n) {
+  weight_n_ = std::min(kRehearsedWeightN, max_n);
   return weight_n_;
 }
 
@@ -73,9 +73,9 @@ DeviceDynamics::Outside Rehearsal::hand(double time_s, Vec3 position_mm) const {
     case Grip::guarding:
       return {1.0 * off_mm + weight_carried, 0.2, same_on_all(0.03)};
     case Grip::moving: {
-      const double phase = 2.0 * std::acos(-1.0) * (time_s - began_s_) / kLongestWayS;
-      const Vec3 way_mm = {kWayMm * std::sin(phase), kWayMm * std::sin(1.2 * phase),
-                           kWayMm * std::sin(1.5 * phase)};
+      const double phase = 2.0 * std::acos(-1.0) * (time_s - began_s_) / kStrokePeriodS;
+      const Vec3 way_mm = {kStrokeMm * std::sin(phase), kStrokeMm * std::sin(1.2 * phase),
+                           kStrokeMm * std::sin(1.5 * phase)};
       return {0.5 * (off_mm + way_mm) + weight_carried, 0.1, same_on_all(0.01)};
     }
     case Grip::carrying: {

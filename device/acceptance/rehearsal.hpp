@@ -19,14 +19,14 @@ class Rehearsal final : public AcceptanceBench, public AcceptancePerson {
 
   [[nodiscard]] DeviceInfo info() const override { return device_.info(); }
   [[nodiscard]] SafetyLimits limits() const override { return limits_; }
-  void limit_force(double most_n) override {
-    limits_.max_force_n = std::min(SafetyLimits{}.max_force_n, most_n);
+  void limit_force(double max_n) override {
+    limits_.max_force_n = std::min(SafetyLimits{}.max_force_n, max_n);
   }
   [[nodiscard]] ServoReport run(const std::string& name, Measurement& measurement) override;
 
   [[nodiscard]] Consent ready(const Prompt& prompt) override;
-  [[nodiscard]] std::optional<double> weight_n(DeviceAxis axis, double least_n,
-                                               double most_n) override;
+  [[nodiscard]] std::optional<double> weight_n(DeviceAxis axis, double min_n,
+                                               double max_n) override;
   [[nodiscard]] std::optional<double> temperature_c(const std::string& question) override;
   [[nodiscard]] std::string ask_observation(const std::string& question) override;
   void show(const std::string& result) override { results_.push_back(result); }

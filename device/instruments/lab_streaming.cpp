@@ -18,20 +18,20 @@ constexpr const char* kRemedy =
 /// Types and values of the library's C interface.
 using StreamInfo = void*;
 using Outlet = void*;
-using Description = void*;
+using StreamDescription = void*;
 constexpr int kDouble64 = 2;
 constexpr int kString = 3;
 constexpr double kIrregularRate = 0.0;
 constexpr std::int32_t kChunkAsPushed = 0;
 constexpr std::int32_t kBufferedS = 360;
-constexpr std::int32_t kAtOnce = 1;
+constexpr std::int32_t kChunkSize = 1;
 
 struct LslApi {
   StreamInfo (*create_streaminfo)(const char*, const char*, std::int32_t, double, int, const char*);
   void (*destroy_streaminfo)(StreamInfo);
-  Description (*get_desc)(StreamInfo);
-  Description (*append_child)(Description, const char*);
-  Description (*append_child_value)(Description, const char*, const char*);
+  StreamDescription (*get_desc)(StreamInfo);
+  StreamDescription (*append_child)(StreamDescription, const char*);
+  StreamDescription (*append_child_value)(StreamDescription, const char*, const char*);
   Outlet (*create_outlet)(StreamInfo, std::int32_t, std::int32_t);
   void (*destroy_outlet)(Outlet);
   std::int32_t (*push_doubles)(Outlet, const double*, double, std::int32_t);
@@ -109,9 +109,9 @@ struct LabStreaming::Outlets {
   }
 
   void describe_channels(StreamInfo info) const {
-    Description channels = api.append_child(api.get_desc(info), "channels");
+    StreamDescription channels = api.append_child(api.get_desc(info), "channels");
     for (const Channel& one : kChannels) {
-      Description channel = api.append_child(channels, "channel");
+      StreamDescription channel = api.append_child(channels, "channel");
       static_cast<void>(api.append_child_value(channel, "label", one.label));
       static_cast<void>(api.append_child_value(channel, "unit", one.unit));
       static_cast<void>(api.append_child_value(channel, "type", one.type));
@@ -140,14 +140,14 @@ LabStreaming::~LabStreaming() = default;
 void LabStreaming::mark(const std::string& text, TimePoint at) noexcept {
   const char* channel = text.c_str();
   static_cast<void>(
-      outlets_->api.push_texts(outlets_->markers, &channel, outlets_->stamp_of(at), kAtOnce));
+      outlets_->api.push_texts(outlets_->markers, &channel, outlets_->stamp_of(at), kChunkSize));
 }
 
 void LabStreaming::push(Vec3 position_mm, Vec3 force_n, TimePoint at) noexcept {
   const std::array<double, kChannels.size()> values = {position_mm.x, position_mm.y, position_mm.z,
                                                        force_n.x,     force_n.y,     force_n.z};
-  static_cast<void>(
-      outlets_->api.push_doubles(outlets_->hand, values.data(), outlets_->stamp_of(at), kAtOnce));
+  static_cast<void>(outlets_->api.push_doubles(outlets_->hand, values.data(),
+                                               outlets_->stamp_of(at), kChunkSize));
 }
 
 ClockOffset LabStreaming::read_clock() noexcept {

@@ -18,7 +18,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// Write timeout, after which the marker is lost.
-constexpr int kPatienceMs = 100;
+constexpr int kWriteTimeoutMs = 100;
 
 constexpr std::array<std::pair<int, speed_t>, 10> kRates = {{{9'600, B9600},
                                                              {19'200, B19200},
@@ -35,7 +35,7 @@ constexpr std::array<std::pair<int, speed_t>, 10> kRates = {{{9'600, B9600},
   throw DeviceError(one_line("instruments.serial: " + settings.port.string() + ": " + why));
 }
 
-std::string words_of_error(int error) {
+std::string error_text(int error) {
   return std::generic_category().message(error);
 }
 
@@ -62,7 +62,7 @@ void make_raw(const MarkerLineSettings& settings, int descriptor) {
   if (::cfsetispeed(&line, rate) != 0 || ::cfsetospeed(&line, rate) != 0 ||
       ::tcsetattr(descriptor, TCSANOW, &line) != 0) {
     refuse_port(settings, "does not take " + std::to_string(settings.baud) + " baud (" +
-                              words_of_error(errno) + "); set another rate");
+                              error_text(errno) + "); set another rate");
   }
 }
 
@@ -71,7 +71,7 @@ int open_port(const MarkerLineSettings& settings) {
       ::open(settings.port.c_str(), O_WRONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) {
     const int error = errno;
-    refuse_port(settings, words_of_error(error) +
+    refuse_port(settings, error_text(error) +
                               (error == EACCES ? "; add the user to the group dialout"
                                                : "; plug the instrument in, or take the line out "
                                                  "of the device settings"));
@@ -176,7 +176,7 @@ bool MarkerLine::write(const std::string& bytes) noexcept {
     if (count < 0 && errno == EINTR) continue;
     if (count == 0 || (errno != EAGAIN && errno != EWOULDBLOCK)) return false;
     pollfd line{descriptor_, POLLOUT, 0};
-    if (::poll(&line, 1, kPatienceMs) <= 0) return false;
+    if (::poll(&line, 1, kWriteTimeoutMs) <= 0) return false;
   }
   return true;
 }

@@ -27,8 +27,8 @@ Vec3 whole_steps(Vec3 a, double step) noexcept {
 }
 
 double checked_tick(double tick_s) {
-  constexpr double kLongestTickS = 0.01;
-  if (tick_s > 0.0 && tick_s <= kLongestTickS) return tick_s;
+  constexpr double kMaxTickS = 0.01;
+  if (tick_s > 0.0 && tick_s <= kMaxTickS) return tick_s;
   throw std::invalid_argument("DeviceDynamics: a tick must be in (0, 0.01] s");
 }
 
@@ -40,15 +40,14 @@ const DeviceModel& checked_model(const DeviceModel& model) {
 /// \return where the nearest end of the workspace is, if the position lies beyond it
 std::optional<Vec3> end_of(const Workspace& workspace, Vec3 position_mm) noexcept {
   if (workspace.shape == WorkspaceShape::box) {
-    const auto clamped = [](double value, double least, double greatest) {
-      return std::clamp(value, least, greatest);
+    const auto clamped = [](double value, double low, double high) {
+      return std::clamp(value, low, high);
     };
-    const Vec3 end_mm =
-        on_each_axis(clamped, position_mm, workspace.least_mm, workspace.greatest_mm);
+    const Vec3 end_mm = on_each_axis(clamped, position_mm, workspace.min_mm, workspace.max_mm);
     return end_mm == position_mm ? std::nullopt : std::optional(end_mm);
   }
-  const Vec3 middle_mm = 0.5 * (workspace.least_mm + workspace.greatest_mm);
-  const Vec3 half_mm = workspace.greatest_mm - middle_mm;
+  const Vec3 middle_mm = 0.5 * (workspace.min_mm + workspace.max_mm);
+  const Vec3 half_mm = workspace.max_mm - middle_mm;
   const Vec3 from_middle_mm = position_mm - middle_mm;
   const double radii = norm(
       on_each_axis([](double way, double half) { return way / half; }, from_middle_mm, half_mm));
@@ -81,7 +80,7 @@ DeviceDynamics::DeviceDynamics(const DeviceModel& model, double tick_s)
   }
   is_plain_ = !has_motors_ && !has_friction_ && has_true_readings_ && joint_ == 0.0 &&
               model.planted.gravity_n == 0.0;
-  on_the_way_n_.resize(static_cast<std::size_t>(model.delay_ticks));
+  delayed_n_.resize(static_cast<std::size_t>(model.delay_ticks));
   readings_mm_.resize(static_cast<std::size_t>(model.velocity_readings));
   place({});
 }
@@ -90,7 +89,7 @@ void DeviceDynamics::place(Vec3 position_mm) noexcept {
   tip_mm_ = motor_mm_ = position_mm;
   tip_mm_s_ = motor_mm_s_ = {};
   filtered_n_ = delivered_n_ = {};
-  std::ranges::fill(on_the_way_n_, Vec3{});
+  std::ranges::fill(delayed_n_, Vec3{});
   take_reading();
   std::ranges::fill(readings_mm_, read_mm_);
   read_mm_s_ = {};
@@ -98,9 +97,9 @@ void DeviceDynamics::place(Vec3 position_mm) noexcept {
 
 Vec3 DeviceDynamics::through_motors(const Vec3& commanded_n) noexcept {
   Vec3 force_n = by_number(commanded_n);
-  if (!on_the_way_n_.empty()) {
-    std::swap(force_n, on_the_way_n_[next_command_]);
-    if (++next_command_ == on_the_way_n_.size()) next_command_ = 0;
+  if (!delayed_n_.empty()) {
+    std::swap(force_n, delayed_n_[next_command_]);
+    if (++next_command_ == delayed_n_.size()) next_command_ = 0;
   }
   if (model_.max_force_n > 0.0) {
     const double magnitude_n = norm(force_n);
@@ -176,7 +175,7 @@ void DeviceDynamics::move_structure(const Vec3& motor_n, const Outside& outside)
   tip_mm_s_ = tip_mm_s;
 }
 
-void DeviceDynamics::make_out_reading() noexcept {
+void DeviceDynamics::update_reading() noexcept {
   if (noise_) {
     const double deviation_mm = model_.planted.position_noise_mm;
     read_mm_ = on_each_axis([&](double value) { return value + deviation_mm * noise_->normal(); },
@@ -211,7 +210,7 @@ void DeviceDynamics::estimate_velocity() noexcept {
 ModelledDevice::ModelledDevice(DeviceModel model, Hand hand)
     : model_(std::move(model)), dynamics_(model_, kServoTickS), hand_(std::move(hand)) {
   if (model_.workspace) {
-    dynamics_.place(0.5 * (model_.workspace->least_mm + model_.workspace->greatest_mm));
+    dynamics_.place(0.5 * (model_.workspace->min_mm + model_.workspace->max_mm));
   }
 }
 

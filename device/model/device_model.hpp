@@ -28,7 +28,7 @@ enum class Confidence {
   transcript,  ///< read in a transcript of a paper
   derived,     ///< computed from others of these
   memory,      ///< remembered, unverified
-  guess,       ///< nobody knows
+  guess,       ///< unknown
   measured,    ///< on the very device, by `device accept`
 };
 
@@ -84,7 +84,7 @@ struct DeviceModel {
   /// By the parameter's key in the file ("mass_kg", "structure").
   std::map<std::string, Provenance> provenance;
 
-  /// Faults of a broken specimen, for rehearsals alone: the shipped models have none.
+  /// Faults of a broken specimen, for rehearsals only: the shipped models have none.
   struct Planted {
     Vec3 force_sign_scale = {1.0, 1.0, 1.0};  ///< factors of the delivered force, in [-10, 10]
     double position_noise_mm = 0.0;  ///< standard deviation of white noise on each axis, in [0, 1]
@@ -179,7 +179,7 @@ class DeviceDynamics {
   void move_structure(const Vec3& motor_n, const Outside& outside) noexcept;
   void take_reading() noexcept;
   /// From the true position: what quantisation, noise and the estimate of velocity make of it.
-  void make_out_reading() noexcept;
+  void update_reading() noexcept;
   void estimate_velocity() noexcept;
 
   DeviceModel model_;
@@ -194,7 +194,7 @@ class DeviceDynamics {
   double joint_ = 0.0;   ///< N s/mm: the structure's spring and damper over half a tick; 0: rigid
   std::optional<RandomStream> noise_;
 
-  std::vector<Vec3> on_the_way_n_;  ///< a ring of delay_ticks commands
+  std::vector<Vec3> delayed_n_;  ///< a ring of delay_ticks commands
   std::size_t next_command_ = 0;
   Vec3 filtered_n_;
   Vec3 delivered_n_;
@@ -249,7 +249,7 @@ inline void DeviceDynamics::take_reading() noexcept {
   if (has_true_readings_) {
     read_mm_s_ = by_number(joint_ > 0.0 ? motor_mm_s_ : tip_mm_s_);
   } else {
-    make_out_reading();
+    update_reading();
   }
 }
 

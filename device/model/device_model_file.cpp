@@ -33,77 +33,77 @@ constexpr auto kConfidences =
 
 void describe_friction(ObjectIo& io, DeviceModel& model) {
   io.number("viscous_n_s_per_m", model.viscous_n_s_per_m, {0.0, 100.0},
-            {"friction in proportion to speed"});
-  io.number("coulomb_n", model.coulomb_n, {0.0, 10.0}, {"friction that does not depend on speed"});
+            {"friction proportional to speed"});
+  io.number("coulomb_n", model.coulomb_n, {0.0, 10.0}, {"friction independent of speed"});
   io.number("static_n", model.static_n, {0.0, 10.0},
-            {"friction at rest, at least `coulomb_n`; 0: as `coulomb_n`"});
+            {"friction at rest, at least `coulomb_n`; 0: equal to `coulomb_n`"});
   io.number("stribeck_mm_s", model.stribeck_mm_s, {0.0, 1000.0},
-            {"speed over which static falls to Coulomb friction; 0: at once. Needs `static_n`"});
+            {"speed range over which static friction falls to Coulomb friction; 0: immediately. "
+             "Needs `static_n`"});
 }
 
 void describe_numbers(ObjectIo& io, DeviceModel& model) {
   io.number("mass_kg", model.mass_kg, {0.0, 5.0}, {"apparent mass at the tip, without the hand"});
   describe_friction(io, model);
-  io.number("position_step_mm", model.position_step_mm, {0.0, 1.0}, {"readings are whole steps"});
+  io.number("position_step_mm", model.position_step_mm, {0.0, 1.0},
+            {"readings are multiples of this step"});
   io.number("force_step_n", model.force_step_n, {0.0, 1.0}, {"forces are whole steps"});
   io.number("max_force_n", model.max_force_n, {0.0, 100.0},
-            {"largest norm of a force; 0: no limit"});
+            {"maximum norm of the force; 0: no limit"});
   io.number("continuous_force_n", model.continuous_force_n, {0.0, 100.0},
-            {"force without a time limit, at most `max_force_n`; 0: not known"});
+            {"force that can be held for any time, at most `max_force_n`; 0: unknown"});
   io.number("lowpass_hz", model.lowpass_hz, {0.0, 5000.0},
-            {"corner of the motors' low-pass of first order; 0: none"});
+            {"cut-off of the motors' first-order low-pass; 0: none"});
   io.number("max_stiffness_n_per_mm", model.max_stiffness_n_per_mm, {0.0, 100.0},
-            {"largest stiffness of a wall, as the maker states it; 0: not known"});
+            {"maximum stiffness of a wall, as stated by the maker; 0: unknown"});
 }
 
 void describe_structure(ObjectIo& io, StructureModel& structure) {
   io.number("stiffness_n_per_mm", structure.stiffness_n_per_mm, {0.0, 1000.0},
             {"spring between motors and tip; 0: rigid. Needs `mass_kg`"});
   io.number("tip_share", structure.tip_share, {0.0, 1.0},
-            {"share of the mass at the tip; between 0 and 1 with a spring"});
+            {"share of the mass that is at the tip; between 0 and 1 with a spring"});
   io.number("damping_ratio", structure.damping_ratio, {0.0, 2.0},
             {"damping ratio of the tip while the motors are held"});
 }
 
 void describe_workspace(ObjectIo& io, Workspace& workspace) {
   io.member("least_mm",
-            {.meaning = "corner of the device frame at the left, at the bottom, in the back",
-             .required = true},
-            true, [&](ValueIo& value) { value.axes(workspace.least_mm, kPlaceMm); });
+            {.meaning = "left, bottom, back corner in the device frame", .required = true}, true,
+            [&](ValueIo& value) { value.axes(workspace.min_mm, kPlaceMm); });
   io.member("greatest_mm",
             {.meaning = "the opposite corner, greater on each axis", .required = true}, true,
-            [&](ValueIo& value) { value.axes(workspace.greatest_mm, kPlaceMm); });
+            [&](ValueIo& value) { value.axes(workspace.max_mm, kPlaceMm); });
   io.choice("shape", workspace.shape, kWorkspaceShapes,
-            {"all of the box, or the ellipsoid that touches it from inside"});
+            {"the whole box, or the ellipsoid inscribed in it"});
 }
 
 /// What has a provenance.
 void describe_parameters(ObjectIo& io, DeviceModel& model) {
   describe_numbers(io, model);
   io.choice("friction", model.friction, kFrictionShapes,
-            {"friction against the velocity, or on each axis alone"});
+            {"friction opposite to the velocity, or on each axis separately"});
   io.integer("velocity_readings", model.velocity_readings, 0, 32,
-             {"readings of the line whose slope is the reported velocity, at least 2; 0: the true "
-              "velocity"});
-  io.integer("delay_ticks", model.delay_ticks, 0, 100,
-             {"ticks of the servo from a command to its force"});
-  io.truth("zero_order_hold", model.zero_order_hold,
-           {"whether a force acts over the tick; a structure always has it"});
+             {"number of readings for the line fit whose slope is the reported velocity, at least "
+              "2; 0: the true velocity"});
+  io.integer("delay_ticks", model.delay_ticks, 0, 100, {"servo ticks from a command to its force"});
+  io.boolean("zero_order_hold", model.zero_order_hold,
+             {"whether a force acts throughout the tick; always so with a structure"});
   io.part("structure", model.structure, {"a second mass at the tip, on a spring"},
           describe_structure);
   io.optional(
       "workspace", model.workspace,
-      {"what the device reaches: x to the right, y up, z towards the person"},
+      {"the reachable positions: x to the right, y up, z towards the person"},
       [](ValueIo& value, Workspace& workspace) { value.part(workspace, describe_workspace); });
 }
 
 void describe_source(ObjectIo& io, Provenance& provenance) {
   io.text("source", provenance.source, {},
-          {.meaning = "where the number comes from, a line for people", .required = true});
+          {.meaning = "source of the number, one line for people", .required = true});
   io.choice("confidence", provenance.confidence, kConfidences,
-            {.meaning = "`opened`: read in a public source; `transcript`: in a transcript of a "
-                        "paper; `derived`: computed from such; `memory`: remembered, unverified; "
-                        "`guess`: nobody knows; `measured`: on the very device",
+            {.meaning = "`opened`: read in a public source; `transcript`: read in a transcript of "
+                        "a paper; `derived`: computed from such; `memory`: remembered, unverified; "
+                        "`guess`: unknown; `measured`: on this device",
              .required = true});
 }
 
@@ -130,11 +130,11 @@ void describe_planted(ObjectIo& io, DeviceModel::Planted& planted) {
             });
   io.number("position_noise_mm", planted.position_noise_mm, {0.0, 1.0},
             {"standard deviation of white noise on each axis of a reading"});
-  io.number("gravity_n", planted.gravity_n, {0.0, 10.0},
-            {"weight of the handle that nothing carries"});
+  io.number("gravity_n", planted.gravity_n, {0.0, 10.0}, {"uncompensated weight of the handle"});
   io.number("silent_after_s", planted.silent_after_s, kTimeS,
-            {"when readings begin to repeat and no force comes; 0: never"});
-  io.number("lost_after_s", planted.lost_after_s, kTimeS, {"when the link is lost; 0: never"});
+            {"time at which readings freeze and forces stop; 0: never"});
+  io.number("lost_after_s", planted.lost_after_s, kTimeS,
+            {"time at which the link is lost; 0: never"});
   io.integer("seed", planted.seed, 0, kMaxSeed, {"of the noise"});
 }
 
@@ -146,20 +146,19 @@ void check_parameters(const JsonValue& place, const DeviceModel& model) {
   refuse_if(model.static_n != 0.0 && model.static_n < model.coulomb_n, "/static_n",
             "is less than coulomb_n; give at least that, or leave it out");
   refuse_if(model.stribeck_mm_s != 0.0 && model.static_n == 0.0, "/stribeck_mm_s",
-            "has no static friction to fall from; give static_n");
+            "needs static friction; give static_n");
   refuse_if(model.max_force_n != 0.0 && model.continuous_force_n > model.max_force_n,
             "/continuous_force_n", "is more than max_force_n; give at most that");
   refuse_if(model.velocity_readings == 1, "/velocity_readings",
-            "is 1, which has no slope; give 0, or at least 2");
+            "is 1, but a slope needs 2 readings; give 0, or at least 2");
   if (model.workspace) {
-    const auto& [least, greatest] =
-        std::pair(model.workspace->least_mm, model.workspace->greatest_mm);
-    refuse_if(least.x >= greatest.x || least.y >= greatest.y || least.z >= greatest.z,
-              "/workspace/greatest_mm", "must be greater than least_mm on each axis");
+    const auto& [min, max] = std::pair(model.workspace->min_mm, model.workspace->max_mm);
+    refuse_if(min.x >= max.x || min.y >= max.y || min.z >= max.z, "/workspace/greatest_mm",
+              "must be greater than least_mm on each axis");
   }
   const StructureModel& structure = model.structure;
   if (structure.stiffness_n_per_mm == 0.0) return;
-  refuse_if(model.mass_kg == 0.0, "/structure", "needs a mass that it can share; give mass_kg");
+  refuse_if(model.mass_kg == 0.0, "/structure", "needs a mass to divide; give mass_kg");
   refuse_if(structure.tip_share == 0.0 || structure.tip_share == 1.0, "/structure/tip_share",
             "leaves one of the two without mass; give a number between 0 and 1");
 }
@@ -167,7 +166,7 @@ void check_parameters(const JsonValue& place, const DeviceModel& model) {
 /// What a running model needs.
 void describe_device(ObjectIo& io, DeviceModel& model) {
   describe_parameters(io, model);
-  io.part("planted", model.planted, {"faults of a broken specimen, for rehearsals alone"},
+  io.part("planted", model.planted, {"faults of a broken device, for rehearsals only"},
           describe_planted);
   io.rule([&model](const JsonValue& place, const JsonObject& /*object*/) {
     check_parameters(place, model);
@@ -175,15 +174,15 @@ void describe_device(ObjectIo& io, DeviceModel& model) {
 }
 
 void describe(ObjectIo& io, DeviceModel& model) {
-  io.text("name", model.name, {.min_length = 1, .in_words = "not empty"},
+  io.text("name", model.name, {.min_length = 1, .description = "not empty"},
           {.meaning = "name for commands", .required = true});
   io.text("title", model.title, {}, {"name for people"});
   describe_parameters(io, model);
   io.member("provenance",
-            {.meaning = "where each number comes from", .range = "by key: `source`, `confidence`"},
+            {.meaning = "the source of each number", .range = "by key: `source`, `confidence`"},
             !model.provenance.empty(),
             [&model](ValueIo& value) { value.part(model.provenance, describe_provenance); });
-  io.part("planted", model.planted, {"faults of a broken specimen, for rehearsals alone"},
+  io.part("planted", model.planted, {"faults of a broken device, for rehearsals only"},
           describe_planted);
   io.rule([&model](const JsonValue& place, const JsonObject& object) {
     if (model.name.empty()) object.at("name").refuse("is empty; give a name");
@@ -215,8 +214,8 @@ DeviceModel parse_device_model(std::string_view text, const std::string& source)
 }
 
 DeviceModel read_device_model(const std::filesystem::path& file) {
-  constexpr std::uintmax_t kLargest = 1U << 20U;
-  const Bytes content = read_file(file, kLargest);
+  constexpr std::uintmax_t kMaxFileBytes = 1U << 20U;
+  const Bytes content = read_file(file, kMaxFileBytes);
   return parse_device_model(text_of(content), file.string());
 }
 
@@ -230,14 +229,13 @@ std::string device_model_json(const DeviceModel& model) {
 
 std::string device_model_schema() {
   DeviceModel usual;
-  return annotated_schema(
-      "Touchtrial device model",
-      "The parameters of a device in virtual time. Every key but the name has a default; a "
-      "parameter of zero leaves its stage out.",
-      R"([{"name": "heavy", "mass_kg": 0.5, "coulomb_n": 0.2,
+  return annotated_schema("Touchtrial device model",
+                          "The parameters of a device in virtual time. Every key but the name has "
+                          "a default; a parameter of zero disables its stage.",
+                          R"([{"name": "heavy", "mass_kg": 0.5, "coulomb_n": 0.2,
            "provenance": {"mass_kg": {"source": "kitchen scale", "confidence": "measured"}}},
           {"name": "reversed", "mass_kg": 0.1, "planted": {"force_sign_scale": [-1, 1, 1]}}])",
-      [&](ObjectIo& io) { describe(io, usual); });
+                          [&](ObjectIo& io) { describe(io, usual); });
 }
 
 const std::vector<DeviceModel>& shipped_device_models() {

@@ -14,7 +14,7 @@ namespace {
 constexpr double kToleranceMm = 1e-9;
 
 Vec3 middle_of(const Workspace& workspace) {
-  return 0.5 * (workspace.least_mm + workspace.greatest_mm);
+  return 0.5 * (workspace.min_mm + workspace.max_mm);
 }
 
 /// The workspace reduced to one octant. It is symmetric about its middle, so only the corner of a
@@ -40,7 +40,7 @@ struct Reach {
 Reach reach_about(Vec3 centre_mm, const Workspace& workspace) {
   const Vec3 offset = centre_mm - middle_of(workspace);
   return {{std::abs(offset.x), std::abs(offset.y), std::abs(offset.z)},
-          0.5 * (workspace.greatest_mm - workspace.least_mm),
+          0.5 * (workspace.max_mm - workspace.min_mm),
           workspace.shape};
 }
 
@@ -94,7 +94,7 @@ std::string size_text(const PlaneGeometry& plane) {
 }
 
 std::string workspace_text(const Workspace& workspace) {
-  const Vec3 size = workspace.greatest_mm - workspace.least_mm;
+  const Vec3 size = workspace.max_mm - workspace.min_mm;
   return rounded_text(size.x) + " x " + rounded_text(size.y) + " x " + rounded_text(size.z) +
          " mm" + (workspace.shape == WorkspaceShape::ellipsoid ? " (rounded)" : "");
 }

@@ -43,9 +43,9 @@ std::string reason_for(const std::string& library) {
 
 /// \return the child's status; nothing if it hung and was killed
 std::optional<int> status_of(pid_t child) {
-  constexpr std::chrono::milliseconds kPatience{10'000};
+  constexpr std::chrono::milliseconds kTimeout{10'000};
   int status = 0;
-  for (std::chrono::milliseconds waited(0); waited < kPatience; ++waited) {
+  for (std::chrono::milliseconds waited(0); waited < kTimeout; ++waited) {
     if (waitpid(child, &status, WNOHANG) == child) return status;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }

@@ -1,4 +1,4 @@
-/// \file Sets the force to zero in whatever way the program ends. One source file per platform.
+/// \file Sets the force to zero however the program ends. One source file per platform.
 #pragma once
 
 #include "device/haptic_device.hpp"

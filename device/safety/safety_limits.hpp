@@ -10,7 +10,7 @@ namespace touchtrial::device {
 
 /// Every force must be able to fall to zero within this time: SafetyLimits whose slew limit takes
 /// longer from max_force_n to zero are invalid.
-inline constexpr double kLongestLetGoS = 0.05;
+inline constexpr double kMaxReleaseS = 0.05;
 
 /// Limits that hold for every device. The defaults suit a hand that strokes a texture: in ordinary
 /// use only the norm limit takes effect. Infinity disables a link whose limit may be infinite.
@@ -19,7 +19,7 @@ struct SafetyLimits {
   double max_force_n = 3.3;          ///< of the force's norm, > 0, finite
   double continuous_force_n = 0.0;   ///< sustainable without time limit; 0: no thermal budget
   double thermal_budget_s = 20.0;    ///< at peak force, from cold, before the limit falls; > 0
-  double max_slew_n_per_s = 1000.0;  ///< of the force's change, >= max_force_n / kLongestLetGoS
+  double max_slew_n_per_s = 1000.0;  ///< of the force's change, >= max_force_n / kMaxReleaseS
   double max_speed_mm_s = 2000.0;    ///< reported, or by the change of position; more is a fault
   double engage_force_n = 0.5;       ///< forces pass only after a computed force below this
   double ramp_up_s = 0.1;            ///< from engaging to full force, >= 0, finite
@@ -33,7 +33,7 @@ struct SafetyLimits {
 /// \return whether every limit is in its range; NaN is out of every range
 [[nodiscard]] inline bool is_sound(const SafetyLimits& limits) noexcept {
   const bool force = limits.max_force_n > 0.0 && std::isfinite(limits.max_force_n) &&
-                     limits.max_slew_n_per_s >= limits.max_force_n / kLongestLetGoS;
+                     limits.max_slew_n_per_s >= limits.max_force_n / kMaxReleaseS;
   const bool heat = limits.continuous_force_n >= 0.0 && limits.thermal_budget_s > 0.0;
   const bool engaging =
       limits.engage_force_n >= 0.0 && limits.ramp_up_s >= 0.0 && std::isfinite(limits.ramp_up_s);

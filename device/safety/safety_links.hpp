@@ -102,7 +102,7 @@ class Freshness {
   /// \param tick_s  of the servo, > 0
   Freshness(double stale_s, double tick_s) noexcept
       : stale_ticks_(std::max(1.0, std::ceil(stale_s / tick_s - kTickRounding))),
-        most_at_once_(std::max(1.0, 0.5 * stale_ticks_)) {}
+        max_step_(std::max(1.0, 0.5 * stale_ticks_)) {}
 
   void start(std::uint64_t sequence) noexcept {
     sequence_ = sequence;
@@ -116,13 +116,13 @@ class Freshness {
       start(sequence);
       return false;
     }
-    old_ticks_ += std::min(ticks, most_at_once_);
+    old_ticks_ += std::min(ticks, max_step_);
     return old_ticks_ >= stale_ticks_;
   }
 
  private:
   double stale_ticks_;
-  double most_at_once_;
+  double max_step_;
   double old_ticks_ = 0.0;
   std::uint64_t sequence_ = 0;
 };

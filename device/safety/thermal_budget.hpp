@@ -30,9 +30,9 @@ class ThermalBudget {
   ThermalBudget(double peak, double continuous, double peak_s, double tick_s) noexcept
       : peak_(peak), continuous_(continuous) {
     if (!(continuous_ > 0.0) || !(continuous_ < peak_)) return;
-    most_heat_ = continuous_ * continuous_;
+    max_heat_ = continuous_ * continuous_;
     // At peak force the heat is peak^2 (1 - exp(-t / tau)).
-    const double warm_share = kWarm * most_heat_ / (peak_ * peak_);
+    const double warm_share = kWarm * max_heat_ / (peak_ * peak_);
     tau_s_ = -peak_s / std::log1p(-warm_share);
     share_per_tick_ = -std::expm1(-tick_s / tau_s_);
   }
@@ -46,8 +46,8 @@ class ThermalBudget {
   /// \return the limit of the force's norm for this tick: from the peak down to the continuous
   ///   force minus the carried one
   [[nodiscard]] double limit_n(double carried_n = 0.0) const noexcept {
-    if (heat_ <= kWarm * most_heat_) return peak_;
-    const double cold = std::max(0.0, 1.0 - heat_ / most_heat_) / (1.0 - kWarm);
+    if (heat_ <= kWarm * max_heat_) return peak_;
+    const double cold = std::max(0.0, 1.0 - heat_ / max_heat_) / (1.0 - kWarm);
     const double held_n = std::max(0.0, continuous_ - carried_n);
     return held_n + std::min(cold, 1.0) * (peak_ - held_n);
   }
@@ -73,8 +73,8 @@ class ThermalBudget {
  private:
   double peak_;
   double continuous_;
-  double most_heat_ = std::numeric_limits<double>::infinity();  ///< infinite: no budget
-  double tau_s_ = 1.0;                                          ///< in which heat fades to 1/e
+  double max_heat_ = std::numeric_limits<double>::infinity();  ///< infinite: no budget
+  double tau_s_ = 1.0;                                         ///< in which heat fades to 1/e
   double share_per_tick_ = 0.0;  ///< of the approach to the current force's heat
   double heat_ = 0.0;            ///< the force's square
 };

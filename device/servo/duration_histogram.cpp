@@ -19,7 +19,7 @@ std::size_t bin_of(std::int64_t ns) noexcept {
   return static_cast<std::size_t>(octave * kSteps) + step;
 }
 
-std::int64_t least_of(std::size_t index) noexcept {
+std::int64_t min_of_bin(std::size_t index) noexcept {
   const auto i = static_cast<std::int64_t>(index);
   if (i < kSteps) return i;
   const std::int64_t octave = i / kSteps - 1;
@@ -48,7 +48,7 @@ double DurationHistogram::percentile_us(double share) const noexcept {
     below += counts_[i];
     if (static_cast<double>(below) < rank) continue;
     // The last nanosecond of a bin is one before the next bin; the last bin is unbounded.
-    const std::int64_t last_ns = i + 1 == kBins ? worst_ns_ : least_of(i + 1) - 1;
+    const std::int64_t last_ns = i + 1 == kBins ? worst_ns_ : min_of_bin(i + 1) - 1;
     return static_cast<double>(std::min(last_ns, worst_ns_)) * 1e-3;
   }
   return static_cast<double>(worst_ns_) * 1e-3;

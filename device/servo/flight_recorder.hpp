@@ -48,7 +48,7 @@ class FlightRecorder {
   std::size_t recorded_ = 0;
 };
 
-/// \return a header and one row per tick, by RFC 4180, with a decimal point whatever the locale;
+/// \return a header and one row per tick, by RFC 4180, with a decimal point in every locale;
 /// numbers have the fewest digits that round-trip exactly
 [[nodiscard]] std::string flight_csv(std::span<const FlightTick> ticks);
 

@@ -18,7 +18,7 @@ class ForceSequence final : public ForceSource, public SampleSink {
   struct Part {
     std::int64_t ticks = 0;
     std::int64_t contact_ticks = 0;  ///< with a force out of the plane
-    double greatest_force_n = 0.0;   ///< sent to the device
+    double max_force_n = 0.0;        ///< sent to the device
   };
 
   /// \param first,second  must outlive this; the servo calls the first until the change ends, the
@@ -44,7 +44,7 @@ class ForceSequence final : public ForceSource, public SampleSink {
     Part& part = parts_[is_second(sample.tick) ? 1 : 0];
     ++part.ticks;
     part.contact_ticks += sample.force_n.z > 0.0 ? 1 : 0;
-    part.greatest_force_n = std::max(part.greatest_force_n, norm(sample.force_n));
+    part.max_force_n = std::max(part.max_force_n, norm(sample.force_n));
   }
 
   /// May be called from any thread.

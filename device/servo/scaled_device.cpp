@@ -25,14 +25,14 @@ std::string scale_text(const DeviceScale& scale) {
 }
 
 Workspace scaled(const Workspace& workspace, Vec3 length) noexcept {
-  return {times(workspace.least_mm, length), times(workspace.greatest_mm, length), workspace.shape};
+  return {times(workspace.min_mm, length), times(workspace.max_mm, length), workspace.shape};
 }
 
 DeviceInfo scaled(DeviceInfo info, const DeviceScale& scale) {
   const double weakest = std::min({scale.force.x, scale.force.y, scale.force.z});
-  const double longest = std::max({scale.length.x, scale.length.y, scale.length.z});
+  const double max_length = std::max({scale.length.x, scale.length.y, scale.length.z});
   const double of_force = std::min(1.0, weakest);
-  const double of_stiffness = std::min(1.0, weakest / longest);
+  const double of_stiffness = std::min(1.0, weakest / max_length);
   info.max_force_n *= of_force;
   info.continuous_force_n *= of_force;
   info.max_stiffness_n_per_mm *= of_stiffness;

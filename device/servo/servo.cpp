@@ -262,8 +262,8 @@ class ServoRun {
   /// \return the factor of this tick's force, which follows the parameters
   double share() noexcept {
     if (!kIsWatched || hooks_.parameters == nullptr) return 1.0;
-    const double most = 1.0 / (kShareS * rate_hz_);
-    share_ += std::clamp(share_of(hooks_.parameters->get()) - share_, -most, most);
+    const double max_step = 1.0 / (kShareS * rate_hz_);
+    share_ += std::clamp(share_of(hooks_.parameters->get()) - share_, -max_step, max_step);
     return share_;
   }
 

@@ -36,7 +36,7 @@ class PacedClock final : public ServoClock {
  public:
   /// \return the spin that suits a thread's policy: a real-time thread can spin longer than most
   ///   late wake-ups, while an ordinary thread that spins for long is preempted
-  [[nodiscard]] static Time usual_spin(SchedulingPolicy policy) noexcept {
+  [[nodiscard]] static Time default_spin(SchedulingPolicy policy) noexcept {
     return std::chrono::microseconds(policy == SchedulingPolicy::fifo ? 150 : 50);
   }
 

@@ -107,8 +107,8 @@ RunningServo::~RunningServo() {
   }
 }
 
-bool RunningServo::runs(std::chrono::nanoseconds patience) const {
-  return ended_.wait_for(patience) != std::future_status::ready;
+bool RunningServo::runs(std::chrono::nanoseconds timeout) const {
+  return ended_.wait_for(timeout) != std::future_status::ready;
 }
 
 void RunningServo::finish() {

@@ -22,7 +22,7 @@ class ServoThread {
   ServoThread(const ServoThread&) = delete;
   ServoThread& operator=(const ServoThread&) = delete;
 
-  /// The scheduling that the thread obtained, for the record and for PacedClock::usual_spin.
+  /// The scheduling that the thread obtained, for the record and for PacedClock::default_spin.
   [[nodiscard]] const SchedulingObtained& scheduling() const noexcept;
 
   /// Runs this on the thread and returns at once.
@@ -54,9 +54,9 @@ class RunningServo {
   RunningServo(const RunningServo&) = delete;
   RunningServo& operator=(const RunningServo&) = delete;
 
-  /// \param patience  timeout
+  /// \param timeout  timeout
   /// \return whether it still runs
-  [[nodiscard]] bool runs(std::chrono::nanoseconds patience = {}) const;
+  [[nodiscard]] bool runs(std::chrono::nanoseconds timeout = {}) const;
   /// Waits for the end and rethrows the work's exception. Call it once.
   void finish();
 

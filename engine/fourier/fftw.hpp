@@ -111,7 +111,7 @@ class FftwPlans {
   /// \throws std::invalid_argument if FFTW has no such plan
   FftwPlans(const std::string& name, std::size_t samples, const Make& make) {
     const std::lock_guard lock(planner_mutex());
-    const bool keep = samples <= kKeptUpToSamples;
+    const bool keep = samples <= kMaxCachedSamples;
     if (keep) plans_ = kept()[name];
     if (plans_) return;
     if (lacked_memory()) throw std::bad_alloc();
@@ -134,7 +134,7 @@ class FftwPlans {
   [[nodiscard]] Plan operator[](std::size_t index) const noexcept { return plans_->all[index]; }
 
  private:
-  static constexpr std::size_t kKeptUpToSamples = 4096;
+  static constexpr std::size_t kMaxCachedSamples = 4096;
 
   struct Plans {
     explicit Plans(std::vector<Plan> made) : all(std::move(made)) {}

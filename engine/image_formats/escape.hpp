@@ -19,7 +19,7 @@ struct Escape {
 };
 
 /// Runs `steps`, which an error handler may leave half-way by `escape`. The jump calls no
-/// destructors: create whatever needs one outside `steps`, and capture it by reference.
+/// destructors: create everything that needs one outside `steps`, and capture it by reference.
 /// \return whether the steps reached their end
 template <typename Steps>
 [[nodiscard, gnu::noinline]] bool reaches_end(Escape& escape, const Steps& steps) {

@@ -61,16 +61,16 @@ ImageKind kind_of_image(ByteView file) {
                      "save it as PNG, JPEG, TIFF, BMP, GIF or PGM"};
   }
   throw ImageFault{"is not an image of a known kind",
-                   "give a PNG, JPEG, TIFF, BMP, GIF or PGM file"};
+                   "give a PNG, JPEG, TIFF, BMP, GIF or PGM file [not-a-picture]"};
 }
 
 void throw_truncated_image() {
-  throw_damaged_image("");
+  throw ImageFault{"is truncated or damaged", "copy or export it again [truncated-picture]"};
 }
 
 void throw_damaged_image(const std::string& complaint) {
-  throw ImageFault{complaint.empty() ? "is truncated or damaged" : "is damaged (" + complaint + ")",
-                   "copy or export it again"};
+  if (complaint.empty()) throw_truncated_image();
+  throw ImageFault{"is damaged (" + complaint + ")", "copy or export it again [damaged-picture]"};
 }
 
 void throw_unsupported_image(const std::string& what) {

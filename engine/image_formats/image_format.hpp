@@ -39,7 +39,7 @@ class GreyScale;
 [[nodiscard]] GreyImage read_gif(ByteView file, GreyScale& scale, ImageNotes& notes);
 [[nodiscard]] GreyImage read_pnm(ByteView file, GreyScale& scale);
 
-/// Width and height of a PNG, pixels, by its header alone.
+/// Width and height of a PNG, pixels, from its header only.
 /// \throws ImageFault
 [[nodiscard]] std::pair<int, int> size_of_png(ByteView file);
 
@@ -64,7 +64,7 @@ struct ImageFault {
 /// The longest side of a picture; also libpng's limit.
 inline constexpr std::int64_t kMaxSidePx = 1'000'000;
 
-/// Refuses an empty or too large picture by its header alone.
+/// Refuses an empty or too large picture from its header only.
 /// \throws ImageFault
 void check_image_size(std::int64_t width_px, std::int64_t height_px);
 

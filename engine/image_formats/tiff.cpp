@@ -340,12 +340,12 @@ GreyImage read_as_rgba(TIFF* tiff, const Source& source, const Layout& layout,
   Rgba rgba(tiff);
   source.require(rgba.width == layout.width && rgba.height == layout.height);
   GreyImage image(static_cast<int>(layout.height), static_cast<int>(layout.width));
-  const auto most_rows =
+  const auto max_rows =
       static_cast<std::uint32_t>(std::min<std::uint64_t>(piece_height, layout.height));
-  std::vector<std::uint32_t> raster(std::size_t{layout.width} * most_rows);
-  for (std::uint32_t y = 0; y < layout.height; y += most_rows) {
+  std::vector<std::uint32_t> raster(std::size_t{layout.width} * max_rows);
+  for (std::uint32_t y = 0; y < layout.height; y += max_rows) {
     rgba.row_offset = static_cast<int>(y);
-    const std::uint32_t rows = std::min(most_rows, layout.height - y);
+    const std::uint32_t rows = std::min(max_rows, layout.height - y);
     source.require(TIFFRGBAImageGet(&rgba, raster.data(), layout.width, rows) == 1);
     const std::size_t first = std::size_t{y} * layout.width;
     for (std::size_t i = 0; i < std::size_t{rows} * layout.width; ++i) {
@@ -414,10 +414,10 @@ GreyImage read_samples(TIFF* tiff, const Source& source, const Layout& layout, c
 /// no-data value, which programs write with six digits or more.
 template <typename Real>
 void refuse_gaps(std::span<const Real> heights, std::optional<double> gap) {
-  constexpr double kLargest = 1e30;
+  constexpr double kMaxValue = 1e30;
   const double slack = gap ? 1e-6 * std::abs(*gap) : 0.0;
   const auto is_gap = [&](double h) {
-    return !(std::abs(h) <= kLargest) || (gap && std::abs(h - *gap) <= slack);
+    return !(std::abs(h) <= kMaxValue) || (gap && std::abs(h - *gap) <= slack);
   };
   const auto first = std::ranges::find_if(heights, is_gap);
   if (first == heights.end()) return;

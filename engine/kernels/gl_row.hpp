@@ -18,7 +18,7 @@ namespace touchtrial::engine {
 
 /// Rows y - reach .. y + reach of a tile of an image for one y at a time, as 16-bit integers, with
 /// `reach` samples more at both ends, mirrored where the image ends. Converts every row once, and
-/// needs memory for (2 * reach + 1) rows, whatever the height. Keeps a reference to the image. Not
+/// needs memory for (2 * reach + 1) rows, for any height. Keeps a reference to the image. Not
 /// thread-safe.
 class ExtendedRows {
  public:

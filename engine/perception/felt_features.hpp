@@ -8,7 +8,7 @@ namespace touchtrial::engine {
 
 /// Octaves of wavelength on the plane, longest first: 16 to 8 mm, 8 to 4, 4 to 2, 2 to 1, 1 to 0.5.
 inline constexpr int kFeltBands = 5;
-inline constexpr double kLongestFeltMm = 16.0;
+inline constexpr double kMaxFeltMm = 16.0;
 /// Directions of lateral force: 0, 45, 90 and 135 degrees from the plane's x towards its y.
 inline constexpr int kFeltDirections = 4;
 /// Parts of the plane, three by three, row by row from the top left.

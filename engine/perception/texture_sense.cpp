@@ -17,7 +17,7 @@ constexpr int kWindow = kSenseWindow;
 constexpr int kHop = kWindow / 2;
 constexpr int kBins = kSenseBins;  // above the mean; the last is half the sample rate
 constexpr double kSettleS = 0.5;
-constexpr double kSlowestMmS = 20.0;
+constexpr double kMinSpeedMmS = 20.0;
 constexpr int kMinContacts = kWindow * 3 / 4;
 
 using Samples = std::array<float, kWindow>;
@@ -151,7 +151,7 @@ void TextureSense::State::end_half() noexcept {
   if (filled == kWindow) {
     const double speed_mm_s = (earlier.path_mm + current.path_mm) * options.rate_hz / kWindow;
     const int contacts = earlier.contacts + current.contacts;
-    if (contacts >= kMinContacts && speed_mm_s >= kSlowestMmS) {
+    if (contacts >= kMinContacts && speed_mm_s >= kMinSpeedMmS) {
       add_window(speed_mm_s, earlier.end_mm);
     }
     for (Samples* samples : {&x, &y, &z}) {
@@ -200,18 +200,19 @@ void TextureSense::State::add_window(double speed_mm_s, Vec3 middle_mm) noexcept
     zz.add(k, weights[k] * (kScale * pz[k]));
     xy.add(k, weights[k] * (kScale * pxy[k]));
   }
-  const double longest = speed_mm_s * kWindow / options.rate_hz / kLongestFeltMm;  // in bins
+  const double max_wavelength = speed_mm_s * kWindow / options.rate_hz / kMaxFeltMm;  // in bins
   for (int band = 0; band < kFeltBands; ++band) {
-    const double low = std::ldexp(longest, band);
+    const double low = std::ldexp(max_wavelength, band);
     power.lateral[band] += xx.between(low, 2.0 * low) + yy.between(low, 2.0 * low);
     power.normal[band] += zz.between(low, 2.0 * low);
   }
-  const double shortest = std::ldexp(longest, kFeltBands);
-  power.xx += xx.between(longest, shortest);
-  power.yy += yy.between(longest, shortest);
-  power.xy += xy.between(longest, shortest);
+  const double min_wavelength = std::ldexp(max_wavelength, kFeltBands);
+  power.xx += xx.between(max_wavelength, min_wavelength);
+  power.yy += yy.between(max_wavelength, min_wavelength);
+  power.xy += xy.between(max_wavelength, min_wavelength);
   PartPower& part = power.parts[part_at(middle_mm, options.plane)];
-  part.lateral += xx.between(longest, shortest) + yy.between(longest, shortest);
+  part.lateral +=
+      xx.between(max_wavelength, min_wavelength) + yy.between(max_wavelength, min_wavelength);
   ++part.windows;
   ++power.windows;
 }
@@ -256,9 +257,9 @@ FeltFeatures TextureSense::features() const noexcept {
   const FeltPower& p = state_->power;
   const double share = p.windows > 0 ? 1.0 / p.windows : 0.0;
   const SenseOptions& options = state_->options;
-  const double least = options.curve ? kNoPower : options.threshold_n * options.threshold_n;
-  const auto intensity = [least](double mean_power) {
-    return 0.5 * std::log(std::max(0.0, mean_power) + least);
+  const double min_power = options.curve ? kNoPower : options.threshold_n * options.threshold_n;
+  const auto intensity = [min_power](double mean_power) {
+    return 0.5 * std::log(std::max(0.0, mean_power) + min_power);
   };
   FeltFeatures features{};
   for (int band = 0; band < kFeltBands; ++band) {

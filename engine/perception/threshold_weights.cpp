@@ -13,7 +13,7 @@ namespace touchtrial::engine {
 namespace {
 
 constexpr double kLowestHz = 10.0;
-constexpr double kHighestShare = 0.4;  ///< of the rate
+constexpr double kMaxRateShare = 0.4;  ///< of the rate
 constexpr int kReach = 6;              ///< bins to each side over which a sine's power spreads
 constexpr int kToneSteps = 4;          ///< tones to a bin
 constexpr int kRounds = 200;
@@ -63,7 +63,7 @@ std::vector<double> weights_for(ThresholdCurve curve, int window, double rate_hz
   const double bin_hz = rate_hz / window;
   const int bins = window / 2;
   std::vector<Tone> tones;
-  for (double place = kLowestHz / bin_hz; place * bin_hz < kHighestShare * rate_hz;
+  for (double place = kLowestHz / bin_hz; place * bin_hz < kMaxRateShare * rate_hz;
        place += 1.0 / kToneSteps) {
     tones.push_back(tone_at(curve, place, bin_hz, bins));
   }
@@ -98,10 +98,10 @@ std::vector<double> weights_for(ThresholdCurve curve, int window, double rate_hz
 }  // namespace
 
 const std::vector<double>& threshold_weights(ThresholdCurve curve, int window, double rate_hz) {
-  constexpr int kShortest = 64;
-  constexpr int kLongest = 1 << 16;
-  constexpr double kSlowestHz = 100.0;
-  if (window < kShortest || window > kLongest || window % 2 != 0 || !(rate_hz >= kSlowestHz) ||
+  constexpr int kMinWindow = 64;
+  constexpr int kMaxWindow = 1 << 16;
+  constexpr double kMinRateHz = 100.0;
+  if (window < kMinWindow || window > kMaxWindow || window % 2 != 0 || !(rate_hz >= kMinRateHz) ||
       !std::isfinite(rate_hz)) {
     throw std::invalid_argument("threshold_weights: window or rate is out of range");
   }

@@ -22,7 +22,7 @@ constexpr int kSubpixelBits = 4;
 /// The length of all but the strongest 5 % of the arrows is at most this many pixels of the
 /// texture, so that neighbours in a row do not touch.
 constexpr double kLongArrow_px = 0.95;
-constexpr double kShortestArrow_px = 0.06;
+constexpr double kMinArrow_px = 0.06;
 
 const cv::Scalar kWhite(255, 255, 255);
 const cv::Scalar kArrowColour(0, 60, 230);  // blue, green, red
@@ -86,7 +86,7 @@ void draw_arrows(cv::Mat& canvas, const ForceField<double>& force, const ArrowPa
     for (int x = 0; x < patch.width; ++x) {
       const double dx = force.x.at(patch.y + y, patch.x + x) / patch.force_of_unit_arrow;
       const double dy = force.y.at(patch.y + y, patch.x + x) / patch.force_of_unit_arrow;
-      if (std::hypot(dx, dy) < kShortestArrow_px) continue;
+      if (std::hypot(dx, dy) < kMinArrow_px) continue;
       cv::arrowedLine(canvas, subpixel(x + 0.5 - dx / 2, y + 0.5 - dy / 2, scale),
                       subpixel(x + 0.5 + dx / 2, y + 0.5 + dy / 2, scale), kArrowColour, 2,
                       cv::LINE_AA, kSubpixelBits, 0.3);
@@ -165,13 +165,13 @@ ArrowPatch strongest_patch(const ForceField<double>& force) {
   const cv::Mat sums = summed_squares(force);
   ArrowPatch best{(force.x.height() - height) / 2, (force.x.width() - width) / 2, height, width,
                   0.0};
-  double most = 0.0;
+  double max_sum = 0.0;
   for (int y = 0; y + height <= force.x.height(); ++y) {
     for (int x = 0; x + width <= force.x.width(); ++x) {
       const ArrowPatch patch{y, x, height, width, 0.0};
       const double sum = sum_in(sums, patch);
-      if (sum <= most) continue;
-      most = sum;
+      if (sum <= max_sum) continue;
+      max_sum = sum;
       best = patch;
     }
   }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kPole = -0.26794919243112270647;  // sqrt 3 - 2
 constexpr double kGain = 6.0;                      // (1 - pole) (1 - 1 / pole)
-constexpr double kFarthestPx = 1 << 29;            // whole pixels still fit an int
+constexpr double kMaxPx = 1 << 29;                 // whole pixels still fit an int
 constexpr double kNegligible = 1e-20;              // of a power of the pole, relative to 1
 
 /// A row of a plane, or all its columns, which are filtered together.
@@ -86,8 +86,8 @@ PatchSums spline_at(std::span<const float> coefficients, int height_px, int widt
   const SumOfPatch sum = spline_sum();
   const Patches patches(coefficients, height_px, width_px, sum);
   if (patches.has({x_px, y_px})) return patches.at({x_px, y_px});
-  const double x = std::clamp(x_px, -kFarthestPx, kFarthestPx);
-  const double y = std::clamp(y_px, -kFarthestPx, kFarthestPx);
+  const double x = std::clamp(x_px, -kMaxPx, kMaxPx);
+  const double y = std::clamp(y_px, -kMaxPx, kMaxPx);
   const double left = std::floor(x);
   const double top = std::floor(y);
   const int column = static_cast<int>(left) - 1;

@@ -167,11 +167,11 @@ double explicit_factor(double gain, std::span<const double> rms, Equalise equali
 
 double typical_stiffness(std::span<const std::vector<float>> pools) {
   const double typical = percentile(pools, 0.99);
-  float largest = 0.0F;
+  float max = 0.0F;
   for (const std::vector<float>& pool : pools) {
-    for (const float stiffness : pool) largest = std::max(largest, stiffness);
+    for (const float stiffness : pool) max = std::max(max, stiffness);
   }
-  return typical > kMinShareOfMaximum * largest ? typical : largest;
+  return typical > kMinShareOfMaximum * max ? typical : max;
 }
 
 double percentile(std::span<const std::vector<float>> pools, double share) {

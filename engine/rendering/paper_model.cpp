@@ -114,10 +114,10 @@ double height_at(const FieldView& field, const Place& at) noexcept {
 /// Height and force at any point, from the definition at the four pixels round it.
 [[gnu::noinline]] PatchSums sums_anywhere(const FieldView& field, Vec2 px) noexcept {
   const Place at = place_in(field.geometry, px);
-  const bool is_usual = field.neighbourhood == 3;
+  const bool is_default = field.neighbourhood == 3;
   const Vec2 force = mixed(at, [&](int y, int x) {
-    return is_usual ? force_at_any_pixel(field.slopes().data(), field.geometry, y, x)
-                    : force_at_pixel(field, y, x);
+    return is_default ? force_at_any_pixel(field.slopes().data(), field.geometry, y, x)
+                      : force_at_pixel(field, y, x);
   });
   return {height_at(field, at), force.x, force.y};
 }
@@ -222,9 +222,9 @@ struct Channel {
 /// How the ramp adds to the lateral force's stiffness. Ramps too short to be distinguished from a
 /// step count as this long, which keeps the numbers finite.
 RampSlopes ramp_slopes(const RenderingOptions& options, double normal_n) {
-  constexpr double kShortestN = 1e-9;
+  constexpr double kMinRampN = 1e-9;
   if (options.touchdown_ramp_n == 0.0) return {};
-  const double ramp_n = std::max(options.touchdown_ramp_n, kShortestN);
+  const double ramp_n = std::max(options.touchdown_ramp_n, kMinRampN);
   return {normal_n / ramp_n, options.stiffness_n_per_mm / ramp_n};
 }
 
@@ -319,11 +319,11 @@ Vec3 PaperModel::force_n(const Vec3& position, const Vec3& velocity_mm_s) const 
   double elastic_n = -stiffness_n_per_mm_ * position_mm.z;
   PatchSums texture;
   const Vec2 px = field_.geometry.to_px(position_mm.x, position_mm.y);
-  const bool is_usual = patches_.has(px);
-  if (is_usual || (field_.geometry.contains(position_mm.x, position_mm.y) && !field_.empty())) {
+  const bool is_default = patches_.has(px);
+  if (is_default || (field_.geometry.contains(position_mm.x, position_mm.y) && !field_.empty())) {
     if (is_out_of_reach(elastic_n)) return {};
-    texture = is_usual ? patches_.at(px) : sums_anywhere(field_, px);
-    if (is_usual && !field_.other_slopes.empty()) {
+    texture = is_default ? patches_.at(px) : sums_anywhere(field_, px);
+    if (is_default && !field_.other_slopes.empty()) {
       texture.value = height_at(field_, place_in(field_.geometry, px));
     }
     elastic_n += gains_.normal_n * (texture.value - reference_height_);

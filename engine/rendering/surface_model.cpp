@@ -175,15 +175,15 @@ class Surfaces {
   std::vector<double> factor_;
 };
 
-/// The alpha, at most `most`, at which the lateral force is as stiff as the budget. Stiffness is
+/// The alpha, at most `limit`, at which the lateral force is as stiff as the budget. Stiffness is
 /// nearly a power of alpha, with an exponent of 1 for small heights and up to 2 for large ones: a
 /// secant method on the logarithms, within a bracket, finds alpha in a few iterations.
-double lateral_limit(const Surfaces& surfaces, double budget, double most) {
+double lateral_limit(const Surfaces& surfaces, double budget, double limit) {
   const double linear = surfaces.linear_stiffness();
-  if (linear == 0.0) return most;
-  if (most < kInfinity && surfaces.lateral_stiffness(most) <= budget) return most;
+  if (linear == 0.0) return limit;
+  if (limit < kInfinity && surfaces.lateral_stiffness(limit) <= budget) return limit;
   double low = 0.0;
-  double high = most;
+  double high = limit;
   double alpha = budget / linear;
   double earlier = 0.0;
   double earlier_short_of = 0.0;

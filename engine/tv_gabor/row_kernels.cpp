@@ -202,7 +202,7 @@ void clipped_row(const Real* x, const Real* y, std::size_t width, Real scale, Re
   });
 }
 
-/// Samples as double, whatever they are stored as.
+/// Samples as double, regardless of how they are stored.
 template <class D>
 HWY_INLINE hn::Vec<D> load_wide(D d, const float* from) {
   return hn::PromoteTo(d, hn::LoadU(hn::Rebind<float, D>(), from));

@@ -98,15 +98,15 @@ GaborComponent strongest_component(const GreyImage& image) {
   load_windowed(image, fft.plane());
   fft.forward();
   std::optional<GaborComponent> strongest;
-  double most = -1.0;
+  double max_power = -1.0;
   std::size_t i = 0;
   for (int y = 0; y < height; ++y) {
     const double frequency_y = static_cast<double>(2 * y <= height ? y : y - height) / height;
     for (int x = 0; x <= width / 2; ++x, ++i) {
       const GaborComponent component = component_at(static_cast<double>(x) / width, frequency_y);
       const double power = std::norm(fft.spectrum()[i]);
-      if (!in_range(component) || power <= most) continue;
-      most = power;
+      if (!in_range(component) || power <= max_power) continue;
+      max_power = power;
       strongest = component;
     }
   }

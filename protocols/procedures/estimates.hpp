@@ -44,6 +44,18 @@ struct Threshold {
                                            std::span<const TrackTrial> trials,
                                            std::size_t skipped = 2);
 
+// The observers over whom estimate_threshold averages likelihoods. A width is that of the function,
+// in dB, from F = .05 to .95.
+inline constexpr double kMinWidth_db = 2.0;
+inline constexpr double kMaxWidth_db = 60.0;
+inline constexpr double kMaxLapse = 0.5;    ///< of anybody
+inline constexpr double kWidthPower = 0.5;  ///< widths have the density width^this
+inline constexpr double kAnyLapse = 3.0;    ///< the lapse rate is Beta(1, this), up to kMaxLapse
+// Typical observers.
+inline constexpr double kTypicalWidth_db = 10.0;  ///< median
+inline constexpr double kTypicalSpread = 0.8;     ///< SD of the natural logarithm of the width
+inline constexpr double kTypicalLapse = 10.0;  ///< the lapse rate is Beta(1, this), up to kMaxLapse
+
 /// The threshold of a track, and the observer who fits its answers.
 struct ThresholdEstimate {
   Threshold threshold;

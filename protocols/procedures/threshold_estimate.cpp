@@ -20,14 +20,6 @@ constexpr std::size_t kLapses = 15;
 constexpr std::size_t kBlocks = 120;  ///< of the threshold's cells
 constexpr std::size_t kCells = 5;     ///< of a block
 
-constexpr double kMinWidth_db = 2.0;
-constexpr double kMaxWidth_db = 60.0;
-constexpr double kMaxLapse = 0.5;
-constexpr double kWideShare = 1.5;  ///< widths of all observers have the density width^(this - 1)
-constexpr double kAnyLapse = 3.0;   ///< their lapse rate is Beta(1, this) up to kMaxLapse
-constexpr double kUsualWidth_db = 10.0;  ///< median of typical observers
-constexpr double kUsualSpread = 0.8;     ///< SD of the logarithm of their width
-constexpr double kUsualLapse = 10.0;     ///< their lapse rate is Beta(1, this), up to kMaxLapse
 constexpr double kMinRange_db = 20.0;
 
 /// Nodes and weights of a quadrature.
@@ -116,14 +108,15 @@ class AveragedLikelihood {
     std::stable_sort(counts_.begin(), counts_.end(),
                      [](const LevelCounts& a, const LevelCounts& b) { return a.n > b.n; });
     for (std::size_t i = 0; i < kWidths; ++i) {
-      const double off = (log_widths_.values[i] - std::log(kUsualWidth_db)) / kUsualSpread;
-      any_width_[i] = log_widths_.weights[i] * std::exp(kWideShare * log_widths_.values[i]);
-      usual_width_[i] = log_widths_.weights[i] * std::exp(-0.5 * off * off);
+      const double off = (log_widths_.values[i] - std::log(kTypicalWidth_db)) / kTypicalSpread;
+      any_width_[i] =
+          log_widths_.weights[i] * std::exp((1.0 + kWidthPower) * log_widths_.values[i]);
+      typical_width_[i] = log_widths_.weights[i] * std::exp(-0.5 * off * off);
     }
     for (std::size_t i = 0; i < kLapses; ++i) {
       const double attends = 1.0 - lapses_.values[i];
       any_lapse_[i] = lapses_.weights[i] * std::pow(attends, kAnyLapse - 1.0);
-      usual_lapse_[i] = lapses_.weights[i] * std::pow(attends, kUsualLapse - 1.0);
+      typical_lapse_[i] = lapses_.weights[i] * std::pow(attends, kTypicalLapse - 1.0);
     }
   }
 
@@ -134,18 +127,18 @@ class AveragedLikelihood {
       const std::array<double, kLapses> likelihoods =
           likelihoods_of(threshold, std::exp(log_widths_.values[w]), min_likelihood);
       double any = 0.0;
-      double usual = 0.0;
+      double typical = 0.0;
       double lapse = 0.0;
       for (std::size_t i = 0; i < kLapses; ++i) {
         any += any_lapse_[i] * likelihoods[i];
-        usual += usual_lapse_[i] * likelihoods[i];
-        lapse += usual_lapse_[i] * likelihoods[i] * lapses_.values[i];
+        typical += typical_lapse_[i] * likelihoods[i];
+        lapse += typical_lapse_[i] * likelihoods[i] * lapses_.values[i];
       }
       sums.likelihood += any_width_[w] * any;
-      sums.attentive += any_width_[w] * usual;
-      sums.weight += usual_width_[w] * usual;
-      sums.log_width += usual_width_[w] * usual * log_widths_.values[w];
-      sums.lapse += usual_width_[w] * lapse;
+      sums.attentive += any_width_[w] * typical;
+      sums.weight += typical_width_[w] * typical;
+      sums.log_width += typical_width_[w] * typical * log_widths_.values[w];
+      sums.lapse += typical_width_[w] * lapse;
     }
     return sums;
   }
@@ -187,9 +180,9 @@ class AveragedLikelihood {
   Nodes<kWidths> log_widths_;
   Nodes<kLapses> lapses_;
   std::array<double, kWidths> any_width_{};
-  std::array<double, kWidths> usual_width_{};
+  std::array<double, kWidths> typical_width_{};
   std::array<double, kLapses> any_lapse_{};
-  std::array<double, kLapses> usual_lapse_{};
+  std::array<double, kLapses> typical_lapse_{};
 };
 
 struct Cell {
@@ -282,7 +275,7 @@ Ends ends_of(const Profile& profile, Likelihood of, double loss) {
 
 /// The most likely threshold of typical observers between two ends, by a parabola through the
 /// logarithms of three cells, and their mean width and lapse rate.
-Observer usual_observer(const Profile& profile, const Ends& ends, Shape shape, double guess) {
+Observer typical_observer(const Profile& profile, const Ends& ends, Shape shape, double guess) {
   double weight = 0.0;
   double log_width = 0.0;
   double lapse = 0.0;
@@ -381,7 +374,7 @@ ThresholdEstimate estimate_threshold(std::span<const LevelCounts> counts,
       profile_of(AveragedLikelihood(counts, shape, guess), levels, kNegligible * std::exp(-loss));
   const Ends ends = ends_of(profile, &AtThreshold::likelihood, loss);
   ThresholdEstimate estimate;
-  estimate.observer = usual_observer(profile, ends, shape, guess);
+  estimate.observer = typical_observer(profile, ends, shape, guess);
   const double likeliest = estimate.observer.threshold;
   if (levels.front() < likeliest && likeliest < levels.back() && is_rise(profile, loss)) {
     estimate.threshold = numbered(likeliest, ends);

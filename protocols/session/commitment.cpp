@@ -10,6 +10,8 @@
 
 #include <algorithm>
 
+#include <nlohmann/json.hpp>
+
 namespace touchtrial::session {
 namespace {
 
@@ -85,6 +87,16 @@ std::string validity_of(const study::ValidityRule& rule) {
   return "A trial is valid if all of these conditions hold:\n\n" + lines_of(study::fields_of(rule));
 }
 
+/// The settings as every database has them in clear, without the stimuli's codes.
+std::string settings_in_clear(const study::StudyCodes& key) {
+  const auto settings = nlohmann::json::parse(key.configuration);
+  std::string lines;
+  for (const auto& [name, value] : settings.items()) {
+    if (name != "stimuli") lines += line(name, "`" + value.dump() + "`");
+  }
+  return lines;
+}
+
 std::string hashes_of(const study::StudyCodes& key, const engine::Pack& pack) {
   return line("seal", "`" + to_hex(key.seal) + "`") +
          line("pack", "`" + to_hex(pack.digest()) + "`") +
@@ -157,7 +169,7 @@ std::string registration_page(const study::StudyCodes& key, const engine::Pack& 
          section("Design", design_lines(study)) +
          section("Extraction methods", lines_of(study::fields_of_methods(study))) +
          section("Rendering", lines_of(study::fields_of_rendering(study))) +
-         section("Commitment", hashes_of(key, pack));
+         section("Settings", settings_in_clear(key)) + section("Commitment", hashes_of(key, pack));
 }
 
 std::vector<std::string> missing_statements(const study::Registration& registration) {

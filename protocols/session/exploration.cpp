@@ -6,8 +6,6 @@
 namespace touchtrial::session {
 namespace {
 
-constexpr std::chrono::milliseconds kFade{100};
-
 /// Adds samples to the trace, and lets the participant feel them.
 class TrialSink final : public device::SampleSink {
  public:
@@ -31,7 +29,7 @@ device::ServoOptions trial_servo_options(const study::Study& study, double rate_
   device::ServoOptions options;
   options.rate_hz = rate_hz;
   options.limit_ticks = std::llround(study.trials.explore_limit_s * rate_hz);
-  options.fade_ticks = std::llround(std::chrono::duration<double>(kFade).count() * rate_hz);
+  options.fade_ticks = std::llround(std::chrono::duration<double>(study::kFade).count() * rate_hz);
   options.limits.max_force_n = study.rendering.max_force_n;
   options.limits = device::stricter_of(options.limits, lab);
   return options;

@@ -13,7 +13,7 @@ namespace touchtrial::session {
 
 /// Averages the hand's force normal to the plane and its speed along the plane over about half a
 /// second, and compares both with the instructions. Over that time the mean force equals the hand's
-/// push, whatever the relief; speeds are measured over steps of 50 ms, in which a texture hardly
+/// push, for any relief; speeds are measured over steps of 50 ms, in which a texture hardly
 /// moves the hand. Only the levels are public, so that they reveal no more than a look at the hand.
 /// Source: docs/decisions/0054-what-a-trial-shows.md.
 class HandMeter {

@@ -10,9 +10,6 @@
 namespace touchtrial::session {
 namespace {
 
-// The simulated stroke has the speed that the instructions ask for.
-constexpr double kPlayedMmS = 100.0;
-constexpr double kPlayedLoadN = 0.7;
 constexpr double kShareOfPlane = 0.35;  ///< radius re the shorter side
 
 /// The force of one of several freely explored planes. It starts once the hand has been above the
@@ -70,11 +67,11 @@ Vec3 IntervalForce::force_n(const device::DeviceSample& sample) noexcept {
 
 Vec3 PlayedForce::force_n(const device::DeviceSample& /*sample*/) noexcept {
   const double radius_mm = kShareOfPlane * std::min(plane_.width_mm(), plane_.height_mm());
-  const double turn = kPlayedMmS / radius_mm * static_cast<double>(tick_++) / rate_hz_;
+  const double turn = study::kPlayedMmS / radius_mm * static_cast<double>(tick_++) / rate_hz_;
   if (left_ > 0) --left_;
   const Vec3 at_mm{plane_.width_mm() / 2.0 + radius_mm * std::cos(turn),
                    plane_.height_mm() / 2.0 + radius_mm * std::sin(turn),
-                   -kPlayedLoadN / stiffness_n_per_mm_};
+                   -study::kPlayedLoadN / stiffness_n_per_mm_};
   const Vec3 whole_n = model_.force_n(at_mm, {}, touch_);
   return {whole_n.x, whole_n.y, 0.0};
 }

@@ -34,7 +34,7 @@ class IntervalForce final : public device::ForceSource {
   bool has_lifted_ = false;
 };
 
-/// The lateral forces of a simulated circular stroke, whatever the device's position. It reproduces
+/// The lateral forces of a simulated circular stroke, for any position of the device. It reproduces
 /// the sound of the motors with the hand off (study::Played), and stops by itself.
 class PlayedForce final : public device::ForceSource {
  public:

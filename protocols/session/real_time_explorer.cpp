@@ -30,8 +30,8 @@ constexpr std::chrono::milliseconds kPollInterval{5};
 constexpr std::size_t kMaxRing = std::size_t{1} << 16U;
 
 // The writer polls, because the servo must not spend time on waking it.
-constexpr std::chrono::milliseconds kBetweenDrains{2};
-constexpr std::size_t kAtOnce = 256;
+constexpr std::chrono::milliseconds kDrainInterval{2};
+constexpr std::size_t kBatchSize = 256;
 
 /// A thread that drains the servo's ring while the servo fills it, and passes the samples to the
 /// trace and the participant. Constructed and destroyed on the same thread.
@@ -51,7 +51,7 @@ class TraceWriter {
  private:
   void write() noexcept {
     while (!finishing_.load(std::memory_order_acquire)) {
-      if (!drain_ring()) std::this_thread::sleep_for(kBetweenDrains);
+      if (!drain_ring()) std::this_thread::sleep_for(kDrainInterval);
     }
     while (drain_ring()) {
     }
@@ -59,7 +59,7 @@ class TraceWriter {
 
   /// \return whether there was a sample
   bool drain_ring() noexcept {
-    std::array<device::ServoSample, kAtOnce> samples;
+    std::array<device::ServoSample, kBatchSize> samples;
     const std::size_t count = ring_.pop(samples);
     for (const device::ServoSample& sample : std::span(samples).first(count)) {
       builder_.add(sample);
@@ -89,13 +89,13 @@ record::ServoHealth health_of(const device::ServoReport& report, std::int64_t lo
 /// The sealed part of an interruption: the faults by name, and the ticks before them.
 record::InterruptionDetail detail_of(const device::ServoReport& report,
                                      const std::vector<device::FlightTick>& ticks) {
-  double largest = 0.0;
-  for (const device::FlightTick& tick : ticks) largest = std::max(largest, norm(tick.sent_n));
+  double max_n = 0.0;
+  for (const device::FlightTick& tick : ticks) max_n = std::max(max_n, norm(tick.sent_n));
   return {.safety_fault = std::string(device::name_of(report.fault)),
           .device_fault = std::string(device::name_of(report.device_fault)),
           .ticks = static_cast<std::int64_t>(ticks.size()),
           .flight = device::flight_csv(ticks),
-          .largest_force_n = largest};
+          .largest_force_n = max_n};
 }
 
 }  // namespace
@@ -106,11 +106,11 @@ struct RealTimeExplorer::Impl {
   [[nodiscard]] std::unique_ptr<device::ServoClock> make_clock() const {
     if (options.clock) return options.clock();
     return std::make_unique<device::PacedClock>(
-        device::PacedClock::usual_spin(thread.scheduling().policy));
+        device::PacedClock::default_spin(thread.scheduling().policy));
   }
 
   /// Allocates the servo's memory before it runs.
-  void make_room(const device::ServoOptions& servo) {
+  void allocate(const device::ServoOptions& servo) {
     const std::size_t wanted = std::clamp(max_samples(servo), std::size_t{1}, kMaxRing);
     if (!ring || ring->capacity() < wanted) ring.emplace(wanted);
     if (!recorder || recorder_rate_hz != servo.rate_hz) {
@@ -192,7 +192,7 @@ Exploration RealTimeExplorer::explore(device::ForceSource& force, const PlaneGeo
                                       Participant& participant, const device::ServoOptions& options,
                                       record::Trace& trace) {
   Impl& m = *impl_;
-  m.make_room(options);
+  m.allocate(options);
   device::HapticDevice& device = participant.begin_exploring(plane);
   TraceBuilder builder(trace, options.rate_hz, max_samples(options));
   device::RingSink sink(*m.ring);

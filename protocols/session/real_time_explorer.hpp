@@ -33,7 +33,7 @@ class RealTimeExplorer final : public Explorer {
   ~RealTimeExplorer() override;
 
   [[nodiscard]] bool in_real_time() const noexcept override { return true; }
-  /// \throws whatever `participant.exploring` throws; the force is zero by then
+  /// \throws what `participant.exploring` throws; the force is zero by then
   [[nodiscard]] Exploration explore(device::ForceSource& force, const PlaneGeometry& plane,
                                     Participant& participant, const device::ServoOptions& options,
                                     record::Trace& trace) override;

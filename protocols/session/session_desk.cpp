@@ -9,7 +9,7 @@
 namespace touchtrial::session {
 namespace {
 
-constexpr std::chrono::milliseconds kBetweenShows{250};
+constexpr std::chrono::milliseconds kShowInterval{250};
 /// Sleep between two polls for a reply, so as not to busy-wait.
 constexpr std::chrono::milliseconds kPollPause{2};
 
@@ -114,7 +114,7 @@ void SessionDesk::show() {
 }
 
 void SessionDesk::show_now_and_then() {
-  if (std::chrono::steady_clock::now() - shown_ >= kBetweenShows) show();
+  if (std::chrono::steady_clock::now() - shown_ >= kShowInterval) show();
 }
 
 void SessionDesk::sleep_briefly() const {

@@ -16,9 +16,9 @@ using Time = SessionClock::Time;
 
 // Durations in virtual time only.
 constexpr std::chrono::seconds kBreak{60};
-constexpr std::chrono::seconds kBetweenTrials{2};
+constexpr std::chrono::seconds kTrialGap{2};
 /// Minimum remaining time for which the participant may return to the plane.
-constexpr double kMinAgainS = 0.5;
+constexpr double kMinReturnS = 0.5;
 
 /// Runs the trials of a session one after the other. In each presentation the participant gets
 /// ready, explores, and answers; the session records it.
@@ -207,7 +207,7 @@ AnswerStep TrialRun::question() const {
           .of = of_,
           .practice = false,
           .time_is_up = time_is_up_,
-          .may_explore_again = is_free && ask_.planes == 1 && !time_is_up_ && left_s >= kMinAgainS,
+          .may_explore_again = is_free && ask_.planes == 1 && !time_is_up_ && left_s >= kMinReturnS,
           .confidence_levels = ask_.confidence_levels,
           .question = ask_.question,
           .picture = study::picture_of(parts_.key.study, trial_),
@@ -248,7 +248,7 @@ void run_trials(SessionDesk& desk, SessionTally& tally) {
   const int max_interruptions = session.presentations_left();
   while (desk.is_running() && session.phase() == SessionPhase::ready) {
     if (!desk.await_device()) continue;
-    desk.parts().clock.pass(kBetweenTrials);
+    desk.parts().clock.pass(kTrialGap);
     if (session.break_due()) take_break(desk);
     if (!desk.is_running() || session.phase() != SessionPhase::ready) continue;
     trials.run();

@@ -74,7 +74,7 @@ struct SessionParts {
 /// requests the end of the program (StopOnSignals::asked). No force is on when this returns or
 /// throws.
 /// \throws StoreError if an event could not be stored
-/// \throws whatever participant, experimenter and supply throw
+/// \throws what participant, experimenter and supply throw
 SessionTally run_session(Session& session, const SessionParts& parts);
 
 /// Runs a session in virtual time, which starts at 0.

@@ -23,7 +23,7 @@ struct TrialFindings {
   /// Whether duration, path along the plane, mean normal force and mean speed were within the
   /// limits of the rule and the instructions, while the hand was at most kLandingHeightMm above the
   /// plane. None depends on the texture unless the texture impedes the hand: over a second, the
-  /// mean force equals the hand's push, whatever the relief, the lateral force or the force limit.
+  /// mean force equals the hand's push, for any relief, the lateral force or the force limit.
   /// Stored unencrypted. Source: docs/decisions/0054-what-a-trial-shows.md.
   record::HandWindows hand{};
   bool saturated = false;  ///< whether the share of saturated samples exceeds the rule's; sealed
@@ -65,7 +65,7 @@ class TrialTrace {
   ///   duration differs between textures.
   void pack(const Session& session, bool in_background);
   /// Waits for `pack` and returns its result. Call once for each `pack`.
-  /// \throws whatever packing threw
+  /// \throws what packing threw
   [[nodiscard]] JudgedEvidence take_evidence() { return packing_.get(); }
 
  private:

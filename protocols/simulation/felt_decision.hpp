@@ -48,7 +48,7 @@ class Individual {
   [[nodiscard]] const std::optional<FeltFloor>& floor() const noexcept { return floor_; }
   /// Probability of a random answer, 0 .. 1.
   [[nodiscard]] double lapse() const noexcept { return lapse_; }
-  /// Bias towards each picture, log odds, whatever is felt.
+  /// Bias towards each picture, log odds, independent of what is felt.
   /// \param labels  of the pictures, by position
   [[nodiscard]] std::vector<double> bias(const std::vector<std::string>& labels) const;
 

@@ -49,7 +49,7 @@ class PromptParticipant : public session::Participant {
     }
     if (std::holds_alternative<session::BreakStep>(step)) rest();
     if (const auto* const next = std::get_if<session::IntervalStep>(&step)) {
-      reply.took = kBetweenIntervals;
+      reply.took = kIntervalGap;
       interval(*next);
     }
     return reply;
@@ -65,7 +65,7 @@ class PromptParticipant : public session::Participant {
   virtual void interval(const session::IntervalStep& /*next*/) {}
 
  private:
-  static constexpr std::chrono::seconds kBetweenIntervals{1};
+  static constexpr std::chrono::seconds kIntervalGap{1};
 };
 
 /// A participant who strokes the plane on a new path in each trial and answers from what was felt.

@@ -45,8 +45,8 @@ struct Fatigue {
   friend bool operator==(const Fatigue&, const Fatigue&) = default;
 };
 
-/// An observer who answers by a psychometric function of the level, whatever is felt. It serves to
-/// check procedures and analyses. The shape is that of the study's grid.
+/// An observer who answers by a psychometric function of the level, independent of what is felt. It
+/// serves to check procedures and analyses. The shape is that of the study's grid.
 struct GivenFunction {
   double threshold = 0.0;      ///< median over participants, in units of the level
   double spread = 0.0;         ///< standard deviation of the threshold between participants, >= 0
@@ -62,12 +62,12 @@ struct GivenFunction {
 /// Time from the end of the exploration to the answer: a shifted lognormal, whose median above the
 /// shift falls exponentially with the difference between the two strongest supports.
 struct ThoughtTime {
-  double shift_s = 0.4;     ///< minimum, >= 0
-  double easy_s = 0.8;      ///< median above the shift if one picture clearly has most support, > 0
-  double hard_s = 2.4;      ///< median above the shift if two pictures are equal, >= easy_s
-  double margin = 3.0;      ///< log odds at which the surplus of hard_s has fallen to 1/e, > 0
-  double spread = 0.4;      ///< standard deviation of the logarithm, >= 0
-  double longest_s = 30.0;  ///< maximum, > shift_s
+  double shift_s = 0.4;  ///< minimum, >= 0
+  double easy_s = 0.8;   ///< median above the shift if one picture clearly has most support, > 0
+  double hard_s = 2.4;   ///< median above the shift if two pictures are equal, >= easy_s
+  double margin = 3.0;   ///< log odds at which the surplus of hard_s has fallen to 1/e, > 0
+  double spread = 0.4;   ///< standard deviation of the logarithm, >= 0
+  double max_s = 30.0;   ///< maximum, > shift_s
 
   friend bool operator==(const ThoughtTime&, const ThoughtTime&) = default;
 };

@@ -71,7 +71,7 @@ struct SubjectModel {
   double period_noise_spread = 0.0;
   SerialDependence serial{};
   Fatigue fatigue{};
-  /// Empty: thinking time is uniform from 0.8 to 4 s, whatever is felt.
+  /// Empty: thinking time is uniform from 0.8 to 4 s, independent of what is felt.
   std::optional<ThoughtTime> thought{};
   /// Empty: answers depend on what is felt.
   std::optional<GivenFunction> given_function{};

@@ -37,11 +37,11 @@ void describe_class_bias(ObjectIo& io, ClassBias& bias) {
 
 void describe_bias(ObjectIo& io, SubjectModel& model) {
   io.number("position", model.position_bias, kLogOdds,
-            {.meaning = "preference for the first picture over the last, falling linearly",
+            {.meaning = "preference for the first picture over the last, decreasing linearly",
              .unit = "log odds"});
   io.number("position_spread", model.position_bias_spread, kLogOddsSpread,
             {.meaning = "SD of `position`", .unit = "log odds"});
-  io.list("classes", model.class_bias, {.most = kMaxLabels},
+  io.list("classes", model.class_bias, {.max = kMaxLabels},
           {.meaning = "preference for the pictures of some classes over the others: a list of "
                       "`label`, `log_odds`"},
           [](ValueIo& item, ClassBias& bias) { item.part(bias, describe_class_bias); });
@@ -51,7 +51,7 @@ void describe_bias(ObjectIo& io, SubjectModel& model) {
 
 void describe_pair(ValueIo& io, std::pair<std::string, std::string>& pair) {
   std::vector<std::string> labels = {pair.first, pair.second};
-  io.list(labels, {.fewest = 2, .most = 2},
+  io.list(labels, {.min = 2, .max = 2},
           [](ValueIo& item, std::string& label) { item.text(label, {}); });
   pair = {labels[0], labels[1]};
 }
@@ -79,24 +79,24 @@ void describe_hand(ObjectIo& io, SubjectModel& model) {
 
 void describe_learning(ObjectIo& io, Learning& learning) {
   io.number("factor", learning.factor, {1.0, 10.0},
-            {"on the noise of the first presentation; A = ln(factor) exp(spread · z)"});
+            {"factor on the noise of the first presentation; A = ln(factor) exp(spread · z)"});
   io.number("trials", learning.trials, {1.0, 10'000.0},
-            {"presentations after which A has fallen to A / e; n counts all felt before, also "
-             "lead-ins, catch trials and earlier visits"});
+            {"presentations after which A has fallen to A / e; n counts all presentations so far, "
+             "including lead-ins, catch trials and earlier visits"});
   io.number("forgotten", learning.forgotten, kShare,
-            {"share of n that each visit's end takes away"});
+            {"share of n that is forgotten after each visit"});
   io.number("spread", learning.spread, kSpread, {"spread of A"});
 }
 
 void describe_serial(ObjectIo& io, SerialDependence& serial) {
   constexpr NumberRange kLeaning{-10.0, 10.0};
   io.number("answer", serial.answer, kLeaning,
-            {.meaning = "added to the picture answered in the trial before; above 0 attracts",
+            {.meaning = "added to the picture answered in the previous trial; above 0: repetition",
              .unit = "log odds"});
   io.number("answer_spread", serial.answer_spread, kLogOddsSpread,
             {.meaning = "SD of `answer`", .unit = "log odds"});
   io.number("stimulus", serial.stimulus, kLeaning,
-            {.meaning = "added to the picture of the class presented in the trial before",
+            {.meaning = "added to the picture of the class presented in the previous trial",
              .unit = "log odds"});
   io.number("stimulus_spread", serial.stimulus_spread, kLogOddsSpread,
             {.meaning = "SD of `stimulus`", .unit = "log odds"});
@@ -104,29 +104,28 @@ void describe_serial(ObjectIo& io, SerialDependence& serial) {
 
 void describe_fatigue(ObjectIo& io, Fatigue& fatigue) {
   io.number("noise_per_min", fatigue.noise_per_min, kShare,
-            {"on the log of noise, for each minute t explored since the visit began"});
+            {"added to the log of noise per minute of exploration, t, since the visit began"});
   io.number("lapse_per_min", fatigue.lapse_per_min, {0.0, 10.0},
-            {.meaning = "added to the log odds of a lapse", .unit = "log odds/min"});
-  io.number("recovered", fatigue.recovered, kShare, {"share of t that a break takes away"});
+            {.meaning = "added to the log odds of a lapse, likewise", .unit = "log odds/min"});
+  io.number("recovered", fatigue.recovered, kShare, {"share of t that a break removes"});
 }
 
 void describe_thought(ObjectIo& io, ThoughtTime& thought) {
   io.number("shift_s", thought.shift_s, {0.0, 60.0}, {"nobody is quicker"});
   io.number("easy_s", thought.easy_s, kMedianS,
-            {"median above the shift if no second picture comes near; at most `hard_s`"});
+            {"median above the shift if one picture is clearly best; at most `hard_s`"});
   io.number("hard_s", thought.hard_s, kMedianS,
             {"median above the shift if two pictures are equally good"});
-  io.number(
-      "margin", thought.margin, {0.01, 100.0},
-      {.meaning = "m at which the surplus of `hard_s` has fallen to 1/e", .unit = "log odds"});
-  io.number("spread", thought.spread, kSpread, {"standard deviation of the time's logarithm"});
-  io.number("longest_s", thought.longest_s, {0.1, 600.0},
-            {"nobody is slower; more than `shift_s`"});
+  io.number("margin", thought.margin, {0.01, 100.0},
+            {.meaning = "margin m at which the additional time of `hard_s` has fallen to 1/e",
+             .unit = "log odds"});
+  io.number("spread", thought.spread, kSpread, {"standard deviation of the log time"});
+  io.number("longest_s", thought.max_s, {0.1, 600.0}, {"maximum; more than `shift_s`"});
   io.rule([&thought](const JsonValue& place, const JsonObject& /*object*/) {
     if (thought.hard_s < thought.easy_s) {
       place.refuse("hard_s is less than easy_s; raise hard_s, or lower easy_s");
     }
-    if (thought.longest_s <= thought.shift_s) {
+    if (thought.max_s <= thought.shift_s) {
       place.refuse("longest_s must be greater than shift_s; raise longest_s");
     }
   });
@@ -137,19 +136,19 @@ void describe_given_function(ObjectIo& io, GivenFunction& given) {
             {.meaning = "median over participants, in units of the level", .required = true});
   io.number("spread", given.spread, {0.0, 100.0}, {"SD of the threshold"});
   io.number("standard_step", given.standard_step, {-100.0, 100.0},
-            {"what the threshold of each standard adds to that of the last"});
+            {"threshold of each standard minus that of the previous one"});
   io.number("standard_spread", given.standard_spread, {0.0, 100.0},
-            {"SD, at each standard, of what is a participant's own there"});
+            {"SD of participants' deviations at each standard"});
   io.number("slope", given.slope, {0.0, 1000.0, true},
-            {.meaning = "of the shape of the study's grid", .required = true});
+            {.meaning = "of a function of the shape in the study's grid", .required = true});
   io.number("lapse", given.lapse, {0.0, 0.5, false, true},
             {"probability of a wrong answer at any level"});
 }
 
 void describe_paths(ObjectIo& io, SubjectModel& model) {
   io.number("explore_s", model.explore_s, {0.5, 600.0},
-            {"exploration time of a trial and of a training pass"});
-  io.number("push_n", model.push_n, {0.1, 3.0}, {"steady push on the plane"});
+            {"exploration time of a trial and of a training presentation"});
+  io.number("push_n", model.push_n, {0.1, 3.0}, {"constant push on the plane"});
   io.number("slowest_mm_s", model.slowest_mm_s, kSpeedMmS,
             {"slowest stroke; at most `fastest_mm_s`"});
   io.number("fastest_mm_s", model.fastest_mm_s, kSpeedMmS, {"fastest stroke"});
@@ -166,19 +165,21 @@ void describe(ObjectIo& io, SubjectModel& model) {
              "accelerations by a [published curve](perception.md) of thresholds, the more "
              "sensitive or the conservative one"});
   io.number("threshold_spread_db", model.threshold_spread_db, {0.0, 40.0},
-            {"all of a person's thresholds are lower by spread · z; no effect on `flat`"});
+            {"all of a person's thresholds are lower by spread · z dB; no effect on `flat`"});
   io.number("feature_noise", model.feature_noise, kNoise,
-            {"standard deviation of each felt intensity's own noise, on its logarithm"});
+            {"SD of independent noise on the log of each felt intensity"});
   io.number("common_noise", model.common_noise, kNoise,
-            {"the same of noise that all intensities of a presentation share"});
+            {"SD of noise common to all intensities of a presentation"});
   io.number("feature_noise_spread", model.feature_noise_spread, kSpread,
-            {"both noises times exp(spread · z)"});
+            {"both noises are multiplied by exp(spread · z)"});
   io.number("lapse", model.lapse, kShare, {"probability of a random answer"});
   io.number("lapse_spread", model.lapse_spread, kSpread,
-            {.meaning = "SD of the lapse's log odds; a lapse of 0 or 1 stays", .unit = "log odds"});
-  io.part("bias", model, {"preferences for pictures, whatever is felt"}, describe_bias);
-  io.list("label_swap", model.label_swap, {.most = kMaxLabels},
-          {.meaning = "pairs of labels whose pictures participants exchange, a label in one pair",
+            {.meaning = "SD of the lapse's log odds; a lapse of 0 or 1 does not vary",
+             .unit = "log odds"});
+  io.part("bias", model, {"preferences for pictures, independent of what is felt"}, describe_bias);
+  io.list("label_swap", model.label_swap, {.max = kMaxLabels},
+          {.meaning =
+               "pairs of labels whose pictures participants swap; each label in at most one pair",
            .range = "pairs of labels"},
           describe_pair);
   io.rule([&model](const JsonValue& place, const JsonObject& /*object*/) {
@@ -189,25 +190,26 @@ void describe(ObjectIo& io, SubjectModel& model) {
   io.integer("training_passes", model.training_passes, 1, 1000,
              {"explorations of each stimulus before the first trial"});
   io.choice("training", model.training, kTrainings,
-            {"all remember the same explorations of each stimulus, or each their own: "
-             "[Training](#training)"});
+            {"whether all participants remember the same explorations of each stimulus, or each "
+             "their own: [Training](#training)"});
   io.number("memory_noise", model.memory_noise, kNoise, {"error of each remembered log intensity"});
   io.part("learning", model.learning,
-          {"noise is larger at first, and its logarithm falls with the presentations felt"},
+          {"noise is larger at first; its log decreases with the number of presentations"},
           describe_learning);
-  io.number("period_noise_spread", model.period_noise_spread, kSpread,
-            {"SD of the log of noise between the blocks and visits of a participant, each of "
-             "which has a z of its own"});
-  io.part("serial", model.serial, {"what the trial before adds to pictures"}, describe_serial);
-  io.part("fatigue", model.fatigue, {"what each minute of exploring adds"}, describe_fatigue);
-  io.optional("thought", model.thought,
-              {"time to think: `shift_s` and a lognormal time; without this key, from 0.8 to 4 s, "
-               "each time equally likely"},
-              [](ValueIo& value, ThoughtTime& thought) { value.part(thought, describe_thought); });
+  io.number(
+      "period_noise_spread", model.period_noise_spread, kSpread,
+      {"SD of the log of noise between blocks and visits of a participant, each with its own z"});
+  io.part("serial", model.serial, {"effect of the previous trial on the choice of picture"},
+          describe_serial);
+  io.part("fatigue", model.fatigue, {"effect of each minute of exploration"}, describe_fatigue);
+  io.optional(
+      "thought", model.thought,
+      {"thinking time: `shift_s` plus a lognormal time; without this key, uniform from 0.8 to 4 s"},
+      [](ValueIo& value, ThoughtTime& thought) { value.part(thought, describe_thought); });
   io.optional(
       "given_function", model.given_function,
       {"for threshold studies: [observers who answer by a "
-       "function](thresholds.md#simulated-participants), whatever is felt"},
+       "function](thresholds.md#simulated-participants), independent of what is felt"},
       [](ValueIo& value, GivenFunction& given) { value.part(given, describe_given_function); });
 }
 
@@ -232,24 +234,24 @@ SubjectModel load_subject_model(const std::filesystem::path& path) {
 
 std::string subject_model_json(const SubjectModel& model) {
   SubjectModel copy = model;
-  SubjectModel usual;
+  SubjectModel defaults;
   return json_text(nlohmann::ordered_json::parse(written_as_described(
-      [&](ObjectIo& io) { describe(io, copy); }, [&](ObjectIo& io) { describe(io, usual); })));
+      [&](ObjectIo& io) { describe(io, copy); }, [&](ObjectIo& io) { describe(io, defaults); })));
 }
 
 std::string subject_model_schema() {
-  SubjectModel usual;
+  SubjectModel defaults;
   return annotated_schema(
       "Touchtrial subject model",
-      "How simulated participants explore, perceive, err and answer. Every key has a default: the "
-      "value of a participant who makes no errors. SD: standard deviation between participants; "
-      "z: a standard normal number of each participant's own.",
+      "How simulated participants explore, perceive, err and answer. Every key has a default: that "
+      "of a participant who makes no errors. SD: standard deviation between participants; z: a "
+      "standard normal number, drawn for each participant.",
       R"([{"feature_noise": 0.3, "feature_noise_spread": 0.2, "lapse": 0.02},
           {"feature_noise": 0.3, "training": "own", "memory_noise": 0.1,
            "learning": {"factor": 1.5, "trials": 30}, "thought": {}},
           {"label_swap": [["bark", "straw"]],
            "bias": {"position": 0.5, "classes": [{"label": "brick", "log_odds": 1}]}}])",
-      [&](ObjectIo& io) { describe(io, usual); });
+      [&](ObjectIo& io) { describe(io, defaults); });
 }
 
 }  // namespace touchtrial::simulation

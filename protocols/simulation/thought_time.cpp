@@ -20,7 +20,7 @@ double margin_of(std::span<const double> support) {
 double thought_time_s(const ThoughtTime& thought, double margin, RandomStream& random) {
   const double surplus_s = (thought.hard_s - thought.easy_s) * std::exp(-margin / thought.margin);
   const double above_s = (thought.easy_s + surplus_s) * std::exp(thought.spread * random.normal());
-  return std::min(thought.shift_s + above_s, thought.longest_s);
+  return std::min(thought.shift_s + above_s, thought.max_s);
 }
 
 }  // namespace touchtrial::simulation

@@ -14,7 +14,7 @@ namespace touchtrial::simulation {
 
 /// Draws a thinking time, with one standard normal number.
 /// \param margin  log odds, >= 0
-/// \return seconds from shift_s to longest_s
+/// \return seconds from shift_s to max_s
 [[nodiscard]] double thought_time_s(const ThoughtTime& thought, double margin,
                                     RandomStream& random);
 

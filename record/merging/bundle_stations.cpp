@@ -100,7 +100,7 @@ class BundleStation final : public StationFile {
     for (record::Event& event : part) {
       if (place < chain.size() && chain[place].hash != event.hash) {
         refuse(row, fmt::format("has another event {} of its station's chain than bundles before: "
-                                "two copies of the station's file went on by themselves",
+                                "two copies of the station's file were continued separately",
                                 place));
       }
       if (place++ < chain.size()) continue;

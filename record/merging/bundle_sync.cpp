@@ -56,8 +56,8 @@ std::string fault_of_row(const BundleRow& row, const Chain& chain, const BundleR
                         chain[static_cast<std::size_t>(row.end) - 1].hash == row.head;
   if (row.station != last.station || is_known) return "";
   return "ends with an event that this file lacks: it is an older copy, was rolled back, or two "
-         "copies went on by themselves; record nothing in it, and sync the file that the station "
-         "went on with, to a new database if both were sent from";
+         "copies were continued separately; record nothing in it, and sync the file that the "
+         "station continues to use, to a new database if both were sent from";
 }
 
 /// The parts that the table lacks. A part whose keys were destroyed since is sent again without

@@ -12,8 +12,8 @@ namespace {
 
 bool is_uneven(const std::map<int, int>& counts) {
   const auto less = [](const auto& a, const auto& b) { return a.second < b.second; };
-  const auto [least, most] = std::minmax_element(counts.begin(), counts.end(), less);
-  return least != counts.end() && most->second - least->second > 1;
+  const auto [min, max] = std::minmax_element(counts.begin(), counts.end(), less);
+  return min != counts.end() && max->second - min->second > 1;
 }
 
 void add_gaps(EnrolmentBalance& balance, const std::set<int>& taken) {

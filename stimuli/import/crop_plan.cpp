@@ -48,10 +48,10 @@ struct Grid {
 Grid least_overlapping_grid(PhotoSize photo, int side_px, int count) {
   Grid best;
   double least = 2.0;
-  const int most_columns = overlapping_along(photo.width_px, side_px);
+  const int max_columns = overlapping_along(photo.width_px, side_px);
   for (int rows = 1; rows <= overlapping_along(photo.height_px, side_px); ++rows) {
     const int columns = (count + rows - 1) / rows;
-    if (columns > most_columns) continue;
+    if (columns > max_columns) continue;
     const double overlap = std::max(overlap_along(photo.height_px, side_px, rows),
                                     overlap_along(photo.width_px, side_px, columns));
     if (overlap >= least) continue;
@@ -85,20 +85,20 @@ std::vector<CropPlace> even_places(PhotoSize photo, int side_px, int count) {
 
 /// Assigns crops in turn to the photographs that still have room.
 void assign_crops(std::vector<int>& shares, std::span<const int> room, int& left) {
-  for (bool dealt = true; dealt && left > 0;) {
-    dealt = false;
+  for (bool is_placed = true; is_placed && left > 0;) {
+    is_placed = false;
     for (std::size_t i = 0; i < shares.size() && left > 0; ++i) {
       if (shares[i] >= room[i]) continue;
       ++shares[i];
       --left;
-      dealt = true;
+      is_placed = true;
     }
   }
 }
 
 }  // namespace
 
-PhotoPart opaque_part(const GreyImage& opacity, int least_px) {
+PhotoPart opaque_part(const GreyImage& opacity, int min_px) {
   PhotoPart best;
   std::pair<int, std::int64_t> most{0, 0};
   // The height of the opaque run that ends in this row, by column; 0 after the last.
@@ -113,8 +113,7 @@ PhotoPart opaque_part(const GreyImage& opacity, int least_px) {
         const auto [from, high] = rising.back();
         rising.pop_back();
         left = from;
-        const std::pair value(std::min({high, x - from, least_px}),
-                              std::int64_t{high} * (x - from));
+        const std::pair value(std::min({high, x - from, min_px}), std::int64_t{high} * (x - from));
         if (value <= most) continue;
         most = value;
         best = {from, y + 1 - high, {high, x - from}};

@@ -22,10 +22,10 @@ struct PhotoPart {
   PhotoSize size_px;
 };
 
-/// The part of a photograph without a pixel of 0: one of at least `least_px` by `least_px` if there
+/// The part of a photograph without a pixel of 0: one of at least `min_px` by `min_px` if there
 /// is any, and of these the largest.
 /// \return no pixels if all are 0
-[[nodiscard]] PhotoPart opaque_part(const GreyImage& opacity, int least_px);
+[[nodiscard]] PhotoPart opaque_part(const GreyImage& opacity, int min_px);
 
 /// The pixels of a part that lies within the image.
 [[nodiscard]] GreyImage cut(const GreyImage& image, const PhotoPart& part);

@@ -28,8 +28,8 @@ ImportOptions completed(ImportOptions options) {
 
 /// A name that suits file names, tables and BIDS labels.
 std::string study_name(const fs::path& study) {
-  constexpr std::size_t kLongest = 64;
-  std::string name = study.stem().string().substr(0, kLongest);
+  constexpr std::size_t kMaxBytes = 64;
+  std::string name = study.stem().string().substr(0, kMaxBytes);
   std::ranges::replace_if(
       name,
       [](char c) {

@@ -135,9 +135,9 @@ struct ClassesAlike {
   }
   [[nodiscard]] std::string named() const { return "class " + first_of(labels) + ": "; }
   [[nodiscard]] std::string features() const {
-    const auto [least, most] = std::ranges::minmax(features_mm);
-    const std::string range = rounded(least) == rounded(most) ? "" : " to " + rounded(most);
-    return "features of about " + rounded(least) + range + " mm are ";
+    const auto [min, max] = std::ranges::minmax(features_mm);
+    const std::string range = rounded(min) == rounded(max) ? "" : " to " + rounded(max);
+    return "features of about " + rounded(min) + range + " mm are ";
   }
 };
 

@@ -96,8 +96,8 @@ class Classes {
 
   void add(const std::string& label, const fs::path& origin, std::vector<fs::path> files) {
     for (const fs::path& file : files) {
-      const bool is_told = file == origin && !is_utf8(label);
-      if (!is_told && !is_utf8(file.filename().string())) {
+      const bool is_reported = file == origin && !is_utf8(label);
+      if (!is_reported && !is_utf8(file.filename().string())) {
         refuse(file, "its name is not UTF-8; rename it");
       }
     }
@@ -151,10 +151,10 @@ void add_folders(const Listing& listing, PhotoFolder& result) {
 /// The regular expression of a pattern of names, whose only group is the class.
 std::regex expression_of(const std::string& names) {
   constexpr std::string_view kClass = "{class}";
-  constexpr std::size_t kLongest = 100;
+  constexpr std::size_t kMaxBytes = 100;
   const std::size_t at = names.find(kClass);
   if (at == std::string::npos || names.find(kClass, at + 1) != std::string::npos ||
-      names.size() > kLongest) {
+      names.size() > kMaxBytes) {
     throw UsageError(
         "stimuli import: --names must have {class} once, for instance {class}_#, not be " +
         in_quotes(names));

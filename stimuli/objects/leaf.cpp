@@ -29,7 +29,7 @@ struct LeafPlace {
 struct Vein {
   double distance = 0.0;  ///< units, across the vein
   double number = 0.0;
-  double between = 0.0;  ///< 0 on a vein, 1 half-way to the next
+  double between = 0.0;  ///< 0 on a vein, 1 halfway to the next
 };
 
 /// A broad leaf seen from below, where the veins stand out: midrib, side veins and a net.

@@ -48,7 +48,7 @@ constexpr Layer kLayers[] = {{33.0, 7.0, 300},  {25.0, 5.0, 900},   {18.0, 3.0, 
                              {3.6, -7.0, 90000}};
 
 /// Larger pebbles than this are the large ones, whose share differs between heaps.
-constexpr double kLargest_px = 20.0;
+constexpr double kMaxRadius_px = 20.0;
 
 /// The pebbles placed so far, indexed by the square in which they lie.
 class Heap {
@@ -88,8 +88,8 @@ class Heap {
     const auto& square = squares_[index(column, row)];
     return std::any_of(square.begin(), square.end(), [&](std::size_t i) {
       const Vec2 d = pebbles_[i].centre_px - pebble.centre_px;
-      const double least = 0.92 * (pebbles_[i].radius_px + pebble.radius_px);
-      return d.x * d.x + d.y * d.y < least * least;
+      const double min_distance = 0.92 * (pebbles_[i].radius_px + pebble.radius_px);
+      return d.x * d.x + d.y * d.y < min_distance * min_distance;
     });
   }
 
@@ -106,7 +106,7 @@ std::vector<Pebble> heap_of_pebbles(const Specimen& specimen, int size_px) {
   Heap heap(size_px);
   for (const Layer& layer : kLayers) {
     const double side = size_px / scale + 2 * layer.radius_px;
-    const double share = layer.radius_px > kLargest_px ? large_share : 1.0;
+    const double share = layer.radius_px > kMaxRadius_px ? large_share : 1.0;
     const int tries = static_cast<int>(share * side * side * 1e-6 * layer.tries_per_megapixel) + 1;
     for (int i = 0; i < tries; ++i) {
       const double radius = scale * layer.radius_px * random.uniform(0.8, 1.2);

@@ -205,7 +205,7 @@ TEST_CASE("device accept ignores input typed before a prompt") {
 /// \return false if nothing can be said, because the machine stalled: for so long that a held Enter
 ///   seemed to be pressed anew, or in the run, which then ended with a fault
 bool only_a_fresh_enter_begins_the_run() {
-  constexpr const char* kLiveLine = "us late";
+  constexpr const char* kLiveLine = "\x1b[K";  // ends every line that overwrites itself
   const DeviceFolder folder(dhd_settings());
   TerminalRun run(folder.words("accept dhd --skip rest --certificate @c.json"));
   run.hold_enter("[Enter, s, q] ", std::chrono::seconds(2));

@@ -19,7 +19,7 @@ TEST_CASE("fit prints tables, writes a subject file that simulate reads, and sta
   const ProgramResult ran = succeeded(fit(study, {"-o", study.in("fitted.json")}));
   CHECK_THAT(ran.output, holds_text("SIMULATED"));
   CHECK_THAT(ran.output, Catch::Matchers::StartsWith("simulated on: "));
-  CHECK(mentions(ran.output, "ideal ideal"));
+  CHECK(names_in_order(ran.output, "ideal ideal"));
   CHECK_THAT(ran.output, holds_text("corduroy"));
   const json fitted = json::parse(content(study.path() / "fitted.json"));
   CHECK(fitted.at("explore_s") == 1.5);
@@ -28,7 +28,7 @@ TEST_CASE("fit prints tables, writes a subject file that simulate reads, and sta
   const ProgramResult as_json = succeeded(fit(study, {"--json", "--fix", "lapse,classes,swaps"}));
   const json object = json::parse(as_json.output);
   CHECK(object.at("stamp") == "SIMULATED");
-  CHECK(mentions(object.at("simulated_on"), "ideal"));
+  CHECK(names(object.at("simulated_on"), "ideal"));
   CHECK(object.at("bank").at("simulated_on") == object.at("simulated_on"));
   CHECK(object.at("participants") == 4);
   CHECK(object.at("trials") == 24);
@@ -124,7 +124,7 @@ TEST_CASE("fit replaces subject files only, and nothing that it reads") {
       "cloths.json",
       {"fit", study.in("cloths.json"), "--accuracies", accuracies, "-o", study.in("cloths.json")},
       study.in("cloths.json"));
-  unharmed("s.db", {"fit", study.in("s.db"), "--accuracies", accuracies}, "");
+  unharmed("s.db", {"fit", study.in("s.db"), "--accuracies", accuracies}, "s.db");
   fs::copy_file(study.path() / "quick.json", study.path() / "old.json");
   check_refused(fit(study, {"-o", study.in("old.json")}), 1, {"old.json", "--force"});
   succeeded(fit(study, {"-o", study.in("old.json"), "--force"}));

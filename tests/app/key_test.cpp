@@ -29,7 +29,7 @@ TEST_CASE("key check proves a prepared study, and says where the key lies") {
   const KeyedStudy study;
   const ProgramResult beside = study.done("key check @cloths.json");
   CHECK_THAT(beside.output, holds_text("cloths.key"));
-  CHECK(mentions(beside.output, "main " + study.in("cloths.station")));
+  CHECK(names_in_order(beside.output, "main " + study.in("cloths.station")));
   CHECK_THAT(beside.errors, holds_text("cloths.key"));
   study.done("key check @cloths.key");
 

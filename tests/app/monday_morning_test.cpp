@@ -228,7 +228,7 @@ struct MondayStation : MondayDesk {
     INFO(command << "\n" << refused.output << refused.errors);
     CHECK(refused.exit_code == 1);
     CHECK(line_count(refused.errors) == 1);
-    for (const std::string& word : words) CHECK(mentions(refused.errors, word));
+    for (const std::string& word : words) CHECK(names_in_order(refused.errors, word));
   }
   /// Everything in the database holds, with the investigator's key.
   ProgramResult check_holds() {
@@ -342,8 +342,8 @@ TEST_CASE("a loss recorded in two head files is reported once") {
   const ProgramResult refused = desk.type(monday_block(kDead, 0).at(1));
   CHECK(refused.exit_code == 1);
   INFO(refused.errors);
-  CHECK(mentions(refused.errors, "36"));
-  CHECK_FALSE(mentions(refused.errors, "36 36"));
+  CHECK(names(refused.errors, "36"));
+  CHECK_FALSE(names_in_order(refused.errors, "36 36"));
 }
 
 TEST_CASE("the investigator's key comes back from its copy, and sessions need none") {

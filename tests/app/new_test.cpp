@@ -175,7 +175,7 @@ TEST_CASE("photographs are checked at once, and new sizes are asked for if they 
   const ProgramResult small = desk.type("new @deep/mine --yes --pictures @album", size);
   CHECK(small.exit_code == 1);
   for (const char* line : {"cloth2.png 120 x 120 200 x 200", "album 3 --size 120"}) {
-    CHECK(mentions(small.errors, line));
+    CHECK(names_in_order(small.errors, line));
   }
   CHECK_FALSE(is_there(desk.in("deep")));
 

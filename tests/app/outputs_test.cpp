@@ -212,7 +212,7 @@ TEST_CASE("databases, keys and deposited pages are never replaced") {
 
 TEST_CASE(
     "an import with --force keeps a study that was edited, and pictures that somebody added to") {
-  const Workshop workshop;
+  const StudyFolder workshop;
   fs::create_directory(workshop.path() / "album");
   for (const std::string& label : kLabels) {
     fs::copy_file(workshop.path() / (label + "-photo.png"),
@@ -236,7 +236,8 @@ TEST_CASE(
 }
 
 TEST_CASE("settings are not written through a link") {
-  const Workshop workshop;
+  const StudyFolder workshop;
+  succeeded(workshop.simulate("cloths.db"));
   const fs::path home = workshop.path() / "home" / ".config" / "touchtrial";
   fs::create_directories(home);
   fs::create_symlink(workshop.path() / "target", home / "keys.json");

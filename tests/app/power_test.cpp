@@ -24,7 +24,7 @@ TEST_CASE("power prints the same numbers with any number of threads") {
   CHECK(one.output == two.output);
   const json report = json::parse(one.output);
   CHECK(report.at("simulated") == true);
-  CHECK(mentions(report.at("simulated_on"), "ideal"));
+  CHECK(names(report.at("simulated_on"), "ideal"));
   CHECK(report.at("sizes").size() == 2);
   CHECK(report.at("sizes").at(0).at("type_one_error").at("runs") == 120);
   CHECK_THAT(power(study, "--participants 3,5").output,

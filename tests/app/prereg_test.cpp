@@ -49,6 +49,7 @@ TEST_CASE("prereg writes the registration, the design and the hashes, and no sec
                            "0.4 N/mm",
                            "0.2 mm",
                            "-30 dB",
+                           "\"explore_limit_s\":",
                            "- seal: `",
                            "- pack: `"}) {
     CHECK_THAT(result.output, holds_text(part));

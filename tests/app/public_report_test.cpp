@@ -47,6 +47,6 @@ TEST_CASE("report --public writes neither ids nor reasons, in text, page, JSON a
 TEST_CASE("report --public is refused before unblinding, and with a trial's exploration") {
   const StudyFolder study;
   succeeded(study.simulate("s.db", {"--keep-blind"}));
-  check_refused(study.type("report @s.db --public"), 2, {"omit --public"});
+  check_refused(study.type("report @s.db --public"), 2, {"--public"});
   CHECK(study.type("report @s.db --public --out @o --trial P001:1").exit_code == 2);
 }

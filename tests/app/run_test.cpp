@@ -137,7 +137,7 @@ TEST_CASE("a run that is refused leaves nothing, and the corrected command runs"
   };
   refused({"--subject", study.in("nobody.json")}, "nobody.json");
   if (is_prepared) {
-    refused({"--device", "mouse"}, "give --pilot");
+    refused({"--device", "mouse"}, "--pilot");
     // There are never so many monitors, nor any where there is no display.
     refused({"--device", "mouse", "--pilot", "--monitor", "16", "--no-sound"}, "window: ");
     refused({"--device", "simulated", "--no-sound"}, "touchtrial");
@@ -219,7 +219,7 @@ TEST_CASE("a session that a signal ends stays open, says so, and can be resumed"
 
 TEST_CASE("a mistyped --on-existing names the words that there are") {
   const StudyFolder study;
-  check_refused(run(study, "P01", {"--on-existing", "resum"}), 2, {"refuse, resume"});
+  check_refused(run(study, "P01", {"--on-existing", "resum"}), 2, {"refuse resume"});
 }
 
 TEST_CASE("pilot sessions and changed studies are refused") {

@@ -127,7 +127,7 @@ TEST_CASE("before the first session status lists the consents and has the first 
   CHECK(consented["people"][0]["participant"] == "P01");
   CHECK(consented["people"][0]["consent"] == "2026-03");
   REQUIRE(consented["next"].size() == 1);
-  CHECK(mentions(consented["next"][0]["what"], "P01"));
+  CHECK(names(consented["next"][0]["what"], "P01"));
   CHECK_FALSE(fs::exists(folder.path() / "study.db"));
 }
 
@@ -154,7 +154,7 @@ TEST_CASE("status proposes the visit that is due, and names it in the line to co
   CHECK(early["people"][0]["visit"] == 1);
   CHECK(early["upcoming_visits"][0]["participant"] == "P01");
   CHECK(early["upcoming_visits"][0]["visit"] == 2);
-  CHECK(mentions(early["next"].back()["what"], "P02"));
+  CHECK(names(early["next"].back()["what"], "P02"));
   add_session(folder, "P02", 2, 1, std::chrono::hours(8 * 24));
   const json due = status_of(folder);
   CHECK(due["next"].back()["what"] == "visit 2 of P02");
@@ -167,7 +167,7 @@ TEST_CASE("status proposes the visit that is due, and names it in the line to co
   CHECK(full["next"].back()["what"].get<std::string>().starts_with("visit 2 of P01, from 20"));
   const ProgramResult text = folder.type("status @study.db");
   CHECK(text.output.find("2 of 2") != std::string::npos);
-  CHECK(mentions(text.output, "P01 2 2"));
+  CHECK(names_in_order(text.output, "P01 2 2"));
 }
 
 TEST_CASE("the plan of a simulated study comes from the files beside its database") {

@@ -2,7 +2,7 @@
 
 #include "core/files.hpp"
 #include "support/catch.hpp"
-#include "support/mentions.hpp"
+#include "support/names.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -18,6 +18,11 @@
 extern char** environ;
 
 namespace touchtrial {
+namespace {
+
+constexpr std::chrono::minutes kMaxWait{2};  // for a prompt, or the end, of a program
+
+}  // namespace
 
 ProgramResult run_program(const std::filesystem::path& program, const std::filesystem::path& folder,
                           const std::vector<std::string>& arguments, const std::string& input) {
@@ -91,7 +96,7 @@ void check_refused(const ProgramResult& result, int exit_code,
   CHECK(line_count(result.errors) == 1);
   for (const std::string& part : parts) {
     INFO(part);
-    CHECK(mentions(result.errors, part));
+    CHECK(names_in_order(result.errors, part));
   }
 }
 
@@ -121,7 +126,10 @@ TerminalRun::~TerminalRun() {
 }
 
 void TerminalRun::answer(const std::string& prompt, const std::string& line) {
-  read_until(prompt);
+  const bool is_asked = read_until(prompt, read_, kMaxWait);
+  INFO("waited for \"" << prompt << "\" in: " << shown_);
+  REQUIRE(is_asked);
+  read_ = shown_.size();
   const std::string typed = line + "\r";
   REQUIRE(::write(terminal_, typed.data(), typed.size()) == static_cast<ssize_t>(typed.size()));
 }
@@ -143,40 +151,34 @@ void TerminalRun::press(const std::string& keys) {
 }
 
 bool TerminalRun::shows(const std::string& text, std::chrono::milliseconds longest) {
-  const auto until = std::chrono::steady_clock::now() + longest;
-  while (!ended_ && shown_.find(text) == std::string::npos) {
-    const auto left =
-        std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
-    pollfd waiting{terminal_, POLLIN, 0};
-    if (::poll(&waiting, 1, static_cast<int>(std::max(left.count(), 0L))) <= 0) return false;
-    read_on();
-  }
-  return shown_.find(text) != std::string::npos;
+  return read_until(text, 0, longest);
 }
 
 int TerminalRun::finish() {
-  read_until("");
+  read_until("", read_, kMaxWait);
+  INFO(shown_);
+  REQUIRE(ended_);
   int status = 0;
   REQUIRE(::waitpid(child_, &status, 0) == child_);
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-void TerminalRun::read_until(const std::string& text) {
-  while (text.empty() || shown_.find(text, read_) == std::string::npos) {
-    if (!ended_) read_on();
-    if (ended_) {
-      INFO(shown_);
-      REQUIRE(text.empty());
-      return;
-    }
+bool TerminalRun::read_until(const std::string& text, std::size_t from,
+                             std::chrono::milliseconds longest) {
+  const auto until = std::chrono::steady_clock::now() + longest;
+  const auto is_shown = [&] {
+    return !text.empty() && shown_.find(text, from) != std::string::npos;
+  };
+  while (!ended_ && !is_shown()) {
+    const auto left =
+        std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
+    pollfd waiting{terminal_, POLLIN, 0};
+    if (::poll(&waiting, 1, static_cast<int>(std::max(left.count(), 0L))) <= 0) return false;
+    char letter = 0;
+    ended_ = ::read(terminal_, &letter, 1) != 1;
+    if (!ended_) shown_ += letter;
   }
-  read_ = shown_.size();
-}
-
-void TerminalRun::read_on() {
-  char letter = 0;
-  ended_ = ::read(terminal_, &letter, 1) != 1;
-  if (!ended_) shown_ += letter;
+  return is_shown();
 }
 
 int line_count(const std::string& text) {

@@ -1,7 +1,7 @@
 /// \file Runs the built program as a user would.
 #pragma once
 
-#include "support/mentions.hpp"
+#include "support/names.hpp"
 
 #include <chrono>
 #include <filesystem>
@@ -39,8 +39,8 @@ struct ProgramResult {
 /// \return the same result
 ProgramResult succeeded(const ProgramResult& result);
 
-/// Checks for this exit code, no output, and one line of errors that mentions every part
-/// (support/mentions.hpp).
+/// Checks for this exit code, no output, and one line of errors that names every part
+/// (support/names.hpp).
 void check_refused(const ProgramResult& result, int exit_code,
                    const std::vector<std::string>& parts);
 
@@ -57,10 +57,11 @@ class TerminalRun {
   TerminalRun(const TerminalRun&) = delete;
   TerminalRun& operator=(const TerminalRun&) = delete;
 
-  /// Reads until the text was shown, then types the line.
+  /// Reads until the text was shown, then types the line. Fails the test if the program ends
+  /// before, or does not show it for two minutes.
   void answer(const std::string& prompt, const std::string& line);
-  /// Reads until the text was shown, then holds Enter down for so long, as a keyboard repeats it:
-  /// for the second time after 660 ms, then every 40 ms.
+  /// Like `answer` with an empty line, whose Enter is held down for so long, as a keyboard repeats
+  /// it: for the second time after 660 ms, then every 40 ms.
   void hold_enter(const std::string& prompt, std::chrono::milliseconds held);
   /// Presses these keys now, if the program has not ended.
   void press(const std::string& keys);
@@ -68,15 +69,14 @@ class TerminalRun {
   [[nodiscard]] bool shows(const std::string& text, std::chrono::milliseconds longest);
   /// Whether all that the program ever showed was read.
   [[nodiscard]] bool ended() const noexcept { return ended_; }
-  /// The exit code.
+  /// The exit code. Fails the test if the program runs for two minutes more.
   [[nodiscard]] int finish();
   [[nodiscard]] const std::string& shown() const { return shown_; }
 
  private:
-  /// \param text  empty: read to the end
-  void read_until(const std::string& text);
-  /// Reads what is shown next; nothing at the end.
-  void read_on();
+  /// Reads until the text is shown at or after `from`, or to the end if it is empty or missing.
+  /// \return whether it was shown within that time
+  bool read_until(const std::string& text, std::size_t from, std::chrono::milliseconds longest);
 
   int terminal_ = -1;
   pid_t child_ = -1;

@@ -2,7 +2,7 @@
 #include "app/study_folder.hpp"
 #include "record/study_store.hpp"
 #include "support/catch.hpp"
-#include "support/mentions.hpp"
+#include "support/names.hpp"
 
 #include <map>
 
@@ -31,7 +31,7 @@ struct VisitFolder : StudyFolder {
 
 bool says(const ProgramResult& result, const std::string& words) {
   INFO(result.output << result.errors);
-  return mentions(result.output + result.errors, words);
+  return names_in_order(result.output + result.errors, words);
 }
 
 }  // namespace

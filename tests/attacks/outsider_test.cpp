@@ -8,7 +8,8 @@
 #include "record/head_file.hpp"
 #include "record/payload_json.hpp"
 #include "support/catch.hpp"
-#include "support/mentions.hpp"
+#include "support/names.hpp"
+#include "support/refusal.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -42,34 +43,41 @@ void certify(Forgery& forged, const Signer& investigator, const Signer& station)
   forged.file().front().body = record::to_json(commitment);
 }
 
+constexpr const char* kUnsigned = "[unsigned]";
+constexpr const char* kUnsignedLook = "[unsigned-look]";
+constexpr const char* kDoesNotOpen = "[does-not-open]";
+
 struct Attack {
   std::string what;
   std::function<void(Forgery&)> forge;
-  std::string place = {};  ///< words that `verify` says once all chains are made anew
-  bool opens = false;      ///< whether the station could still go on with the session
+  std::string words;  ///< the code, and numbers, that `verify` names once all chains are made anew
 };
 
 /// In clear, on the file's chain, and in sessions that have ended.
 const std::vector<Attack> kAttacks = {
     {"an answer's sealed bytes altered",
-     [](Forgery& it) { forge_answer(it.first(2, EventKind::answered)); }},
+     [](Forgery& it) { forge_answer(it.first(2, EventKind::answered)); }, kUnsigned},
     {"an event's body altered",
-     [](Forgery& it) { set(it.first(3, EventKind::presented), "block", "7"); }},
+     [](Forgery& it) { set(it.first(3, EventKind::presented), "block", "7"); }, kUnsigned},
     {"an exclusion moved before the look",
-     [](Forgery& it) { std::swap(it.file()[4], it.file()[5]); }},
-    {"an exclusion erased", [](Forgery& it) { it.file().erase(it.file().begin() + 5); }},
-    {"an interim look erased", [](Forgery& it) { it.file().erase(it.file().begin() + 4); }},
-    {"an interim look invented", [](Forgery& it) { it.file().push_back(it.file()[4]); }},
-    {"a session dropped from the middle", [](Forgery& it) { it.drop(2); }, "3"},
+     [](Forgery& it) { std::swap(it.file()[4], it.file()[5]); }, kUnsigned},
+    {"an exclusion erased", [](Forgery& it) { it.file().erase(it.file().begin() + 5); }, kUnsigned},
+    {"an interim look erased", [](Forgery& it) { it.file().erase(it.file().begin() + 4); },
+     kUnsigned},
+    {"an interim look invented", [](Forgery& it) { it.file().push_back(it.file()[4]); },
+     kUnsignedLook},
+    {"a session dropped from the middle", [](Forgery& it) { it.drop(2); }, "3 [session-order]"},
     {"a session's end and its line removed",
      [](Forgery& it) {
        it.chains.at(3).pop_back();
        it.file().erase(it.file().begin() + 9);
-     }},
+     },
+     kUnsigned},
     {"the station's clock shifted",
      [](Forgery& it) {
        for (record::Event& event : it.file()) event.at += std::chrono::hours(1);
-     }},
+     },
+     kUnsigned},
     {"two participants' sessions exchanged",
      [](Forgery& it) {
        for (record::Event* event :
@@ -78,47 +86,54 @@ const std::vector<Attack> kAttacks = {
          set(*event, "participant", is_second ? "\"P03\"" : "\"P02\"");
          set(*event, "enrolment", is_second ? "3" : "2");
        }
-     }},
+     },
+     kUnsigned},
     {"sealed answers of two sessions exchanged",
      [](Forgery& it) {
        std::swap(it.first(2, EventKind::answered).sealed, it.first(3, EventKind::answered).sealed);
-     }},
-    {"a participant's key replaced by one's own", [](Forgery& it) { it.keys[2] = it.keys.at(3); }},
+     },
+     kUnsigned},
+    {"a participant's key replaced by one's own", [](Forgery& it) { it.keys[2] = it.keys.at(3); },
+     kUnsigned},
     {"a signature copied to another event",
-     [](Forgery& it) { it.file()[4].signature = it.file()[5].signature; }},
+     [](Forgery& it) { it.file()[4].signature = it.file()[5].signature; }, kUnsignedLook},
     {"signatures taken off",
      [](Forgery& it) {
        for (record::Event& event : it.file()) event.signature.clear();
-     }},
+     },
+     kUnsigned},
     {"everything signed with one's own key",
      [](Forgery& it) {
        const Signer own = forger();
        for (record::Event& event : it.file()) event = record::signed_event(event, own);
-     }},
+     },
+     kUnsigned},
     {"a station of one's own that the investigator did not sign for",
      [](Forgery& it) {
        set(it.file().front(), "station",
            R"({"name": "own", "key": ")" + to_hex(forger().public_half()) +
                R"(", "certificate": ")" + std::string(128, '0') + "\"}");
      },
-     "own"},
+     "own [uncertified]"},
 };
 
 /// Of the open session, whose chain nobody has signed beyond its first event.
 const std::vector<Attack> kAttacksOnOpenSession = {
     {"an answer's sealed bytes altered",
-     [](Forgery& it) { forge_answer(it.first(4, EventKind::answered)); }},
+     [](Forgery& it) { forge_answer(it.first(4, EventKind::answered)); }, kDoesNotOpen},
     {"an event's body altered",
-     [](Forgery& it) { set(it.first(4, EventKind::presented), "block", "7"); }},
+     [](Forgery& it) { set(it.first(4, EventKind::presented), "block", "7"); }, kDoesNotOpen},
     {"an event removed from the middle",
-     [](Forgery& it) { it.chains.at(4).erase(it.chains.at(4).begin() + 2); }},
+     [](Forgery& it) { it.chains.at(4).erase(it.chains.at(4).begin() + 2); }, kDoesNotOpen},
     {"two answers exchanged",
      [](Forgery& it) {
        // opened; then presented, first-contact, trace-stored, answered for each trial
        std::swap(it.chains.at(4).at(4).sealed, it.chains.at(4).at(8).sealed);
-     }},
+     },
+     kDoesNotOpen},
     {"an answer of another session put in",
-     [](Forgery& it) { it.chains.at(4).at(4).sealed = it.first(2, EventKind::answered).sealed; }},
+     [](Forgery& it) { it.chains.at(4).at(4).sealed = it.first(2, EventKind::answered).sealed; },
+     kDoesNotOpen},
     {"a trace and its digest exchanged",
      [](Forgery& it) {
        std::swap(it.first(4, EventKind::trace_stored).body, it.chains.at(4).at(7).body);
@@ -131,9 +146,11 @@ const std::vector<Attack> kAttacksOnOpenSession = {
          if (ours != nullptr) std::swap(ours->box, trace.box);
          ours = &trace;
        }
-     }},
+     },
+     kDoesNotOpen},
     {"an event's time written in clear",
-     [](Forgery& it) { it.first(4, EventKind::answered).at = std::chrono::seconds(1); }, "", true},
+     [](Forgery& it) { it.first(4, EventKind::answered).at = std::chrono::seconds(1); },
+     "[time-in-clear]"},
     {"the session's end invented",
      [](Forgery& it) {
        record::Event end = it.chains.at(4).back();
@@ -141,7 +158,7 @@ const std::vector<Attack> kAttacksOnOpenSession = {
        end.body = R"({"complete":true})";
        it.chains.at(4).push_back(end);
      },
-     "", true},
+     "[unrecorded-end]"},
 };
 
 /// \param place  words of what `verify` finds
@@ -152,7 +169,7 @@ void require_found(AttackedStudy& study, const Attack& attack, const std::string
   forged.relink();
   forged.write();
   INFO(study.found());
-  CHECK(mentions(study.found(), place));
+  CHECK(names_in_order(study.found(), place));
   note(attack.what, Outcome::named);
 }
 
@@ -207,9 +224,9 @@ TEST_CASE("whoever makes the chains anew without a station's file is named by a 
   const Restored whole(study);
   for (const Attack& attack : kAttacks) {
     whole.restore();
-    require_found(study, attack, "chain: " + attack.place);
+    require_found(study, attack, "chain: " + attack.words);
     INFO(attack.what);
-    CHECK(mentions(study.found_without_key(), "chain: " + attack.place));
+    CHECK(names_in_order(study.found_without_key(), "chain: " + attack.words));
   }
 }
 
@@ -219,10 +236,10 @@ TEST_CASE("an open session made anew does not open, and its head gives it away w
   const Restored whole(study);
   for (const Attack& attack : kAttacksOnOpenSession) {
     whole.restore();
-    require_found(study, attack, "session 4");
+    require_found(study, attack, "4 " + attack.words);
     INFO(attack.what);
     CHECK_FALSE(study.found_without_key().empty());
-    CHECK((attack.opens || !can_resume(study)));
+    CHECK_FALSE((attack.words == kDoesNotOpen && can_resume(study)));
   }
 }
 
@@ -233,24 +250,24 @@ TEST_CASE("swapped and replaced traces and keys are named where no chain was mad
   const std::vector<std::pair<std::string, std::string>> attacks = {
       {"UPDATE traces SET box = (SELECT t.box FROM traces t WHERE t.session = 3 AND t.trial = 1) "
        "WHERE session = 2 AND trial = 1",
-       "2 1"},
+       "2 1 [altered-trace]"},
       {"UPDATE participant_keys SET wrapped = (SELECT k.wrapped FROM participant_keys k WHERE "
        "k.session = 3) WHERE session = 2",
-       "2"},
-      {"DELETE FROM participant_keys WHERE session = 2", "2"},
-      {"UPDATE events SET own_session = session WHERE session = 2", "2"},
-      {"UPDATE events SET own_session = session WHERE session = 0", ""},
+       "2 [altered-key]"},
+      {"DELETE FROM participant_keys WHERE session = 2", "2 [missing-key]"},
+      {"UPDATE events SET own_session = session WHERE session = 2", "2 [own-number]"},
+      {"UPDATE events SET own_session = session WHERE session = 0", "[own-number]"},
       {"INSERT INTO station_keys SELECT session + 4294967296, kept FROM station_keys",
-       "the file's chain, event 0"},
-      {"UPDATE station_keys SET kept = zeroblob(length(kept))", "4"},
-      {"DELETE FROM station_keys", "4"},
+       "[stray-copy]"},
+      {"UPDATE station_keys SET kept = zeroblob(length(kept))", "4 [altered-copy]"},
+      {"DELETE FROM station_keys", "4 [missing-copy]"},
   };
-  for (const auto& [sql, place] : attacks) {
+  for (const auto& [sql, words] : attacks) {
     INFO(sql);
     whole.restore();
     with_sql(study.database(), sql);
     INFO(study.found());
-    CHECK(mentions(study.found(), "chain: " + place));
+    CHECK(names(study.found(), "chain: " + words));
     note("rows altered behind the program's back", Outcome::named);
   }
 }
@@ -264,10 +281,10 @@ TEST_CASE("a participant's key wrapped by a forger for the investigator is named
       record::wrap_participant_key(study.key().investigator_box, 2, own);
   forged.keys[2] = {.participant = wrapped.participant, .safety = wrapped.safety};
   forged.write();
-  CHECK(mentions(study.found(), "chain: 2"));
+  CHECK(names(study.found(), "chain: 2 [altered-key]"));
   forged.relink();
   forged.write();
-  CHECK(mentions(study.found(), "chain: "));
+  CHECK(names(study.found(), "chain: [unsigned]"));
   note("a participant's key wrapped by the forger", Outcome::named);
 }
 
@@ -282,7 +299,7 @@ TEST_CASE("a study made anew with an investigator of one's own is found by the k
   certify(forged, own, own);
   forged.relink(&own);
   forged.write();
-  CHECK_FALSE(study.found().empty());
+  CHECK(names(study.found(), "[other-investigator]"));
   CHECK_FALSE(study.found_without_key().empty());  // the genuine head file is still there
   note("an investigator of one's own", Outcome::named);
   // Without the key only the investigator that `verify` prints differs.
@@ -305,14 +322,14 @@ TEST_CASE("sessions dropped from the end are named by the head files, and by a h
   forged.drop(3);
   forged.write();
   CHECK(contains(study.found(), "heads: "));
-  CHECK(mentions(study.found_without_key(), "8"));
+  CHECK(names(study.found_without_key(), "8"));
   note("sessions dropped from the end", Outcome::named);
   for (const fs::path& file : {study.head(), study.second_head()}) {
     fs::remove(file);
     CHECK(contains(study.found_without_key(), file.string()));
   }
   note("sessions dropped from the end, and the head files removed", Outcome::named);
-  CHECK_FALSE(study.found_by_head(on_paper).empty());
+  CHECK(names(study.found_by_head(on_paper), "[unknown-head]"));
 }
 
 TEST_CASE("a session that has ended cannot be opened again to be sealed by the station") {
@@ -340,7 +357,7 @@ TEST_CASE("the station signs nothing on top of a chain that somebody made anew")
       record::StudyStore::open(study.database(), record::StudyStore::Access::read_write);
   study.store().sign_with(study.station().signer());
   const std::string refusal =
-      complaint_of<StoreError>([&] { study.store().note(2, std::chrono::seconds(9), "", "late"); });
-  CHECK_FALSE(refusal.empty());
+      message_of<StoreError>([&] { study.store().note(2, std::chrono::seconds(9), "", "late"); });
+  CHECK(names(refusal, kUnsigned));
   note("a forged chain continued by the station", Outcome::refused);
 }

@@ -9,7 +9,8 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "support/catch.hpp"
-#include "support/mentions.hpp"
+#include "support/names.hpp"
+#include "support/refusal.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -85,11 +86,11 @@ TEST_CASE("an older database is named by its head files and refused, and verify 
   CHECK(study.found().empty());
   study.roll_back(study.database());
   CHECK(contains(study.found(), "heads: "));
-  CHECK_FALSE(study.refusal().empty());
+  CHECK(names(study.refusal(), "[lost-events]"));
   const ProgramResult verified = run_touchtrial(
       study.folder(), {"verify", study.database().string(), "--key", study.key_file().string()});
   CHECK(verified.exit_code == 3);
-  CHECK(mentions(verified.output, "heads"));
+  CHECK(names(verified.output, "heads"));
   note("an older database", Outcome::named);
 }
 
@@ -99,7 +100,7 @@ TEST_CASE("an older database with its head file is given away by the second head
   study.roll_back(study.head());
   CHECK(contains(study.found_without_key(), study.second_head().string() + ": "));
   CHECK(contains(study.found(), study.second_head().string() + ": "));
-  CHECK_FALSE(study.refusal().empty());
+  CHECK(names(study.refusal(), "[lost-events]"));
   note("an older database with its head file", Outcome::named);
 
   fs::remove(study.second_head());
@@ -129,7 +130,7 @@ TEST_CASE("another folder for the second head file hides nothing that the one on
         record::StudyStore::open(study.database(), record::StudyStore::Access::read_write);
     const Signer signer = study.station().signer();
     store.sign_with(signer);
-    return complaint_of<StoreError>([&] {
+    return message_of<StoreError>([&] {
       app::set_head_writer(store, study.database(), signer,
                            {.folder = other, .accept_loss = reason}, app::HeadUse::required);
     });
@@ -187,7 +188,7 @@ TEST_CASE("an older database with all its head files is found by a head on paper
   }
   CHECK(study.found().empty());
   note("an older database with all its head files", Outcome::possible);
-  CHECK_FALSE(study.found_by_head(study.on_paper).empty());
+  CHECK(names(study.found_by_head(study.on_paper), "[unknown-head]"));
   note("the same, held against a head on paper", Outcome::named);
 }
 

@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 
 #include <string>
 
@@ -11,12 +12,7 @@ using namespace touchtrial;
 namespace {
 
 std::string refusal_of_text(const std::string& text) {
-  try {
-    static_cast<void>(parse_strict_json(text, "study.json"));
-  } catch (const StudyError& error) {
-    return error.what();
-  }
-  return "was not refused";
+  return message_of<StudyError>([&] { return parse_strict_json(text, "study.json"); });
 }
 
 }  // namespace

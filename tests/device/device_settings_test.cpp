@@ -2,9 +2,9 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "study/refusal.hpp"
 #include "support/catch.hpp"
 #include "support/environment.hpp"
+#include "support/refusal.hpp"
 #include "support/temp_folder.hpp"
 
 #include <nlohmann/json.hpp>
@@ -119,7 +119,7 @@ TEST_CASE("a lab's limits make limits stricter and never looser") {
 TEST_CASE("a lab's slew limit does not keep a force from being let go") {
   device::LabLimits lab{.max_slew_n_per_s = 1.0};
   const device::SafetyLimits limits = device::stricter_of({}, lab);
-  CHECK(limits.max_slew_n_per_s == limits.max_force_n / device::kLongestLetGoS);
+  CHECK(limits.max_slew_n_per_s == limits.max_force_n / device::kMaxReleaseS);
   CHECK(device::is_sound(limits));
 }
 

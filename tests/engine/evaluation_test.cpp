@@ -4,9 +4,9 @@
 #include "engine/extraction.hpp"
 #include "engine/metrics/picture_statistics.hpp"
 #include "engine/metrics/ssim.hpp"
-#include "engine/refusal.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 
 #include <cstddef>
 
@@ -90,12 +90,14 @@ TEST_CASE("for a flat image every fixed order gives the adaptive texture") {
 }
 
 TEST_CASE("an image that is too small is refused with its size and the least size") {
-  CHECK_THAT(refusal_of([] {
+  CHECK_THAT(message_of<std::invalid_argument>([] {
                (void)engine::evaluate_image(noise_image({160, 500}), true);
              }),
              names("500 160 161"));
-  CHECK(refusal_of([] { (void)engine::evaluate_image(noise_image({160, 500}), false); }).empty());
-  CHECK_THAT(refusal_of([] {
+  CHECK(message_of<std::invalid_argument>([] {
+          (void)engine::evaluate_image(noise_image({160, 500}), false);
+        }).empty());
+  CHECK_THAT(message_of<std::invalid_argument>([] {
                (void)engine::evaluate_image(noise_image({1, 9}), false);
              }),
              names("9 1 2"));

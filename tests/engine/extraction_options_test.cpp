@@ -5,8 +5,8 @@
 #include "engine/gl_texture.hpp"
 #include "engine/plane_comparison.hpp"
 #include "engine/reference/extraction_reference.hpp"
-#include "engine/refusal.hpp"
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -46,7 +46,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMaxInt = std::numeric_limits<int>::max();
 
 std::string refusal_of_options(const ExtractionOptions& options) {
-  return refusal_of([&] { check_options(options); });
+  return message_of<std::invalid_argument>([&] { check_options(options); });
 }
 
 std::string refusal_of_tv_gabor(const TvGaborOptions& tv_gabor) {
@@ -128,7 +128,7 @@ TEST_CASE("a parameter that is not finite or out of its range is refused by name
       ExtractionOptions options{.method = one.method};
       one.set(options, value);
       CHECK(refusal_of_options(options).starts_with(one.name + ":"));
-      CHECK_THAT(refusal_of([&] {
+      CHECK_THAT(message_of<std::invalid_argument>([&] {
                    (void)extract_texture<float>(noise_image({4, 4}), options);
                  }),
                  holds_text(one.name + ":"));

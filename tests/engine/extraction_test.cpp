@@ -3,9 +3,9 @@
 #include "engine/example_images.hpp"
 #include "engine/plane_comparison.hpp"
 #include "engine/reference/extraction_reference.hpp"
-#include "engine/refusal.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -131,7 +131,8 @@ TEST_CASE("unwanted planes stay empty") {
 TEST_CASE("extract_texture refuses an empty image, whatever the method") {
   for (const Method method : {Method::adaptive, Method::fixed, Method::tv_gabor}) {
     ExtractionOptions options{.method = method};
-    CHECK_THAT(refusal_of([&] { (void)extract_texture<float>(GreyImage(), options); }),
+    CHECK_THAT(message_of<std::invalid_argument>(
+                   [&] { (void)extract_texture<float>(GreyImage(), options); }),
                names("extract_texture"));
   }
 }

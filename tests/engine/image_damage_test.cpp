@@ -4,6 +4,7 @@
 #include "engine/image_samples.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 
 #include <cstdio>
 #include <functional>
@@ -19,12 +20,7 @@ namespace {
 
 /// The message of the FileError that reading throws; "" if it throws nothing.
 std::string error_of(const Bytes& bytes) {
-  try {
-    static_cast<void>(read_bytes(bytes));
-  } catch (const FileError& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<FileError>([&] { return read_bytes(bytes); });
 }
 
 bool is_readable_or_refused(const Bytes& bytes) {
@@ -95,12 +91,12 @@ TEST_CASE("a file that is missing, a folder or empty is refused by name") {
   CHECK_THROWS_AS(read_grey_image(folder.path() / "none.png"), FileError);
   CHECK_THROWS_WITH(read_grey_image(folder.path() / "none.png"), holds_text("none.png"));
   CHECK_THROWS_AS(read_grey_image(folder.path()), FileError);
-  CHECK_FALSE(error_of({}).empty());
+  CHECK_THAT(error_of({}), names("[empty-picture]"));
 }
 
 TEST_CASE("a file that is not a picture of a known kind is refused, and foreign kinds are named") {
-  CHECK_FALSE(error_of(text("Dear reader")).empty());
-  CHECK_FALSE(error_of(Bytes(4096, 0)).empty());
+  CHECK_THAT(error_of(text("Dear reader")), names("[not-a-picture]"));
+  CHECK_THAT(error_of(Bytes(4096, 0)), names("[not-a-picture]"));
   CHECK_THAT(error_of(text("RIFF1234WEBPVP8 ")), holds_text("WebP"));
   CHECK_THAT(error_of(text("P4 1 1\n1")), holds_text("PBM"));
 }
@@ -141,7 +137,7 @@ TEST_CASE("pictures that do not unpack are refused as damaged") {
   }
   for (std::size_t i = 0; i < files.size(); ++i) {
     INFO("file " << i);
-    CHECK_FALSE(error_of(files[i]).empty());
+    CHECK_THAT(error_of(files[i]), names("[damaged-picture]") || names("[truncated-picture]"));
   }
 }
 
@@ -162,8 +158,7 @@ TEST_CASE("a picture of more than 2^28 pixels is refused from its header") {
 
 TEST_CASE("a header of exactly 2^28 pixels is not too large, only truncated") {
   for (const Bytes& file : headers(16384, 16384)) {
-    CHECK_FALSE(error_of(file).empty());
-    CHECK_THAT(error_of(file), !names("268435456"));
+    CHECK_THAT(error_of(file), names("[truncated-picture]"));
   }
 }
 
@@ -235,7 +230,7 @@ TEST_CASE("a JPEG of a later JFIF revision is read, and refused if it is damaged
   CHECK(read_bytes(file) == read_bytes(jpeg_file(colour_picture())));
   file.resize(file.size() * 3 / 4);
   append(file, {0xFF, 0xD9});
-  CHECK_FALSE(error_of(file).empty());
+  CHECK_THAT(error_of(file), names("[damaged-picture]") || names("[truncated-picture]"));
 }
 
 TEST_CASE("a JPEG of more scans than any encoder writes is refused before it is decoded") {
@@ -263,7 +258,7 @@ TEST_CASE("damaged notes are harmless, damaged transparency and palettes are not
   CHECK(error_of(Tiff(2, 2, {1, 2, 3, 4}).with(65001, {1}).bytes()).empty());
   // A palette cannot have one entry; libtiff alone would read the samples as grey levels.
   const Tiff palette = Tiff(2, 2, {1, 2, 3, 4}).with(262, {3}).with(320, {1});
-  CHECK_FALSE(error_of(palette.bytes()).empty());
+  CHECK_THAT(error_of(palette.bytes()), names("[damaged-picture]") || names("[truncated-picture]"));
 }
 
 TEST_CASE("a mutated picture is read or refused, whatever the mutation") {

@@ -62,13 +62,12 @@ def test_types_are_right(tmp_path):
         "reveal_type(touchtrial.force_field(texture).heights)\n"
         "touchtrial.extract('a.png', radios=2)\n"
     )
-    package = run_python("mypy", "--strict", SOURCE / "python/touchtrial", folder=tmp_path)
-    assert package.returncode == 0, package.stdout
-    user = run_python("mypy", "user.py", folder=tmp_path).stdout
+    # One run reads NumPy's types once; the user's error is the only one.
+    user = run_python("mypy", "--strict", SOURCE / "python/touchtrial", "user.py", folder=tmp_path).stdout
     # NumPy spells its 32-bit float in one of these ways, depending on its version.
     assert re.search(r"float32|floating\[numpy\._typing\.(\w+\.)?_32Bit\]", user), user
     assert 'Unexpected keyword argument "radios"' in user
-    assert "Found 1 error" in user
+    assert "Found 1 error in 1 file" in user
 
 
 def test_the_stub_describes_the_native_module(tmp_path):

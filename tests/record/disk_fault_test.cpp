@@ -11,8 +11,8 @@ namespace {
 
 using Kind = Fault::Kind;
 
-/// Events in session 2 when it is complete: 2 + 3 * 4 + 1.
-constexpr std::size_t kWholeSession = 15;
+/// Events in session 2 when it is complete.
+constexpr std::size_t kWholeSession = 2 + kTrials * 4 + 1;
 
 /// Session 2 on a disk with one fault; a step that is refused is repeated once the disk works
 /// again.

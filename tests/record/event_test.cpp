@@ -1,7 +1,7 @@
 #include "record/event.hpp"
 
 #include "support/catch.hpp"
-#include "support/mentions.hpp"
+#include "support/names.hpp"
 
 #include <functional>
 #include <set>
@@ -76,7 +76,7 @@ TEST_CASE("the hash of an event changes with each of its members") {
 TEST_CASE("a chain accepts events that follow and gives the reason for refusing others") {
   ChainLink chain(2);
   Event first = an_event();
-  REQUIRE(chain.broken_by(first));
+  REQUIRE(names(chain.broken_by(first).value(), "[time-in-clear]"));
   first.at = {};
   first.hash = event_hash(first);
   REQUIRE_FALSE(chain.broken_by(first));
@@ -85,16 +85,16 @@ TEST_CASE("a chain accepts events that follow and gives the reason for refusing 
   REQUIRE(chain.head() == first.hash);
 
   Event second = first;
-  REQUIRE(chain.broken_by(second));
+  REQUIRE(names(chain.broken_by(second).value(), "[repeated-sequence]"));
   second.sequence = 2;
-  REQUIRE(mentions(chain.broken_by(second).value(), "1"));
+  REQUIRE(names(chain.broken_by(second).value(), "1 [sequence-gap]"));
   second.sequence = 1;
-  REQUIRE(chain.broken_by(second));
+  REQUIRE(names(chain.broken_by(second).value(), "[broken-link]"));
   second.previous = first.hash;
-  REQUIRE(chain.broken_by(second));
+  REQUIRE(names(chain.broken_by(second).value(), "[altered-event]"));
   second.kind = EventKind::study_closed;
   second.hash = event_hash(second);
-  REQUIRE(mentions(chain.broken_by(second).value(), "study-closed"));
+  REQUIRE(names(chain.broken_by(second).value(), "study-closed"));
   second.kind = EventKind::timed_out;
   second.hash = event_hash(second);
   REQUIRE_FALSE(chain.broken_by(second));

@@ -105,7 +105,7 @@ TEST_CASE("an impossible event is refused with its place and leaves the rows as 
   const auto refused = [&](auto&& work, const std::string& words = "") {
     const DerivedRows before = session.rows;
     const std::string line = refusal_of(work);
-    REQUIRE(mentions(line, "1 " + words));
+    REQUIRE(names_in_order(line, "1 " + words));
     REQUIRE(session.rows.trials == before.trials);
     REQUIRE(session.in_clear.sessions == before.sessions);
     REQUIRE(session.rows.sessions == before.sessions);

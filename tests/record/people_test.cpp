@@ -99,16 +99,16 @@ TEST_CASE("only a participant who cannot continue is replaced, once, and by a ne
   const auto refusal = [&](int session, const std::string& by, const std::string& reason = "left") {
     return refusal_of([&] { store.replace(session, by, kUtc, reason); });
   };
-  REQUIRE(mentions(refusal(1, "P9"), "1 P1"));
+  REQUIRE(names(refusal(1, "P9"), "1 P1"));
   store.exclude(1, kUtc, "fell asleep");
   REQUIRE_FALSE(refusal(1, "P9", "").empty());
-  REQUIRE(mentions(refusal(1, "P 9"), "P 9"));
-  REQUIRE(mentions(refusal(1, "P2"), "P2 2"));
-  REQUIRE(mentions(refusal(7, "P9"), "7"));
+  REQUIRE(names_in_order(refusal(1, "P 9"), "P 9"));
+  REQUIRE(names(refusal(1, "P2"), "P2 2"));
+  REQUIRE(names(refusal(7, "P9"), "7"));
   REQUIRE(refusal(1, "P9").empty());
-  REQUIRE(mentions(refusal(1, "P8"), "1 P1"));
+  REQUIRE(names(refusal(1, "P8"), "1 P1"));
   store.withdraw(2, kUtc, "asked to");
-  REQUIRE(mentions(refusal(2, "P9"), "P9"));
+  REQUIRE(names(refusal(2, "P9"), "P9"));
   store.close_study(kUtc);
   REQUIRE_FALSE(refusal(2, "P8").empty());
   REQUIRE_FALSE(store.first_fault());
@@ -281,8 +281,8 @@ TEST_CASE("a safety record is kept for as many years as the study says, to the d
   constexpr std::chrono::days kTenYears(10 * 365 + 3);  // 2024, 2028 and 2032 are leap years
   REQUIRE_FALSE(erase(kUtc + kTenYears).empty());
   store.withdraw(1, kUtc, "asked to");
-  REQUIRE(mentions(erase(kUtc), "2033-11-14"));
-  REQUIRE(mentions(erase(kUtc + kTenYears - nanoseconds(1)), "2033-11-14"));
+  REQUIRE(names(erase(kUtc), "2033-11-14"));
+  REQUIRE(names(erase(kUtc + kTenYears - nanoseconds(1)), "2033-11-14"));
   REQUIRE(store.wrapped_keys(1).safety);
   REQUIRE(erase(kUtc + kTenYears).empty());
   REQUIRE(store.wrapped_keys(1) == WrappedKeys{});
@@ -372,7 +372,7 @@ TEST_CASE("a look at one participant shows the sessions of that participant so f
     return refusal_of([&] { store.look_at(participant, kUtc, reason); });
   };
   REQUIRE_FALSE(refusal("P1", "").empty());
-  REQUIRE(mentions(refusal("P9", "asked"), "P9"));
+  REQUIRE(names(refusal("P9", "asked"), "P9"));
   REQUIRE(refusal("P1", "asked").empty());
   REQUIRE_FALSE(store.state().unblinded);
   REQUIRE(store.state().shows(1));

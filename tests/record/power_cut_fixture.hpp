@@ -30,6 +30,9 @@ using Story = std::function<void(record::StudyStore&, Acknowledged&)>;
 /// Does one step of a session; may repeat it if it is refused.
 using Attempt = std::function<void(const std::function<void()>&)>;
 
+/// Trials of session 2: all after the first do the same operations.
+inline constexpr int kTrials = 2;
+
 /// Session 2, each answer stored together with its trace.
 inline void record_session(record::StudyStore& store, Acknowledged& acknowledged,
                            const Attempt& attempt) {
@@ -41,7 +44,7 @@ inline void record_session(record::StudyStore& store, Acknowledged& acknowledged
   attempt([&] {
     recorder.add(seconds(1), record::EventKind::instructed, record::TextBody{.text = "read aloud"});
   });
-  for (int trial = 1; trial <= 3; ++trial) {
+  for (int trial = 1; trial <= kTrials; ++trial) {
     const nanoseconds start = seconds(20 * trial);
     attempt([&] { recorder.presented(start, trial, 0); });
     attempt([&] { recorder.first_contact(start + milliseconds(350), trial); });

@@ -19,7 +19,7 @@ TEST_CASE("a participant's session is held once, and other participants' are not
     const SessionLock first(database, "P07");
     const SessionLock other(database, "P08");
     const std::string line = refusal_of([&] { const SessionLock second(database, "P07"); });
-    REQUIRE(mentions(line, "P07"));
+    REQUIRE(names(line, "P07"));
   }
   REQUIRE(refusal_of([&] { const SessionLock again(database, "P07"); }).empty());
 }

@@ -5,7 +5,8 @@
 #include "core/random.hpp"
 #include "record/session_recorder.hpp"
 #include "record/study_store.hpp"
-#include "support/mentions.hpp"
+#include "support/names.hpp"
+#include "support/refusal.hpp"
 #include "support/temp_folder.hpp"
 
 #include <chrono>
@@ -171,12 +172,7 @@ inline void add(record::StudyStore& store, int session, int trials = 3) {
 /// The message with which `work` is refused; empty if it is not.
 template <typename Work>
 std::string refusal_of(Work&& work) {
-  try {
-    work();
-  } catch (const StoreError& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<StoreError>([&] { work(); });
 }
 
 inline bool contains(const std::string& text, const std::string& part) {
@@ -188,11 +184,11 @@ inline std::string place_of(const record::ChainFault& fault) {
   return std::to_string(fault.session) + "/" + std::to_string(fault.sequence);
 }
 
-/// Whether `work` is refused, and the message mentions these words (support/mentions.hpp).
+/// Whether `work` is refused, and the message names these places in order (support/names.hpp).
 template <typename Work>
 bool refuses(Work&& work, const std::string& words = "") {
   const std::string line = refusal_of(work);
-  return !line.empty() && mentions(line, words);
+  return !line.empty() && (words.empty() || names_in_order(line, words));
 }
 
 /// An event as it was recorded.

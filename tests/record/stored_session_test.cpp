@@ -225,7 +225,7 @@ TEST_CASE("events that belong together are stored all or none") {
   recorder.presented(seconds(1), 1, 0);
   recorder.interrupted(seconds(2), 1, "device lost");
   // The trace could be stored, but the answer of an interrupted trial cannot.
-  REQUIRE(mentions(
+  REQUIRE(names_in_order(
       refusal_of([&] { recorder.answered(seconds(3), answer_to(1), evidence_of(recorder, 1)); }),
       "1"));
   REQUIRE(study.store->events(1).size() == 3);

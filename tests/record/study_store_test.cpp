@@ -25,7 +25,7 @@ void require_refused(StoredFixture& study, const BufferedEvents& session,
   const std::size_t before = study.store->events(0).size();
   const std::string line =
       refusal_of([&] { study.store->add_session(session, wrapped_key_of(1), kUtc); });
-  REQUIRE(mentions(line, study.path.string() + " " + words));
+  REQUIRE(names_in_order(line, study.path.string() + " " + words));
   REQUIRE(study.store->events(0).size() == before);
   REQUIRE_FALSE(study.store->first_fault());
 }

@@ -62,7 +62,7 @@ CueStatistics study_with(const Population& people, int participants,
       one.add({choice.presented, choice.answered, shares, shares});
     }
   }
-  return analysis::identification::cue_statistics(all, 0, 1);
+  return analysis::identification::cue_divergences(all);
 }
 
 double divergence_of(const Plane<double>& a, const Plane<double>& b) {
@@ -83,22 +83,19 @@ void add_divergence(const Population& people, int participants, bool alike, int 
   const std::string who =
       described(people, participants,
                 alike ? "an observer who confuses alike" : "an observer with other confusions");
-  const auto over_studies = [&](auto number) {
-    return average_of(repetitions, "divergence" + who, [&](RandomStream& random) {
-      return number(
-          study_with(people, participants, {observer, observer, observer}, random).divergence[0]);
-    });
-  };
-  const Average covered = over_studies([&](const analysis::identification::CueFigure& found) {
-    return found.interval && found.interval->low <= truth && truth <= found.interval->high ? 1.0
-                                                                                           : 0.0;
+  const auto averages = averages_of(repetitions, "divergence" + who, [&](RandomStream& random) {
+    const analysis::identification::CueFigure found =
+        study_with(people, participants, {observer, observer, observer}, random).divergence[0];
+    const bool is_covered =
+        found.interval && found.interval->low <= truth && truth <= found.interval->high;
+    return std::vector<double>{is_covered ? 1.0 : 0.0, found.value.value_or(0.0)};
   });
+  const Average& covered = averages[0];
+  const Average& value = averages[1];
   findings.push_back({"coverage", "divergence of confusions, jackknife", who, 0.95, covered.mean,
                       covered.standard_error, 0.92, alike ? 1.0 : 0.975,
                       alike ? "0 is the least possible divergence, and in the interval"
                             : "few answers to each class"});
-  const Average value = over_studies(
-      [](const analysis::identification::CueFigure& found) { return found.value.value_or(0.0); });
   findings.push_back({"bias", "divergence of confusions, jackknife, bit", who, 0.0,
                       value.mean - truth, value.standard_error, -0.01, alike ? 0.012 : 0.005,
                       alike ? "cut at 0" : "to the first order"});

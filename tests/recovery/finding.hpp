@@ -32,8 +32,13 @@ struct Average {
   double standard_error = 0.0;
 };
 /// Runs `study` once for each repetition, on all cores, each with random numbers of its own, and
-/// averages the numbers that it returns (ones and zeros for a share). The result depends only on
-/// the arguments.
+/// averages each of the numbers that it returns (ones and zeros for a share). The result depends
+/// only on the arguments.
+[[nodiscard]] std::vector<Average> averages_of(
+    int repetitions, const std::string& purpose,
+    const std::function<std::vector<double>(RandomStream&)>& study);
+
+/// The same for studies that return one number.
 [[nodiscard]] Average average_of(int repetitions, const std::string& purpose,
                                  const std::function<double(RandomStream&)>& study);
 

@@ -56,23 +56,22 @@ double holds(const planning::OpenInterval& interval, double truth) {
 void add_spread(double spread, int repetitions, std::vector<Finding>& findings) {
   const std::string who =
       fmt::format("20 participants, 25 trials, ln noise of SD {}, lapse {}", spread, kLapse);
-  const auto over_studies = [&](auto number) {
-    return average_of(repetitions, "spread" + who,
-                      [&](RandomStream& random) { return number(found_in(spread, random)); });
-  };
-  const Average covered =
-      over_studies([&](const planning::PeopleSpread& one) { return holds(one.interval, spread); });
+  const auto averages = averages_of(repetitions, "spread" + who, [&](RandomStream& random) {
+    const planning::PeopleSpread one = found_in(spread, random);
+    return std::vector<double>{holds(one.interval, spread), one.equal_p <= 0.05 ? 1.0 : 0.0,
+                               one.spread};
+  });
+  const Average& covered = averages[0];
   findings.push_back({"coverage", "spread of noise between people, profile", who, 0.95,
                       covered.mean, covered.standard_error, 0.92, spread > 0.0 ? 0.975 : 1.0,
                       spread > 0.0 ? "an approximation" : "at the end of the possible spreads"});
   if (spread == 0.0) {
-    const Average told = over_studies(
-        [](const planning::PeopleSpread& one) { return one.equal_p <= 0.05 ? 1.0 : 0.0; });
+    const Average& told = averages[1];
     findings.push_back({"type-I error", "people differ in their noise, likelihood ratio", who, 0.05,
                         told.mean, told.standard_error, 0.02, 0.06, "an approximation"});
     return;
   }
-  const Average mean = over_studies([](const planning::PeopleSpread& one) { return one.spread; });
+  const Average& mean = averages[2];
   findings.push_back({"recovered", "spread of noise between people", who, spread, mean.mean,
                       mean.standard_error, 0.9 * spread, 1.25 * spread,
                       "maximum likelihood, too large where answers tell little of it"});

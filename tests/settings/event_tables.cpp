@@ -1,7 +1,10 @@
 #include "event_tables.hpp"
 
+#include "analysis/exports/export_tables.hpp"
+#include "analysis/outcomes/incidents.hpp"
 #include "record/event_kinds.hpp"
 
+#include <span>
 #include <string_view>
 
 namespace touchtrial {
@@ -24,7 +27,8 @@ class Table {
         add_member("", one, "secret", one.member.meaning);
       }
     }
-    if (!row.more.secret_in_words.empty()) add("", "", "", "secret", row.more.secret_in_words);
+    if (!row.more.secret_description.empty())
+      add("", "", "", "secret", row.more.secret_description);
   }
 
   [[nodiscard]] const std::string& text() const { return text_; }
@@ -51,7 +55,21 @@ class Table {
       "| kind | member | type and range | where | meaning |\n| --- | --- | --- | --- | --- |\n";
 };
 
+std::string row_of_file(const std::string& file, std::span<const record::EventKind> kinds) {
+  std::string names;
+  for (const record::EventKind kind : kinds) {
+    names += (names.empty() ? "`" : ", `") + std::string(name_of(kind)) + "`";
+  }
+  return "| `" + file + "` | " + names + " |\n";
+}
+
 }  // namespace
+
+std::string table_of_exported_events() {
+  return "| file | kinds of events |\n| --- | --- |\n" +
+         row_of_file("events.csv", analysis::kinds_in_events_csv()) +
+         row_of_file("incidents.csv", analysis::incident_kinds());
+}
 
 std::string table_of_events(bool on_file_chain) {
   Table table;

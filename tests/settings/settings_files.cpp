@@ -1,5 +1,5 @@
-/// \file The JSON Schemas of config/schema and the tables of settings and events in docs, made from
-/// the descriptions that the readers follow.
+/// \file The JSON Schemas of config/schema and the tables of settings, events and measures in docs,
+/// made from the descriptions that readers, writers and reports follow.
 ///
 ///     settings_files check ROOT   says which of them are not as the descriptions make them
 ///     settings_files write ROOT   writes them
@@ -13,6 +13,7 @@
 #include "device/model/device_model.hpp"
 #include "device/settings_schemas.hpp"
 #include "event_tables.hpp"
+#include "measure_tables.hpp"
 #include "protocols/registration/registration.hpp"
 #include "protocols/simulation/subject_model.hpp"
 #include "protocols/simulation/subject_schema.hpp"
@@ -65,6 +66,9 @@ const Kind& kind_of(std::string_view name) {
 /// \param what  as in the line before the table
 std::string table_of(std::string what) {
   constexpr std::string_view kInner = " with inner keys";
+  constexpr std::string_view kMeasures = "measures of ";
+  if (what.starts_with(kMeasures)) return table_of_measures(what.substr(kMeasures.size()));
+  if (what == "events in exports") return table_of_exported_events();
   if (what.starts_with("events ")) return table_of_events(what.ends_with("file"));
   const bool nested = what.ends_with(kInner);
   if (nested) what.resize(what.size() - kInner.size());
@@ -75,7 +79,9 @@ std::string table_of(std::string what) {
 
 /// The page with its tables made anew. A table stands between the lines
 /// `<!-- settings: KIND /pointer -->`, `<!-- settings: KIND /pointer with inner keys -->` or
-/// `<!-- settings: events of the file -->` (`of a session`) and `<!-- end of settings -->`.
+/// `<!-- settings: events of the file -->` (`of a session`, `in exports`) or
+/// `<!-- settings: measures of identification -->` (`of ratings`, `of thresholds`) and
+/// `<!-- end of settings -->`.
 std::string with_tables(const std::string& page) {
   constexpr std::string_view kBegins = "<!-- settings: ";
   constexpr std::string_view kEnds = "<!-- end of settings -->\n";

@@ -5,6 +5,7 @@
 #include "engine/image_file.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 #include "support/temp_folder.hpp"
 
 #include <set>
@@ -145,12 +146,7 @@ TEST_CASE("a text that is not a manifest is refused with file and place") {
   const auto path = folder.path() / "manifest.json";
   const auto refusal = [&](const std::string& content) {
     replace_file(path, content);
-    try {
-      static_cast<void>(read_stimulus_manifest(path));
-    } catch (const FileError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return message_of<FileError>([&] { return read_stimulus_manifest(path); });
   };
   CHECK_THROWS_AS(read_stimulus_manifest(folder.path() / "none.json"), FileError);
   CHECK_THAT(refusal("{"), holds_text("manifest.json"));

@@ -3,10 +3,10 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "study/refusal.hpp"
 #include "study/study_examples.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 #include "support/temp_folder.hpp"
 
 #include <fstream>

@@ -4,10 +4,10 @@
 #include "core/errors.hpp"
 #include "study/laboratory.hpp"
 #include "study/protocol.hpp"
-#include "study/refusal.hpp"
 #include "study/study_key.hpp"
 #include "study/study_sections.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 
 #include <set>
 #include <vector>

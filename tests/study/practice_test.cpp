@@ -7,9 +7,9 @@
 #include "study/laboratory.hpp"
 #include "study/pack_upkeep.hpp"
 #include "study/protocol.hpp"
-#include "study/refusal.hpp"
 #include "study/signed_pack.hpp"
 #include "study/stimulus_field.hpp"
+#include "support/refusal.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,11 +3,11 @@
 #include "core/errors.hpp"
 #include "study/laboratory.hpp"
 #include "study/pack_upkeep.hpp"
-#include "study/refusal.hpp"
 #include "study/signed_pack.hpp"
 #include "study/stimulus_field.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 
 #include <algorithm>
 #include <atomic>

@@ -4,10 +4,10 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "study/random_orders.hpp"
-#include "study/refusal.hpp"
 #include "study/study_examples.hpp"
 #include "study/study_key.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 #include "support/temp_folder.hpp"
 
 #include <algorithm>

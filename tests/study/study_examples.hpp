@@ -3,8 +3,8 @@
 
 #include "core/errors.hpp"
 #include "study/protocol.hpp"
-#include "study/refusal.hpp"
 #include "study/study.hpp"
+#include "support/refusal.hpp"
 
 #include <filesystem>
 #include <string>
@@ -70,12 +70,7 @@ namespace touchtrial {
 
 /// The error that a study is refused with; empty if it is accepted.
 [[nodiscard]] inline std::string refusal_of(const nlohmann::json& study) {
-  try {
-    static_cast<void>(parsed(study));
-  } catch (const StudyError& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<StudyError>([&] { return parsed(study); });
 }
 
 /// Whether a study is refused at `places`.

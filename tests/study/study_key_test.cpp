@@ -2,8 +2,8 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "study/refusal.hpp"
 #include "study/study_examples.hpp"
+#include "support/refusal.hpp"
 #include "support/temp_folder.hpp"
 
 #include <set>

@@ -7,6 +7,7 @@
 #include "study/study_sections.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 #include "support/temp_folder.hpp"
 
 #include <string>
@@ -20,12 +21,7 @@ using nlohmann::json;
 
 /// The error that a text is refused with; empty if it is accepted.
 std::string refusal_of_text(const std::string& text) {
-  try {
-    static_cast<void>(study::parse_study(text, "", "study.json"));
-  } catch (const StudyError& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<StudyError>([&] { return study::parse_study(text, "", "study.json"); });
 }
 
 void check_names(const std::string& message, const std::string& places) {

@@ -12,25 +12,46 @@
 
 namespace touchtrial {
 
-/// Whether `message` names each of `places`, which blanks separate, in any order. A place that
-/// begins or ends with a letter or digit is not part of a longer word or number.
-[[nodiscard]] inline bool names(const std::string& message, const std::string& places) {
-  const auto is_part = [&](std::size_t at) {
-    return at < message.size() && std::isalnum(static_cast<unsigned char>(message[at])) != 0;
-  };
-  const auto is_named = [&](const std::string& place) {
-    const bool from_part = std::isalnum(static_cast<unsigned char>(place.front())) != 0;
-    const bool to_part = std::isalnum(static_cast<unsigned char>(place.back())) != 0;
-    for (auto at = message.find(place); at != std::string::npos; at = message.find(place, at + 1)) {
-      const bool is_whole =
-          !(from_part && is_part(at - 1)) && !(to_part && is_part(at + place.size()));
-      if (is_whole) return true;
-    }
-    return false;
-  };
+/// Where `place` begins in `message` at or after `from`; npos if nowhere. A place that begins or
+/// ends with a letter or digit is not part of a longer word or number.
+[[nodiscard]] inline std::size_t find_place(const std::string& message, const std::string& place,
+                                            std::size_t from = 0) {
+  const auto is_part = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
+  for (auto at = message.find(place, from); at != std::string::npos;
+       at = message.find(place, at + 1)) {
+    const std::size_t end = at + place.size();
+    const bool is_cut_before = at > 0 && is_part(place.front()) && is_part(message[at - 1]);
+    const bool is_cut_after =
+        end < message.size() && is_part(place.back()) && is_part(message[end]);
+    if (!is_cut_before && !is_cut_after) return at;
+  }
+  return std::string::npos;
+}
+
+/// What blanks separate in `places`.
+[[nodiscard]] inline std::vector<std::string> separate_places(const std::string& places) {
   std::istringstream list(places);
-  const std::vector<std::string> all{std::istream_iterator<std::string>(list), {}};
-  return !all.empty() && std::ranges::all_of(all, is_named);
+  return {std::istream_iterator<std::string>(list), {}};
+}
+
+/// Whether `message` names each of `places`, which blanks separate, in any order.
+[[nodiscard]] inline bool names(const std::string& message, const std::string& places) {
+  const auto all = separate_places(places);
+  return !all.empty() && std::ranges::all_of(all, [&](const std::string& place) {
+    return find_place(message, place) != std::string::npos;
+  });
+}
+
+/// Whether `message` names `places` in this order, each after the one before: numbers whose order
+/// says what they count.
+[[nodiscard]] inline bool names_in_order(const std::string& message, const std::string& places) {
+  const auto all = separate_places(places);
+  std::size_t from = 0;
+  return !all.empty() && std::ranges::all_of(all, [&](const std::string& place) {
+    const std::size_t at = find_place(message, place, from);
+    from = at + place.size();
+    return at != std::string::npos;
+  });
 }
 
 /// A matcher for messages that name each of `places`, which blanks separate.

@@ -85,7 +85,7 @@ struct Sitting {
   /// Attends until there is a reply or the window is gone.
   std::optional<session::StepReply> reply_to(const session::Step& step) {
     const auto give_up = steady_clock::now() + kPatience;
-    while (steady_clock::now() < give_up && !window.gone()) {
+    while (steady_clock::now() < give_up && !window.end_reason()) {
       if (const auto reply = window.attend(step)) return reply;
     }
     return std::nullopt;
@@ -179,7 +179,7 @@ TEST_CASE("neither Escape nor the keys of a preview do anything in a session") {
     sitting.type("Escape Next Prior");
     for (int i = 0; i < 20; ++i)
       CHECK_FALSE(sitting.window.attend(session::ReadyStep{1, 25, false}));
-    CHECK_FALSE(sitting.window.gone());
+    CHECK_FALSE(sitting.window.end_reason());
   });
 }
 
@@ -258,7 +258,7 @@ TEST_CASE(
     device::ServoControl servo;
     sitting.window.exploring(servo);
     CHECK(servo.emergency_stop_asked());
-    CHECK(sitting.window.gone() == app::WindowGone::closed);
+    CHECK(sitting.window.end_reason() == app::WindowEnd::closed);
     CHECK_FALSE(sitting.window.attend(answer_step()));
   });
 }
@@ -275,7 +275,7 @@ void feel_texture(app::ParticipantWindow& window, double force_n) {
 
 TEST_CASE("Enter does not answer before the surface was felt, and the screen says so") {
   app::ParticipantWindowOptions wanted = options();
-  wanted.least_touch = {.contact_s = 0.5, .path_mm = 25.0};
+  wanted.min_touch = {.contact_s = 0.5, .path_mm = 25.0};
   Sitting sitting(wanted);
   sitting.run([&] {
     sitting.show(session::ReadyStep{1, 25, false});
@@ -362,7 +362,7 @@ app::ParticipantWindowOptions with_intervals() {
                 .question = study::Choose{"threshold_texture", {}}};
   wanted.stiffness_n_per_mm = 0.4;
   wanted.interval_pause = milliseconds(300);
-  wanted.least_touch = {.contact_s = 0.5, .path_mm = 25.0};
+  wanted.min_touch = {.contact_s = 0.5, .path_mm = 25.0};
   return wanted;
 }
 
@@ -601,7 +601,7 @@ TEST_CASE("a window takes the keyboard back while a plane is on, and says that i
       return is_lost = is_lost || room.window.take_out_of_reach();
     });
     waits([&] { return room.window.out_of_reach() == milliseconds{0}; });
-    CHECK_FALSE(room.window.gone());
+    CHECK_FALSE(room.window.end_reason());
   });
 }
 

@@ -15,11 +15,11 @@ namespace touchtrial::analysis {
 
 inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-/// Widths as journals with two columns print them.
+/// Figure widths of two-column journals.
 inline constexpr double kColumn_cm = 8.5;
 inline constexpr double kPage_cm = 17.0;
 
-/// One row of a layer's data, in units of the axes. What its layer does not use is not a number.
+/// One row of a layer's data, in units of the axes. Numbers that its layer does not use are NaN.
 struct Datum {
   double x = kNoNumber;
   double y = kNoNumber;

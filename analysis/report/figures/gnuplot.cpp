@@ -89,7 +89,7 @@ class Streams {
   posix_spawn_file_actions_t actions_{};
 };
 
-/// How a program ended, as waitpid says it.
+/// The exit status of a program, from waitpid.
 int wait_for(pid_t child) {
   int status = 0;
   while (waitpid(child, &status, 0) < 0) {
@@ -112,7 +112,7 @@ std::string version_if_old(const std::string& said) {
   return std::array<int, 2>{*major, *minor} < kMinVersion ? version : "";
 }
 
-/// The last line of gnuplot's complaint; the others echo the script.
+/// The last line of gnuplot's error message; the others echo the script.
 std::string gist_of(const std::string& complaint) {
   const std::size_t last = complaint.find_last_not_of(" \n");
   if (last == std::string::npos) return "without a message";

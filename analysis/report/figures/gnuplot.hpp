@@ -16,12 +16,12 @@ class GnuplotProcess {
   /// \throws Error if gnuplot cannot be started
   /// \throws FileError if temporary files cannot be made
   GnuplotProcess(std::string argument, std::string_view script);
-  /// Waits for its end.
+  /// Waits until it exits.
   ~GnuplotProcess();
   GnuplotProcess(GnuplotProcess&&) noexcept;
   GnuplotProcess& operator=(GnuplotProcess&&) = delete;
 
-  /// Waits for its end.
+  /// Waits until it exits.
   /// \return what it printed
   /// \throws Error if gnuplot failed
   [[nodiscard]] std::string result();
@@ -32,7 +32,7 @@ class GnuplotProcess {
   bool asks_version_;
 };
 
-/// Called before long work that ends in a figure.
+/// Call before a long computation that ends in a figure.
 /// \throws Error, with the remedy, if gnuplot is not installed or does not start
 void require_gnuplot();
 

@@ -1,4 +1,4 @@
-/// \file Layers of data in gnuplot's words.
+/// \file Layers of data as gnuplot commands.
 #pragma once
 
 #include "analysis/report/figures/figure.hpp"
@@ -28,7 +28,7 @@ struct Drawing {
 /// \param at  gnuplot's "at .." and what follows; never from the user
 [[nodiscard]] std::string text_at(const std::string& text, const std::string& at);
 /// A pale rectangle.
-/// \param from,to  corners in gnuplot's words
+/// \param from,to  corners as gnuplot coordinates
 [[nodiscard]] std::string pale_field(const std::string& from, const std::string& to,
                                      const std::string& colour);
 

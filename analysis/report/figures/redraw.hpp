@@ -1,4 +1,4 @@
-/// \file What lies beside a drawn figure for whoever wants to draw it in another style.
+/// \file The files with which users redraw a figure in their own style.
 #pragma once
 
 #include "analysis/report/figures/figure.hpp"

@@ -1,4 +1,4 @@
-/// \file What the scripts that redraw a figure share.
+/// \file Parts shared by the scripts that redraw a figure.
 #pragma once
 
 #include "analysis/report/figures/figure.hpp"
@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace touchtrial::analysis {
@@ -23,11 +24,11 @@ inline constexpr double kInchesOfCm = 1.0 / 2.54;
 [[nodiscard]] std::string list_of(const std::vector<std::string>& names, const char* open,
                                   const char* close);
 
-/// How panels share the figure.
+/// The arrangement of panels.
 struct Grid {
   std::size_t columns = 1;
   std::size_t rows = 1;
-  std::string widths;   ///< numbers with commas between them
+  std::string widths;   ///< comma-separated numbers
   std::string heights;  ///< likewise
 };
 
@@ -36,6 +37,10 @@ struct Grid {
 
 /// "SIMULATED PILOT"; may be empty
 [[nodiscard]] std::string stamps_of(const Figure& figure);
+
+/// The beginning of every script: redraw_matplotlib.py and redraw_ggplot.r.
+[[nodiscard]] std::string_view matplotlib_head() noexcept;
+[[nodiscard]] std::string_view ggplot_head() noexcept;
 
 /// A script for matplotlib that reads the figure's CSV beside it.
 [[nodiscard]] std::string matplotlib_script(const Figure& figure, const Layout& layout);

@@ -42,7 +42,7 @@ struct Rgb {
 
 /// The layer's own colour, or ink.
 [[nodiscard]] std::string colour_of(const Layer& layer);
-/// A figure of one row or more, still without caption and panels.
+/// A new figure without caption and panels.
 [[nodiscard]] Figure figure_named(std::string id, std::string section, bool simulated,
                                   double width_cm = kColumn_cm);
 

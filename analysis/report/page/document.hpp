@@ -96,7 +96,7 @@ struct Section {
   /// What only specialists read: folded on the page, and left out in print and on a terminal.
   std::vector<Block> more{};
 
-  /// Whether a page shows nothing of it unless it is opened.
+  /// Whether all of it is folded.
   [[nodiscard]] bool is_folded() const { return blocks.empty() && !more.empty(); }
 };
 
@@ -106,11 +106,11 @@ struct Section {
 struct Document {
   std::string title;
   std::string stamp;  ///< for example "SIMULATED"; may be empty; stands on every table
-  std::vector<std::string> banners;  ///< what readers must know first
-  Definitions header;                ///< study, program and evidence; stands behind the sections
-  std::vector<Section> sections;     ///< what readers want to know before anything else comes first
-  std::string colophon;              ///< last line
-  bool numbered = true;              ///< whether the page numbers its tables and figures
+  std::vector<std::string> banners;   ///< warnings at the top of the page
+  Definitions header;                 ///< study, program and evidence; after the sections
+  std::vector<Section> sections;      ///< the most important first
+  std::string colophon;               ///< last line
+  bool numbered = true;               ///< whether the page numbers its tables and figures
   std::string about = "This report";  ///< the title of the header
 };
 

@@ -52,17 +52,15 @@ std::optional<Table> servo_table(const Collection& collection) {
   if (collection.servo_trials.empty()) return {};
   ServoNumbers numbers = servo_numbers(collection.servo_trials);
   const Quartiles p99 = quartiles(std::move(numbers.p99_us));
-  Table table{"servo",
-              "How punctual the servo was, over trials in real time",
-              {{"what", Align::left}, {"value"}}};
+  Table table{"servo", "Servo timing in real-time trials", {{"what", Align::left}, {"value"}}};
   table.rows = {{"trials", std::to_string(collection.servo_trials.size())},
                 {"lowest mean rate of a trial (Hz)", plain_figure(numbers.lowest_rate_hz, 1)},
                 {"trials' 99th percentile of lateness, median (µs)", plain_figure(p99.median, 1)},
                 {"the same, quartiles (µs)",
                  plain_figure(p99.lower, 1) + " and " + plain_figure(p99.upper, 1)},
-                {"latest tick of all (µs)", plain_figure(numbers.worst_us, 1)},
-                {"ticks that came late", std::to_string(numbers.overruns)},
-                {"samples that did not reach their trace", std::to_string(numbers.lost)}};
+                {"maximum lateness (µs)", plain_figure(numbers.worst_us, 1)},
+                {"late ticks", std::to_string(numbers.overruns)},
+                {"samples missing from traces", std::to_string(numbers.lost)}};
   return table;
 }
 

@@ -27,7 +27,7 @@ void note_unadjusted(const std::vector<Look>& looks, std::vector<Section>& secti
                                            const StudyHead* head = nullptr);
 /// Answers to closing questions: counts of options, quartiles of numbers, and texts.
 /// \return without blocks if nobody answered any
-[[nodiscard]] Section said_section(const StudyHead& head);
+[[nodiscard]] Section questionnaire_section(const StudyHead& head);
 /// What was registered before the study.
 [[nodiscard]] std::vector<Block> registration_blocks(const study::Registration& registration);
 /// "touch (12 sessions), ideal device (3 sessions)", by model; empty for none.

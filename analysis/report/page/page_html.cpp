@@ -313,7 +313,7 @@ std::string header_html(const Writer& writer) {
   return html + "<h1>" + html_text(writer.document.title) + "</h1>\n</header>\n";
 }
 
-/// The sections, with the contents behind the first: whoever opens the page sees the result.
+/// The sections, with the table of contents after the first, so that the result is visible at once.
 std::string main_html(Writer& writer) {
   std::string html = "<main id=\"main\" tabindex=\"-1\">\n";
   std::string contents = navigation(writer);
@@ -333,7 +333,7 @@ std::string main_html(Writer& writer) {
 std::string page_html(const Document& document) {
   Writer writer{document, references_of(document)};
   const std::string title = html_text(stamped(document.title, document.stamp));
-  std::string html = kHead + ("<title>" + title + "</title>\n<style>") + kPageStyle +
+  std::string html = kHead + ("<title>" + title + "</title>\n<style>") + std::string(page_style()) +
                      "</style>\n</head>\n<body>\n";
   html += header_html(writer) + main_html(writer) + "<footer>" + html_text(document.colophon) +
           "</footer>\n";

@@ -1,4 +1,4 @@
-// Who took part, when and how, and how hands explored.
+// Participants, conditions of sessions, and exploration.
 #include "analysis/outcomes/collection_records.hpp"
 #include "analysis/report/page/frame_sections.hpp"
 #include "analysis/report/page/wording.hpp"
@@ -121,12 +121,12 @@ Definitions conditions_of(const Collection& collection) {
           ? fmt::format("at most {} s{}{}", plain_figure(rule.explore_limit_s, 0),
                         rule.intervals > 0 ? " a plane" : "", timeout_words(rule.on_timeout))
           : "without a limit");
-  if (!rule.sight.empty()) entries.emplace_back("vision kept out by", rule.sight);
+  if (!rule.sight.empty()) entries.emplace_back("vision blocked by", rule.sight);
   entries.emplace_back("masking noise", rule.masking_wanted
                                             ? plain_figure(rule.masking_dbfs, 0) + " dBFS"
                                             : "not prescribed");
   const std::string incidents = incidents_of(collection.sessions);
-  if (!incidents.empty()) entries.emplace_back("besides trials", incidents);
+  if (!incidents.empty()) entries.emplace_back("incidents", incidents);
   const std::string devices = devices_of(collection.sessions);
   if (!devices.empty()) entries.emplace_back("device", devices);
   return definitions;
@@ -170,7 +170,7 @@ std::optional<Table> deviations_table(const Collection& collection) {
   }
   if (collection.is_public) {
     keep_columns({0, 2}, table);
-    table.notes = {{"The code \"other\" stands for codes that were made up while the study ran."}};
+    table.notes = {{"The code \"other\" stands for codes that were added during the study."}};
   }
   return table;
 }
@@ -204,8 +204,8 @@ std::string practice_of(const SessionRecord& one) {
                      one.practice->passed ? "" : ", not passed");
 }
 
-/// Tells whether the table of sessions has more to say about a session than that it was completed.
-bool is_remarkable(const SessionRecord& one) {
+/// Whether the table of sessions lists the session.
+bool has_remarks(const SessionRecord& one) {
   return one.row.withdrawn || one.row.excluded ||
          one.row.state != record::SessionState::completed || one.resumed > 0 ||
          one.interruptions > 0 || one.pauses > 0 || !one.row.replaced_by.empty() ||
@@ -214,17 +214,17 @@ bool is_remarkable(const SessionRecord& one) {
 
 std::optional<Table> sessions_table(const Collection& collection) {
   const std::vector<SessionRecord>& sessions = collection.sessions;
-  if (collection.is_public || std::none_of(sessions.begin(), sessions.end(), is_remarkable))
+  if (collection.is_public || std::none_of(sessions.begin(), sessions.end(), has_remarks))
     return {};
   Table table{"sessions",
-              "Sessions with more to report than that they were completed",
+              "Sessions with practice, incidents or exclusions",
               {{"session", Align::left},
                {"participant", Align::left},
                {"state", Align::left},
                {"practice, right", Align::left},
                {"remarks", Align::left}}};
   for (const SessionRecord& one : sessions) {
-    if (!is_remarkable(one)) continue;
+    if (!has_remarks(one)) continue;
     table.rows.push_back({std::to_string(one.row.session),
                           one.row.erased ? kNoFigure : one.row.participant,
                           one.row.erased ? "erased" : std::string(name_of(one.row.state)),
@@ -237,7 +237,7 @@ std::optional<Table> sessions_table(const Collection& collection) {
 Table looks_table(const std::vector<Look>& looks, bool is_public) {
   Table table{
       "looks",
-      "When outcomes were looked at",
+      "Looks at outcomes",
       {{"date", Align::left}, {"participants"}, {"look", Align::left}, {"why", Align::left}}};
   for (const Look& look : looks) {
     std::string kind = name_of(look.kind);
@@ -280,7 +280,7 @@ Cited bands_sentence(const Characteristic& of) {
     separator = ", ";
   }
   if (of.others > 0) {
-    text += fmt::format(", others and not told ({}; bands of fewer than {} are not shown)",
+    text += fmt::format(", others and not stated ({}; bands of fewer than {} are not shown)",
                         of.others, kMinOfBand);
   }
   return {text + "."};
@@ -303,17 +303,16 @@ constexpr Explored kExplored[] = {
 
 /// A column for each method.
 std::optional<Table> explorations_table(const StudyHead& head) {
-  Table table{"explorations",
-              "How hands explored, over the trials that count: medians and quartiles",
-              {{"", Align::left}}};
+  Table table{
+      "explorations", "Exploration in counted trials: medians and quartiles", {{"", Align::left}}};
   std::vector<const Explorations*> methods;
-  std::string missed;
+  Proportion missed;
   for (const Explorations& one : head.explorations) {
     if (one.trials == 0) continue;
     methods.push_back(&one);
     table.columns.push_back({head.explorations.size() > 1 ? one.method : "median (quartiles)"});
-    missed += fmt::format("{}{} of {}", missed.empty() ? "" : ", ", one.without_response,
-                          counted(one.trials, "trial"));
+    missed.correct += one.without_response;
+    missed.n += one.trials;
   }
   if (methods.empty()) return {};
   for (const Explored& row : kExplored) {
@@ -324,9 +323,9 @@ std::optional<Table> explorations_table(const StudyHead& head) {
   }
   const double limit_s = head.collection.prescription.explore_limit_s;
   table.notes = {{fmt::format(
-      "Trials of all participants, each with the same weight. {}; without a response: {}.",
+      "Trials of all participants, each with the same weight. {}; without a response: {} of {}.",
       limit_s > 0.0 ? plain_figure(limit_s, 0) + " s were allowed" : "Time was not limited",
-      missed)}};
+      missed.correct, counted(missed.n, "trial"))}};
   return table;
 }
 
@@ -397,16 +396,16 @@ std::string device_summary(const Collection& collection) {
   return listed(all, " and ");
 }
 
-Section said_section(const StudyHead& head) {
+Section questionnaire_section(const StudyHead& head) {
   Section section{"said", "Answers to questions", {}};
-  if (head.said.empty()) return section;
+  if (head.closing_answers.empty()) return section;
   Table questions{"questions",
                   "Answers to the questions after the session",
                   {{"question", Align::left}, {"participants"}, {"answers", Align::left}}};
   Table texts{"answers-in-words",
               "Answers in words",
               {{"question", Align::left}, {"participant", Align::left}, {"answer", Align::left}}};
-  for (const QuestionSummary& one : head.said) {
+  for (const QuestionSummary& one : head.closing_answers) {
     const std::string& wording = one.wording.empty() ? one.question : one.wording;
     questions.rows.push_back({wording, std::to_string(one.answered), said_in(one)});
     for (const auto& [participant, text] : one.texts) {

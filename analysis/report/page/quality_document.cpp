@@ -23,7 +23,9 @@ Table sessions_table(const SessionCounts& counts) {
   add("excluded", counts.excluded);
   add("replaced", counts.replaced);
   add("withdrawn, data erased", counts.erased);
-  table.notes = {{"Withdrawn before replaced before excluded before a session's own state."}};
+  table.notes = {
+      {"A session is counted once, in the first of these states: withdrawn, replaced, excluded, "
+       "its own."}};
   return table;
 }
 
@@ -42,7 +44,7 @@ Table trials_table(const TrialQuality& quality) {
   add("interrupted, and not repeated yet", quality.not_repeated, quality.presented);
   add("with a trace", quality.with_trace, quality.presented);
   add("valid by the study's rule, as far as it is in clear", quality.valid, quality.with_trace);
-  add("with servo ticks that came late", quality.with_overruns, quality.with_trace);
+  add("with servo late ticks", quality.with_overruns, quality.with_trace);
   table.notes = {
       {"Shares: of presented trials; of pauses, of answers; of validity and late ticks, of trials "
        "with a trace."}};
@@ -60,8 +62,9 @@ Table answers_table(const Collection& collection) {
   }
   table.notes = {
       {"One key: 95% of 20 answers or more came from one key, although the right answers are "
-       "spread over all keys. Nobody who tells some of the textures apart answers so. It is not "
-       "said of trials with several planes. How else answers are spread is an outcome."}};
+       "spread over all keys. Nobody who can tell some of the textures apart answers like this. "
+       "Not evaluated for trials with several planes. Any other distribution of answers is an "
+       "outcome, and blind."}};
   return table;
 }
 
@@ -94,12 +97,11 @@ Section servo_section(const QualityReport& report) {
     section.blocks.emplace_back(std::move(*servo));
   } else {
     section.blocks.emplace_back(
-        Cited{"No trial was in real time: nothing is known about a servo's lateness.", {}});
+        Cited{"No trial ran in real time, so servo timing is unknown.", {}});
   }
   if (report.servo) {
-    section.blocks.emplace_back(Cited{"Scheduling that servo threads obtained: " +
-                                          listed(report.servo->scheduling, " and ") + ".",
-                                      {}});
+    section.blocks.emplace_back(Cited{
+        "Scheduling of servo threads: " + listed(report.servo->scheduling, " and ") + ".", {}});
   }
   return section;
 }

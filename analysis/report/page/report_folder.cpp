@@ -24,7 +24,7 @@ constexpr const char* kList = "report-files.txt";
 constexpr const char* kMethods = "methods.md";
 constexpr std::uintmax_t kLongestList = 1U << 20U;
 
-/// Tells whether a report could have written a file of this name. No other file may be removed,
+/// Whether a report could have written a file of this name. No other file may be removed,
 /// even if a list names it.
 bool could_be_ours(const std::string& path) {
   if (path == kMethods) return true;

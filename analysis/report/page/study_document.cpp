@@ -37,7 +37,7 @@ bool is_interim(const Provenance& provenance) {
   return (state.unblinded && !state.closed) || state.question;
 }
 
-/// What readers must know first.
+/// Warnings at the top of the page.
 template <typename Report>
 std::vector<std::string> banners_of(const Report& report, const Provenance& provenance) {
   std::vector<std::string> banners;
@@ -49,10 +49,10 @@ std::vector<std::string> banners_of(const Report& report, const Provenance& prov
         "hand and of a sense of touch does, not what people do.");
   }
   if (report.pilot) {
-    banners.emplace_back("PILOT: not to be pooled with the study's data, nor reported as it.");
+    banners.emplace_back("PILOT: do not pool with the study's data or report as its result.");
   }
   if (provenance.unverified) banners.push_back(unverified_banner());
-  if (provenance.lacks) banners.push_back(provenance.vouched);
+  if (provenance.is_incomplete) banners.push_back(provenance.head_summary);
   return banners;
 }
 
@@ -70,7 +70,7 @@ void add_interim_banner(const Provenance& provenance, std::vector<std::string>& 
 
 /// A document without sections.
 template <typename Report>
-Document begun_document(const char* title, const Report& report, const Provenance& provenance) {
+Document empty_document(const char* title, const Report& report, const Provenance& provenance) {
   Document document;
   document.title = title + report.study;
   document.stamp =
@@ -97,8 +97,8 @@ void add_evidence(const Provenance& provenance, Definitions& header) {
        {"head of the file's chain",
         fmt::format("{} (event {})", to_hex(provenance.head.hash), provenance.head.length)},
        {"program", "touchtrial " + provenance.program_version}});
-  if (!provenance.vouched.empty()) {
-    entries.emplace_back("its end is vouched for", provenance.vouched);
+  if (!provenance.head_summary.empty()) {
+    entries.emplace_back("its end is vouched for", provenance.head_summary);
   }
   if (!provenance.texts.empty()) entries.emplace_back("what participants read", provenance.texts);
 }
@@ -130,8 +130,8 @@ void place(const Picture& picture, std::vector<Section>& sections) {
   if (!placed) sections.front().more.emplace_back(picture);
 }
 
-/// The pictures, of which the first of a section that is not folded stands in the result if none
-/// says that it belongs there.
+/// The pictures. If none belongs to the result, the first one of a section that is not folded moves
+/// there.
 Pictures with_leading(Pictures pictures, const std::vector<Section>& sections) {
   if (std::ranges::find(pictures, "result", &Picture::section) != pictures.end()) return pictures;
   const auto is_shown = [&](const std::string& id) {
@@ -148,20 +148,20 @@ Pictures with_leading(Pictures pictures, const std::vector<Section>& sections) {
 Cited facts_sentence(const StudyHead& head) {
   std::string text = fmt::format("{}, {}", counted(head.participants, "participant"),
                                  counted(head.trials, "trial"));
-  const std::string devices = device_summary(head.collection);
-  if (!devices.empty()) text += ", on " + devices;
   if (const auto dates = dates_of(head.collection.sessions)) {
     text += dates->first == dates->last ? ", " + dates->first
                                         : fmt::format(", {} to {}", dates->first, dates->last);
   }
   text += ".";
+  const std::string devices = device_summary(head.collection);
+  if (!devices.empty()) text += " Device: " + devices + ".";
   if (head.registration.analysis && head.departures.empty()) {
-    text += " No departure from what was registered is recorded.";
+    text += " No departures from the registration were recorded.";
   }
   return {text};
 }
 
-/// Longer lists of warnings go on in what is folded: the gravest come first.
+/// The most serious warnings come first; further ones are folded.
 constexpr std::size_t kShownWarnings = 4;
 
 void add_warnings(const std::vector<std::string>& warnings, Section& section, std::size_t at) {
@@ -187,9 +187,9 @@ Section result_section(const StudyHead& head, Section headline) {
   headline.blocks.insert(headline.blocks.end(), own.begin(), first_table);
   headline.blocks.emplace_back(facts_sentence(head));
   if (!head.departures.empty()) {
-    headline.blocks.emplace_back(Warnings{
-        head.departures, head.registration.analysis ? "Departures from what was registered:"
-                                                    : "Departures from the plan:"});
+    headline.blocks.emplace_back(Warnings{head.departures, head.registration.analysis
+                                                               ? "Departures from the registration:"
+                                                               : "Departures from the plan:"});
   }
   add_warnings(head.warnings, headline, headline.blocks.size());
   headline.blocks.insert(headline.blocks.end(), first_table, own.end());
@@ -221,20 +221,20 @@ std::string further_stamp(bool pilot, const Provenance& provenance) {
 
 Document framed_document(const StudyHead& head, Section headline, std::vector<Section> results,
                          const Provenance& provenance, const Pictures& pictures) {
-  Document document = begun_document("Report of the study ", head, provenance);
+  Document document = empty_document("Report of the study ", head, provenance);
   add_interim_banner(provenance, document.banners);
   document.header.entries.emplace_back("textures", listed(head.classes, " and "));
   add_evidence(provenance, document.header);
   if (std::ranges::any_of(pictures, &std::string::empty, &Picture::svg)) {
     document.header.entries.emplace_back(
         "figures",
-        "Figures were not drawn: gnuplot could not be used, for the reason that `touchtrial "
-        "report` said. Make the report again where it can; here each is described in words.");
+        "Figures are missing because gnuplot failed; `touchtrial report` printed the reason. Each "
+        "figure is described in words instead.");
   }
   std::vector<Section> sections = {result_section(head, std::move(headline))};
   std::ranges::move(results, std::back_inserter(sections));
   sections.push_back(participants_section(head.collection, &head));
-  sections.push_back(said_section(head));
+  sections.push_back(questionnaire_section(head));
   // Methods come here, the last before what is folded, the references and the header.
   note_unadjusted(head.looks, sections);
   for (const Picture& picture : with_leading(pictures, sections)) place(picture, sections);
@@ -245,7 +245,7 @@ Document framed_document(const StudyHead& head, Section headline, std::vector<Se
 }
 
 Document quality_document(const QualityReport& report, const Provenance& provenance) {
-  Document document = begun_document("Quality of the study ", report, provenance);
+  Document document = empty_document("Quality of the study ", report, provenance);
   if (!report.state.unblinded) {
     document.banners.emplace_back(
         "BLIND: outcomes are shown once the study has been unblinded. Nothing here reveals them.");

@@ -10,17 +10,17 @@
 
 namespace touchtrial::analysis {
 
-/// Shows a reader from which database a report was made.
+/// Identifies the database from which a report was made.
 struct Provenance {
   std::string database;         ///< file name, without its folder
   std::string program_version;  ///< version of the program that made the report
   std::string seal;             ///< commitment made before trial 1, hexadecimal
   record::ChainHead head;       ///< head of the file's chain
   record::StudyState state;
-  std::string texts{};      ///< what has to be said of the participants' texts; may be empty
-  bool unverified = false;  ///< as any_ran_unverified
-  std::string vouched{};    ///< HeadCheck::words; empty: the database was not held against heads
-  bool lacks = false;       ///< something that a head file knows
+  std::string texts{};         ///< note on the participants' texts; may be empty
+  bool unverified = false;     ///< as any_ran_unverified
+  std::string head_summary{};  ///< HeadCheck::words; empty: no head file was compared
+  bool is_incomplete = false;  ///< the database lacks events that a head file records
 };
 
 /// \param database  file name to show

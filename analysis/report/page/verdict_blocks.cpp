@@ -30,7 +30,7 @@ std::string decibels(const PrimaryResult& primary, std::optional<double> value) 
   return is_estimate(primary) ? plain_figure(value, 1) : signed_plain_figure(value, 1);
 }
 
-/// A value of the estimand without its unit: a share in per cent has it.
+/// A value of the estimand without its unit, except for the % of a share.
 std::string bare_figure(const PrimaryResult& primary, std::optional<double> value) {
   if (is_of_thresholds(primary)) return decibels(primary, value);
   return is_difference(primary) ? points_figure(value) : share_figure(value);
@@ -53,7 +53,7 @@ std::string level_words(double level) {
   return text == "100%" ? fmt::format("{:.10g}%", 100.0 * level) : text;
 }
 
-std::string first_letter_raised(std::string text) {
+std::string capitalized(std::string text) {
   if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') {
     text[0] = static_cast<char>(text[0] - 'a' + 'A');
   }
@@ -68,11 +68,11 @@ std::string people_of(const PrimaryResult& primary, const StudyCourse& course) {
                      course.completed);
 }
 
-/// The verdict, for a reader who stops there.
+/// The verdict in a word or two.
 std::string lead_of(Verdict verdict) {
   const bool is_decided = verdict == Verdict::supported || verdict == Verdict::not_supported;
   if (verdict == Verdict::estimated) return "Estimated as registered.";
-  return first_letter_raised(name_of(verdict)) + (is_decided ? " by the registered test." : ".");
+  return capitalized(name_of(verdict)) + (is_decided ? " by the registered test." : ".");
 }
 
 /// "; t(19) = 2.41, d = 0.54 [0.06, 1.00]"; empty without a t.
@@ -88,8 +88,8 @@ std::string statistic_phrase(const PrimaryResult& primary) {
 Cited verdict_sentence(const StudyHead& head) {
   const PrimaryResult& primary = *head.primary;
   const PrimaryChoice& choice = primary.registered();
-  std::string text = fmt::format("{}: {}", first_letter_raised(primary.words),
-                                 estimand_figure(primary, choice.estimate));
+  std::string text =
+      fmt::format("{}: {}", capitalized(primary.words), estimand_figure(primary, choice.estimate));
   if (!choice.pair.empty()) text += " (" + choice.pair + ")";
   if (choice.interval) {
     text += fmt::format(", {} {} {}", level_words(primary.interval_level),
@@ -101,7 +101,7 @@ Cited verdict_sentence(const StudyHead& head) {
     return {
         text + ". " + primary.because, {Source::student, Source::tobin}, lead_of(primary.verdict)};
   }
-  text += ". " + first_letter_raised(primary.test);
+  text += ". " + capitalized(primary.test);
   if (primary.p) text += ": " + p_phrase(*primary.p);
   text += statistic_phrase(primary);
   text += fmt::format(", alpha {:.3g}", primary.alpha);
@@ -128,8 +128,8 @@ bool are_same(const PrimaryChoice& a, const PrimaryChoice& b) {
          ends(a) == ends(b);
 }
 
-/// The choices without those that give the numbers of an earlier one, each with the words of
-/// these.
+/// The choices with different numbers, each with the words of later choices that have the same
+/// numbers.
 std::vector<std::pair<PrimaryChoice, std::vector<std::string>>> different(
     const std::vector<PrimaryChoice>& choices) {
   std::vector<std::pair<PrimaryChoice, std::vector<std::string>>> all;
@@ -145,24 +145,25 @@ std::vector<std::pair<PrimaryChoice, std::vector<std::string>>> different(
   return all;
 }
 
-/// What belongs to a comparison of two methods, one after the other.
+/// Period effect and permutation check of a crossover comparison.
 Cited crossover_sentence(const PrimaryResult& primary, const CrossoverEstimate& crossover) {
-  std::string text = fmt::format("{} had the first method first, {} had it last",
-                                 crossover.first_first, crossover.second_first);
+  std::string text =
+      fmt::format("{} participants had the first method first, {} had the second first",
+                  crossover.first_first, crossover.second_first);
   if (crossover.period) {
-    text += fmt::format(". Second period less first, whichever the method: {} points",
+    text += fmt::format(". Period effect (second minus first period): {} points",
                         points_figure(crossover.period));
     if (crossover.period_interval) text += " " + share_range(crossover.period_interval);
   }
   if (primary.permutation) {
     text += fmt::format(
-        ". Check by dealing the orders anew within the blocks in which they were dealt: {}; the "
-        "least p that they could give is {:.3g}",
+        ". Permutation check (orders reassigned within their randomisation blocks): {}; smallest "
+        "attainable p {:.3g}",
         p_phrase(primary.permutation->p), primary.permutation->least);
   }
   return {text +
-              ". What the first method leaves behind for the second (carry-over) is confounded "
-              "with the order: it is not tested, and never chooses the analysis.",
+              ". Carry-over is confounded with order; it is not tested and does not influence the "
+              "choice of analysis.",
           {Source::senn, Source::phipson_smyth}};
 }
 
@@ -189,9 +190,10 @@ Cited note_of(const StratifiedMean& stations) {
   std::string text =
       "Fixed strata: for these stations, from the spread between participants of one station.";
   if (!stations.random) {
-    return {text + fmt::format(" With fewer than {} stations nothing follows for other stations.",
-                               kMinRandomStrata),
-            {Source::student}};
+    return {
+        text + fmt::format(" With fewer than {} stations there is no inference to other stations.",
+                           kMinRandomStrata),
+        {Source::student}};
   }
   text += fmt::format(
       " A sample of others: the standard deviation between stations is {} points; Hartung, Knapp, "
@@ -200,7 +202,7 @@ Cited note_of(const StratifiedMean& stations) {
   return {text, {Source::student, Source::paule_mandel, Source::inthout}};
 }
 
-/// What the estimate is called, and the interval beside it.
+/// Column titles of the estimate and its interval.
 std::pair<std::string, std::string> estimate_titles(const PrimaryResult& primary) {
   const std::string level = level_words(primary.interval_level);
   if (is_of_thresholds(primary)) {
@@ -210,14 +212,13 @@ std::pair<std::string, std::string> estimate_titles(const PrimaryResult& primary
                                 : std::pair("mean", "t " + level + " (%)");
 }
 
-/// Every difference of an equality.
+/// All pairwise differences of an equality.
 Table pairs_table(const PrimaryResult& primary) {
   const auto [estimate, interval] = estimate_titles(primary);
-  Table table{
-      "primary-pairs",
-      fmt::format("Every difference of the equality, of the registered choice: margin {} dB",
-                  plain_figure(primary.margin, 1)),
-      {{"difference", Align::left}, {"participants"}, {estimate}, {interval}, {"p"}}};
+  Table table{"primary-pairs",
+              fmt::format("All pairwise differences, registered selection; margin {} dB",
+                          plain_figure(primary.margin, 1)),
+              {{"difference", Align::left}, {"participants"}, {estimate}, {interval}, {"p"}}};
   for (const PrimaryPair& pair : primary.pairs) {
     table.rows.push_back({pair.words, std::to_string(pair.participants),
                           bare_figure(primary, pair.estimate), range_figure(primary, pair.interval),
@@ -225,8 +226,8 @@ Table pairs_table(const PrimaryResult& primary) {
   }
   table.notes = {
       {"p: the larger one of two one-sided t tests, against a difference of the margin on either "
-       "side. The thresholds are shown to be the same only if every p is within its level, so no p "
-       "is adjusted.",
+       "side. Equality is shown only if every p is at most the level, so p values are not "
+       "adjusted.",
        {Source::student, Source::tobin}}};
   return table;
 }
@@ -235,7 +236,7 @@ Table choices_table(const StudyHead& head) {
   const PrimaryResult& primary = *head.primary;
   const auto [estimate_title, interval_title] = estimate_titles(primary);
   Table table{"primary",
-              "The deciding question under every choice of sessions and trials",
+              "The primary result under every selection of sessions and trials",
               {{"choice", Align::left},
                {"participants"},
                {"trials"},
@@ -248,9 +249,9 @@ Table choices_table(const StudyHead& head) {
     if (!same.empty()) {
       repeated.push_back(
           {same.size() + 1 == primary.choices.size()
-               ? std::string("Every other choice gives the same numbers: excluded "
-                             "sessions put back, valid trials alone") +
-                     (is_of_thresholds(primary) ? "." : ", trials with a response alone.")
+               ? std::string("All other selections give the same numbers: with excluded sessions, "
+                             "valid trials only") +
+                     (is_of_thresholds(primary) ? "." : ", only trials with a response.")
                : fmt::format("The same numbers as \"{}\": {}.", choice.words,
                              fmt::join(same, "; "))});
     }
@@ -261,9 +262,12 @@ Table choices_table(const StudyHead& head) {
   }
   add_stations(primary, table);
   table.notes = {
-      {std::string("p belongs to the first row alone; the others show what a choice changes. Each "
-                   "participant weighs the same, however many trials it has.") +
-       (is_of_thresholds(primary) ? "" : " Intervals are cut where possible values end.")}};
+      {std::string(
+           "p applies to the first row only; the other rows show how much the result depends on "
+           "the selection.") +
+       (is_of_thresholds(primary) ? ""
+                                  : " Every participant has the same weight, whatever the number "
+                                    "of trials. Intervals are truncated to the possible range.")}};
   table.notes.insert(table.notes.end(), repeated.begin(), repeated.end());
   if (head.course.excluded_afterwards > 0) {
     table.notes.push_back({counted(head.course.excluded_afterwards, "session") +
@@ -271,11 +275,12 @@ Table choices_table(const StudyHead& head) {
   }
   if (primary.stations) table.notes.push_back(note_of(*primary.stations));
   if (primary.estimand == study::Estimand::mean_accuracy && primary.p) {
-    table.notes.push_back(
-        {*primary.p <= primary.level
-             ? "A mean above chance says that some people can, not that everybody can."
-             : "A mean that is not shown to be above chance does not say that nobody can; "
-               "\"Accuracy\" has the test of that."});
+    table.notes.push_back({*primary.p <= primary.level
+                               ? "A mean above chance shows that some people perform above chance, "
+                                 "not that everybody does."
+                               : "A mean that is not shown to be above chance does not show that "
+                                 "nobody performs above chance; "
+                                 "\"Accuracy\" tests that."});
   }
   return table;
 }

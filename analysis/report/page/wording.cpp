@@ -1,7 +1,5 @@
 #include "analysis/report/page/wording.hpp"
 
-#include "analysis/report/text_figures.hpp"
-
 #include <cmath>
 
 #include <fmt/format.h>
@@ -31,7 +29,9 @@ std::string plain_range(const std::optional<Interval>& interval, int decimals) {
 
 std::string signed_plain_figure(std::optional<double> figure, int decimals) {
   if (!figure || !std::isfinite(*figure)) return kNoFigure;
-  return typeset(signed_figure(figure, decimals));
+  const std::string text = fmt::format("{:+.{}f}", *figure, decimals);
+  // A number that rounds to zero has no sign.
+  return text.find_first_of("123456789") == std::string::npos ? text.substr(1) : typeset(text);
 }
 
 std::string quartiles_figure(const Quartiles& of, int decimals, double unit) {

@@ -16,17 +16,17 @@ namespace {
 
 using Kind = ExperimenterQuestion::Kind;
 
-constexpr PackedColour kInk = 0xFF202020;
+constexpr PackedColour kTextColour = 0xFF202020;
 constexpr PackedColour kGround = 0xFFF6F4F2;
 constexpr float kMargin = 20.0F;
-constexpr float kButtonHeight = 44.0F;
+constexpr float kConsoleButtonHeight = 44.0F;
 
 /// Light, like the participant's window.
 class Look {
  public:
   explicit Look(float density) {
     ImGui::StyleColorsLight();
-    colour(ImGuiCol_Text, kInk);
+    colour(ImGuiCol_Text, kTextColour);
     colour(ImGuiCol_WindowBg, kGround);
     colour(ImGuiCol_FrameBg, kWhite);
     colour(ImGuiCol_Button, kPale);
@@ -237,7 +237,7 @@ void ConsolePanel::draw_actions(const ExperimenterView& view, float density) {
   constexpr std::size_t kColumns = 4;
   const float gaps = static_cast<float>(kColumns - 1) * ImGui::GetStyle().ItemSpacing.x;
   const ImVec2 size = {(ImGui::GetContentRegionAvail().x - gaps) / static_cast<float>(kColumns),
-                       kButtonHeight * density};
+                       kConsoleButtonHeight * density};
   for (std::size_t i = 0; i < kExperimenterActions.size(); ++i) {
     const ExperimenterAction& action = kExperimenterActions[i];
     if (i % kColumns != 0) ImGui::SameLine();

@@ -24,8 +24,8 @@ namespace touchtrial::app {
 namespace {
 
 constexpr const char* kTitle = "Touchtrial console";
-constexpr int kWidth = 920;
-constexpr int kHeight = 640;
+constexpr int kWindowWidth = 920;
+constexpr int kWindowHeight = 640;
 /// After this number of frames, ImGui's layout is stable.
 constexpr int kSettling = 3;
 
@@ -131,7 +131,8 @@ GLFWwindow* make_window() {
   glfwWindowHint(GLFW_FOCUS_ON_SHOW, GLFW_FALSE);
   glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-  GLFWwindow* const window = glfwCreateWindow(kWidth, kHeight, kTitle, nullptr, nullptr);
+  GLFWwindow* const window =
+      glfwCreateWindow(kWindowWidth, kWindowHeight, kTitle, nullptr, nullptr);
   if (window == nullptr) {
     throw DeviceError(
         "experimenter's window: OpenGL 3.2 is needed; install the graphics driver, or Mesa "
@@ -151,8 +152,9 @@ struct Surface {
 /// The factor by which letters grow with the window: in steps of a quarter, because each step
 /// renders the fonts again.
 float enlargement(const Surface& surface) {
-  const float room = std::min(static_cast<float>(surface.width) / (kWidth * surface.density),
-                              static_cast<float>(surface.height) / (kHeight * surface.density));
+  const float room =
+      std::min(static_cast<float>(surface.width) / (kWindowWidth * surface.density),
+               static_cast<float>(surface.height) / (kWindowHeight * surface.density));
   return std::clamp(std::floor(4.0F * room) / 4.0F, 1.0F, 3.0F);
 }
 
@@ -266,7 +268,7 @@ struct ConsoleWindow::State final : ExperimenterFace {
   }
 
   /// Processes events up to one button or key, because each needs its own frame: ImGui would defer
-  /// further ones to a later frame, when their field may be gone.
+  /// further ones to a later frame, when their field may no longer exist.
   void take_events(ImGuiIO& io) {
     const std::lock_guard lock(mutex);
     for (bool is_first = true; !events.empty(); is_first = false) {
@@ -393,7 +395,7 @@ bool ConsoleWindow::has_focus() const {
   return glfwGetWindowAttrib(state_->window, GLFW_FOCUSED) != 0;
 }
 
-std::optional<engine::ColourImage> ConsoleWindow::picture(std::chrono::milliseconds longest) {
+std::optional<engine::ColourImage> ConsoleWindow::picture(std::chrono::milliseconds timeout) {
   State& s = *state_;
   {
     const std::lock_guard lock(s.mutex);
@@ -402,7 +404,7 @@ std::optional<engine::ColourImage> ConsoleWindow::picture(std::chrono::milliseco
   }
   s.redraw();
   std::unique_lock lock(s.mutex);
-  s.for_picture.wait_for(lock, longest, [&s] { return s.picture.has_value(); });
+  s.for_picture.wait_for(lock, timeout, [&s] { return s.picture.has_value(); });
   return std::exchange(s.picture, std::nullopt);
 }
 

@@ -60,7 +60,7 @@ class ConsoleWindow {
 
   /// Waits for the next picture. May be called from any thread except the drawing thread.
   /// \return nothing if there is no picture in time
-  [[nodiscard]] std::optional<engine::ColourImage> picture(std::chrono::milliseconds longest);
+  [[nodiscard]] std::optional<engine::ColourImage> picture(std::chrono::milliseconds timeout);
 
  private:
   struct State;

@@ -1,6 +1,7 @@
 #include "app/windows/participant/card_screen.hpp"
 
 #include "app/windows/participant/page_layout.hpp"
+#include "core/units.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +15,6 @@ namespace {
 constexpr double kCardWidthMm = 85.60;
 constexpr double kCardHeightMm = 53.98;
 constexpr double kCardCornerMm = 3.18;
-constexpr double kMmPerInch = 25.4;
 // At 40 and 400 window units per inch.
 constexpr double kNarrowest = 135.0;
 constexpr double kWidest = 1348.0;

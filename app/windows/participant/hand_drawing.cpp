@@ -11,8 +11,8 @@ using Curve = std::array<Vec2, 4>;
 
 // Places in the drawing, which is 300 wide; its y axis begins at kTopY.
 constexpr double kTopY = 45.0;
-constexpr double kWidth = 300.0;
-constexpr double kHeight = 245.0;
+constexpr double kDrawingWidth = 300.0;
+constexpr double kDrawingHeight = 245.0;
 constexpr Curve kMiddleFinger = {{{238, 196}, {215, 214}, {190, 216}, {166, 208}}};
 constexpr Curve kPen = {{{138, 226}, {160, 190}, {190, 140}, {236, 62}}};
 constexpr Curve kForearm = {{{330, 262}, {300, 240}, {275, 205}, {252, 182}}};
@@ -27,7 +27,7 @@ constexpr std::array<Vec2, 3> kTip = {{{124, 248}, {131, 222}, {145, 230}}};
 class HandDrawing {
  public:
   HandDrawing(Canvas& canvas, const Box& box)
-      : canvas_(canvas), box_(box), scale_(box.width / kWidth) {}
+      : canvas_(canvas), box_(box), scale_(box.width / kDrawingWidth) {}
 
   void draw() {
     area(kPlate, tone::kEdge);
@@ -86,7 +86,7 @@ class HandDrawing {
 }  // namespace
 
 Vec2 hand_drawing_size() noexcept {
-  return {kWidth, kHeight};
+  return {kDrawingWidth, kDrawingHeight};
 }
 
 void draw_hand(Canvas& canvas, const Box& box) {

@@ -37,8 +37,8 @@ constexpr std::array<std::pair<int, Key>, 6> kPadKeys = {{
     {GLFW_GAMEPAD_BUTTON_B, Key::space},
 }};
 
-constexpr std::chrono::milliseconds kUntilRepeat{400};
-constexpr std::chrono::milliseconds kBetweenRepeats{40};
+constexpr std::chrono::milliseconds kRepeatDelay{400};
+constexpr std::chrono::milliseconds kRepeatInterval{40};
 
 }  // namespace
 
@@ -69,15 +69,15 @@ void Gamepads::poll(const std::function<void(Key, InputEvent::Kind)>& on_button)
       continue;
     }
     for (std::size_t i = 0; i < kPadKeys.size(); ++i) {
-      std::optional<InputEvent::Time>& repeats = repeats_[pad][i];
+      std::optional<InputEvent::Time>& next_repeat = repeats_[pad][i];
       if (state.buttons[kPadKeys[i].first] != GLFW_PRESS) {
-        repeats.reset();
-      } else if (!repeats) {
+        next_repeat.reset();
+      } else if (!next_repeat) {
         on_button(kPadKeys[i].second, InputEvent::Kind::key);
-        repeats = now + kUntilRepeat;
-      } else if (now >= *repeats) {
+        next_repeat = now + kRepeatDelay;
+      } else if (now >= *next_repeat) {
         on_button(kPadKeys[i].second, InputEvent::Kind::repeat);
-        repeats = now + kBetweenRepeats;
+        next_repeat = now + kRepeatInterval;
       }
     }
   }

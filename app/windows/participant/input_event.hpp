@@ -58,7 +58,7 @@ struct InputEvent {
 class Gamepads {
  public:
   /// Reads all gamepads.
-  /// \param tell  called for each button that was pressed since the last poll or repeats
+  /// \param on_button  called for each button that was pressed since the last poll or repeats
   void poll(const std::function<void(Key, InputEvent::Kind)>& on_button);
 
  private:

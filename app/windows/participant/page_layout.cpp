@@ -20,7 +20,7 @@ constexpr double kBarMm = 10.0;
 /// The gap between pictures in little space, as a share of a picture's side.
 constexpr double kGapShare = 0.25;
 
-Vec2 largest_of(const std::vector<Vec2>& sizes) {
+Vec2 max_size(const std::vector<Vec2>& sizes) {
   Vec2 largest{1.0, 1.0};
   for (const Vec2 size : sizes) {
     largest = {std::max(largest.x, size.x), std::max(largest.y, size.y)};
@@ -201,7 +201,7 @@ PictureGrid lay_out_pictures(const std::vector<Vec2>& sizes, const Box& area, do
   PictureGrid grid;
   const int count = static_cast<int>(sizes.size());
   if (count == 0) return grid;
-  const Vec2 cell = largest_of(sizes);
+  const Vec2 cell = max_size(sizes);
   grid.shown = 0.0;
   int best_rows = 1;
   for (int rows = 1; rows <= count; ++rows) {

@@ -40,7 +40,7 @@ constexpr milliseconds kRepeatGuard{500};
 // A tone signals a force above the first limit. It is repeated only after the force was below the
 // second limit.
 constexpr double kPushTooHardN = 2.0;
-constexpr double kSoftAgainN = 1.7;
+constexpr double kPushReleasedN = 1.7;
 constexpr double kBarsTimeS = 0.06;  ///< time constant of the bars in practice
 
 /// Refuses a window that no monitor can show completely.
@@ -235,14 +235,14 @@ struct ParticipantWindow::State {
           action == GLFW_PRESS ? InputEvent::Kind::pressed : InputEvent::Kind::released,
           of(w).pointer_at);
     });
-    glfwSetWindowCloseCallback(window, [](GLFWwindow* w) { of(w).leave(WindowGone::closed); });
+    glfwSetWindowCloseCallback(window, [](GLFWwindow* w) { of(w).leave(WindowEnd::closed); });
     glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { of(w).exchange.redraw(); });
     glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).notify_surface(); });
     glfwSetWindowPosCallback(window, [](GLFWwindow* w, int, int) { of(w).notify_surface(); });
     newest = this;
     glfwSetMonitorCallback([](GLFWmonitor* changed, int what) {
       if (newest != nullptr && what == GLFW_DISCONNECTED && changed == newest->monitor) {
-        newest->leave(WindowGone::monitor_lost);
+        newest->leave(WindowEnd::monitor_lost);
       }
     });
   }
@@ -328,15 +328,15 @@ struct ParticipantWindow::State {
     exchange.set_surface(surface);
   }
 
-  void leave(WindowGone why) noexcept {
+  void leave(WindowEnd why) noexcept {
     int nobody = -1;
-    gone.compare_exchange_strong(nobody, static_cast<int>(why));
+    end_reason.compare_exchange_strong(nobody, static_cast<int>(why));
   }
 
   /// A plane must not stay on if the participant cannot stop it.
   void look_at_focus() {
     constexpr milliseconds kPollInterval{50};
-    constexpr milliseconds kBetweenAsks{200};
+    constexpr milliseconds kFocusRequestInterval{200};
     const Clock::time_point now = Clock::now();
     if (now - focus_checked < kPollInterval) return;
     focus_checked = now;
@@ -351,7 +351,7 @@ struct ParticipantWindow::State {
     if (lost_at.load() == Clock::duration{}) lost_at = now.time_since_epoch();
     if (!exploring) return;
     lost_at_plane = true;
-    if (now - asked_for_focus < kBetweenAsks) return;
+    if (now - asked_for_focus < kFocusRequestInterval) return;
     asked_for_focus = now;
     glfwFocusWindow(window);
   }
@@ -446,8 +446,8 @@ struct ParticipantWindow::State {
 
   [[nodiscard]] bool touches_enough() const noexcept {
     constexpr double kRounding = 1e-9;
-    const study::MinTouch& least = options.least_touch;
-    return at_plane_s >= least.contact_s - kRounding && along_plane_mm >= least.path_mm - kRounding;
+    const study::MinTouch& min = options.min_touch;
+    return at_plane_s >= min.contact_s - kRounding && along_plane_mm >= min.path_mm - kRounding;
   }
 
   void cue(Cue which) noexcept {
@@ -476,7 +476,7 @@ struct ParticipantWindow::State {
   Gamepads gamepads;
 
   // Between threads.
-  std::atomic<int> gone{-1};
+  std::atomic<int> end_reason{-1};
   std::atomic<bool> exploring{false};
   std::atomic<bool> between{false};        ///< the next of a trial's planes is announced
   std::atomic<bool> has_clock{false};      ///< the plane ends by itself
@@ -524,9 +524,9 @@ ParticipantWindow::ParticipantWindow(const ParticipantWindowOptions& options)
 
 ParticipantWindow::~ParticipantWindow() = default;
 
-void ParticipantWindow::pump(milliseconds longest) {
+void ParticipantWindow::pump(milliseconds timeout) {
   State& s = *state_;
-  glfwWaitEventsTimeout(std::chrono::duration<double>(longest).count());
+  glfwWaitEventsTimeout(std::chrono::duration<double>(timeout).count());
   s.gamepads.poll([&s](Key key, InputEvent::Kind kind) {
     InputEvent event = State::event_now(kind);
     event.key = key;
@@ -536,7 +536,7 @@ void ParticipantWindow::pump(milliseconds longest) {
   s.hide_pointer();
   s.publish_pointer();
   s.look_at_focus();
-  if (device::StopOnSignals::asked()) s.leave(WindowGone::signal);
+  if (device::StopOnSignals::asked()) s.leave(WindowEnd::signal);
 }
 
 void ParticipantWindow::check() const {
@@ -556,7 +556,7 @@ std::optional<session::StepReply> ParticipantWindow::attend(const session::Step&
   s.exchange.check();
   s.between = std::holds_alternative<session::IntervalStep>(step);
   if (s.exploring.exchange(false)) s.mark_session_end(step);
-  if (gone()) {
+  if (end_reason()) {
     std::this_thread::sleep_for(kAttention);
     return std::nullopt;
   }
@@ -575,7 +575,7 @@ std::optional<session::StepReply> ParticipantWindow::attend(const std::shared_pt
     s.step.reset();
     s.exchange.show(screen);
   }
-  if (!gone()) return s.exchange.reply(*screen, kAttention);
+  if (!end_reason()) return s.exchange.reply(*screen, kAttention);
   std::this_thread::sleep_for(kAttention);
   return std::nullopt;
 }
@@ -632,7 +632,7 @@ void ParticipantWindow::show_exploring(const PlaneGeometry& plane) {
 void ParticipantWindow::exploring(device::ServoControl& servo) {
   State& s = *state_;
   s.exchange.check();  // throws if the window does not respond
-  if (gone()) servo.emergency_stop();
+  if (end_reason()) servo.emergency_stop();
   if (s.comfort_asked) servo.comfort_stop();
   if (s.finish_asked && s.has_touched) servo.finish();
   const bool asks = !s.has_touched && (s.finish_asked.exchange(false) || s.asks_for_touch);
@@ -650,7 +650,7 @@ void ParticipantWindow::feel(const device::ServoSample& sample) noexcept {
   const double force_n = s.interval ? press_n : norm(sample.force_n);
   if (sample.position_mm.z > study::kLiftedMm) s.has_lifted = true;
   if (force_n > kPushTooHardN && !s.is_too_hard) s.cue(Cue::too_hard);
-  s.is_too_hard = force_n > (s.is_too_hard ? kSoftAgainN : kPushTooHardN);
+  s.is_too_hard = force_n > (s.is_too_hard ? kPushReleasedN : kPushTooHardN);
   if (s.last_felt && sample.tick > s.last_felt->tick) {
     const double seconds = static_cast<double>(sample.tick - s.last_felt->tick) / s.options.rate_hz;
     const Vec3 way = sample.position_mm - s.last_felt->position_mm;
@@ -674,10 +674,10 @@ void ParticipantWindow::feel(const device::ServoSample& sample) noexcept {
   s.last_felt = sample;
 }
 
-std::optional<WindowGone> ParticipantWindow::gone() const noexcept {
-  const int why = state_->gone;
+std::optional<WindowEnd> ParticipantWindow::end_reason() const noexcept {
+  const int why = state_->end_reason;
   if (why < 0) return std::nullopt;
-  return static_cast<WindowGone>(why);
+  return static_cast<WindowEnd>(why);
 }
 
 milliseconds ParticipantWindow::out_of_reach() const noexcept {
@@ -699,15 +699,15 @@ bool ParticipantWindow::is_answering() const noexcept {
 }
 
 void ParticipantWindow::close() noexcept {
-  state_->leave(WindowGone::closed);
+  state_->leave(WindowEnd::closed);
 }
 
 void ParticipantWindow::inject(const InputEvent& event) {
   state_->take(event);
 }
 
-bool ParticipantWindow::wait_until_shown(milliseconds longest) {
-  return state_->exchange.wait_until_shown(longest);
+bool ParticipantWindow::wait_until_shown(milliseconds timeout) {
+  return state_->exchange.wait_until_shown(timeout);
 }
 
 engine::ColourImage ParticipantWindow::picture() {

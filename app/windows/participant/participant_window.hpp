@@ -40,7 +40,7 @@ struct ParticipantWindowOptions {
   /// Textures are made by several methods: the participant is asked which picture fits best.
   bool has_several_methods = false;
   /// The touch required before Enter ends an exploration, over all explorations of a presentation.
-  study::MinTouch least_touch{0.0, 0.0};
+  study::MinTouch min_touch{0.0, 0.0};
   study::Ask ask{};                 ///< of the study's trials
   double stiffness_n_per_mm = 0.0;  ///< of the planes' wall; only needed where planes have a clock
   /// How long the next of a trial's planes is announced.
@@ -62,8 +62,8 @@ struct ParticipantWindowOptions {
   std::optional<int> console_monitor;
 };
 
-/// Why the window is gone.
-enum class WindowGone {
+/// Why the window was closed.
+enum class WindowEnd {
   closed,        ///< by the window manager
   monitor_lost,  ///< unplugged
   signal,        ///< the program was asked to end
@@ -95,8 +95,8 @@ class ParticipantWindow final : public session::Participant {
   ParticipantWindow& operator=(const ParticipantWindow&) = delete;
 
   /// \name Main thread
-  /// @{ Processes events until `longest` has passed or an event arrived.
-  void pump(std::chrono::milliseconds longest);
+  /// @{ Processes events until `timeout` has passed or an event arrived.
+  void pump(std::chrono::milliseconds timeout);
   /// \throws exceptions of the drawing thread
   void check() const;
   /// The scale of the monitor that shows the window.
@@ -107,23 +107,23 @@ class ParticipantWindow final : public session::Participant {
   ///@{
   void see_pictures(const std::vector<std::string>& labels) override;
   /// Blocks for up to 10 ms. A step that a pause interrupts later continues in its previous state.
-  /// \return nothing yet; always so during a pause and once the window is gone
+  /// \return nothing yet; always so during a pause and once the window is closed
   [[nodiscard]] std::optional<session::StepReply> attend(const session::Step& step) override;
   /// Shows a screen outside of a session. Blocks for up to 10 ms.
-  /// \return its reply, once; always nothing once the window is gone
+  /// \return its reply, once; always nothing once the window is closed
   [[nodiscard]] std::optional<session::StepReply> attend(const std::shared_ptr<Screen>& screen);
   /// \throws std::logic_error if the options have no device
   [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override;
   /// Shows the screen for a plane, for a device that the caller provides.
   void show_exploring(const PlaneGeometry& plane);
-  /// Passes on the participant's requests; an emergency stop once the window is gone.
+  /// Passes on the participant's requests; an emergency stop once the window is closed.
   void exploring(device::ServoControl& servo) override;
   ///@}
   void feel(const device::ServoSample& sample) noexcept override;
 
   /// \name Any thread
   ///@{
-  [[nodiscard]] std::optional<WindowGone> gone() const noexcept;
+  [[nodiscard]] std::optional<WindowEnd> end_reason() const noexcept;
   /// How long keys have not reached the session because another program has the focus; 0 while they
   /// do, and before the first key. While a plane is on, the window takes the focus back.
   [[nodiscard]] std::chrono::milliseconds out_of_reach() const noexcept;
@@ -138,8 +138,8 @@ class ParticipantWindow final : public session::Participant {
   /// Acts as if the event had just arrived.
   void inject(const InputEvent& event);
   /// Waits until the newest step is visible.
-  /// \return false if that does not happen in time, or if the window is gone
-  [[nodiscard]] bool wait_until_shown(std::chrono::milliseconds longest);
+  /// \return false if that does not happen in time, or if the window is closed
+  [[nodiscard]] bool wait_until_shown(std::chrono::milliseconds timeout);
   /// Waits for the next picture of the window.
   /// \throws DeviceError if none comes within 5 min
   [[nodiscard]] engine::ColourImage picture();

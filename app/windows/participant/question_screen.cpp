@@ -11,8 +11,8 @@ namespace touchtrial::app {
 namespace {
 
 constexpr int kOneColumn = 6;
-constexpr std::size_t kLongestText = 2000;
-constexpr std::size_t kLongestNumber = 12;
+constexpr std::size_t kMaxTextLength = 2000;
+constexpr std::size_t kMaxNumberLength = 12;
 
 bool is_of_number(char32_t letter) {
   return (letter >= U'0' && letter <= U'9') || letter == U'.' || letter == U',' || letter == U'-';
@@ -231,7 +231,7 @@ bool QuestionScreen::takes_key(const InputEvent& event) {
 void QuestionScreen::write(char32_t letter) {
   const bool number = question().kind == study::QuestionKind::number;
   if (number && !is_of_number(letter)) return;
-  if (letter < U' ' || typed().size() >= (number ? kLongestNumber : kLongestText)) return;
+  if (letter < U' ' || typed().size() >= (number ? kMaxNumberLength : kMaxTextLength)) return;
   typed().insert(std::min(caret_, typed().size()), 1, letter);
   ++caret_;
   focus(-1);

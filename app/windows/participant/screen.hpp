@@ -5,6 +5,7 @@
 #include "app/windows/participant/canvas.hpp"
 #include "app/windows/participant/input_event.hpp"
 #include "app/windows/participant/words.hpp"
+#include "core/units.hpp"
 #include "protocols/session/participant.hpp"
 #include "study/ask.hpp"
 
@@ -18,7 +19,7 @@ namespace touchtrial::app {
 
 /// The physical scale of the screen.
 struct Glass {
-  double mm_per_unit = 25.4 / 96.0;
+  double mm_per_unit = kMmPerInch / 96.0;
   bool is_known = false;  ///< false: the scale is a guess
 };
 

@@ -83,8 +83,8 @@ PagesScreen::Page PagesScreen::read(const std::string& text) {
   page.body.erase(0, page.body.find_first_not_of('\n'));
   // A short first line is the page's heading.
   const std::size_t line = page.body.find('\n');
-  constexpr std::size_t kLongestHeading = 60;
-  if (line != page.body.npos && line <= kLongestHeading) {
+  constexpr std::size_t kMaxHeadingLength = 60;
+  if (line != page.body.npos && line <= kMaxHeadingLength) {
     page.title = page.body.substr(0, line);
     page.body.erase(0, page.body.find_first_not_of('\n', line));
   }
@@ -198,8 +198,8 @@ class Maker {
   }
   [[nodiscard]] const std::string& practice_over_text() const {
     if (context_.rates()) return words_.practice_over_text_rating;
-    const bool is_told = context_.ask.feedback;
-    return is_told ? words_.practice_over_text_feedback : words_.practice_over_text;
+    const bool has_feedback = context_.ask.feedback;
+    return has_feedback ? words_.practice_over_text_feedback : words_.practice_over_text;
   }
   [[nodiscard]] const std::string& ready_text(const session::ReadyStep& step) const {
     if (step.hand_off) return words_.ready_text_hand_off;

@@ -32,9 +32,9 @@ void WindowExchange::show(std::shared_ptr<Screen> screen) {
 }
 
 std::optional<session::StepReply> WindowExchange::reply(const Screen& of,
-                                                        std::chrono::milliseconds longest) {
+                                                        std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
-  for_others_.wait_for(lock, longest, [&] { return replied_by_.get() == &of || failure_; });
+  for_others_.wait_for(lock, timeout, [&] { return replied_by_.get() == &of || failure_; });
   if (replied_by_.get() != &of) return std::nullopt;
   replied_by_.reset();
   return std::exchange(reply_, std::nullopt);
@@ -67,10 +67,10 @@ void WindowExchange::end() {
   for_others_.notify_all();
 }
 
-WindowExchange::Work WindowExchange::wait_for_work(std::chrono::milliseconds longest) {
+WindowExchange::Work WindowExchange::wait_for_work(std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
   const auto is_new = [this] { return dirty_ || ending_ || picture_wanted_ || !events_.empty(); };
-  for_drawing_.wait_for(lock, longest, [&] { return is_woken_ || is_new(); });
+  for_drawing_.wait_for(lock, timeout, [&] { return is_woken_ || is_new(); });
   const bool came = is_new();
   is_woken_ = false;
   dirty_ = false;
@@ -117,18 +117,18 @@ WindowSurface WindowExchange::surface() const {
   return surface_;
 }
 
-bool WindowExchange::wait_until_shown(std::chrono::milliseconds longest) {
+bool WindowExchange::wait_until_shown(std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
-  return for_others_.wait_for(lock, longest,
+  return for_others_.wait_for(lock, timeout,
                               [this] { return shown_ == screen_ && settled_ && events_.empty(); });
 }
 
-std::optional<engine::ColourImage> WindowExchange::picture(std::chrono::milliseconds longest) {
+std::optional<engine::ColourImage> WindowExchange::picture(std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
   picture_.reset();
   picture_wanted_ = true;
   for_drawing_.notify_all();
-  for_others_.wait_for(lock, longest, [this] { return picture_.has_value() || failure_; });
+  for_others_.wait_for(lock, timeout, [this] { return picture_.has_value() || failure_; });
   return std::exchange(picture_, std::nullopt);
 }
 
@@ -234,7 +234,7 @@ class Drawing {
 
   void run() {
     for (;;) {
-      WindowExchange::Work work = exchange_.wait_for_work(patience());
+      WindowExchange::Work work = exchange_.wait_for_work(timeout());
       if (work.ending) return;
       waiting_.insert(waiting_.end(), work.events.begin(), work.events.end());
       glass_ = work.surface.glass;
@@ -246,7 +246,7 @@ class Drawing {
   }
 
  private:
-  [[nodiscard]] milliseconds patience() const {
+  [[nodiscard]] milliseconds timeout() const {
     if (!waiting_.empty()) return milliseconds(0);
     if (console_ != nullptr && console_->wants_picture()) return milliseconds(0);
     return screen_ && screen_->is_alive() ? milliseconds(0) : kIdle;

@@ -57,7 +57,7 @@ class WindowExchange {
   /// Waits for the screen's reply.
   /// \return the reply, once; nothing if none comes in time
   [[nodiscard]] std::optional<session::StepReply> reply(const Screen& of,
-                                                        std::chrono::milliseconds longest);
+                                                        std::chrono::milliseconds timeout);
   ///@}
 
   /// \name Main thread
@@ -70,8 +70,8 @@ class WindowExchange {
 
   /// \name Drawing thread
   ///@{
-  /// Waits until there is something new, or until `longest` has passed.
-  [[nodiscard]] Work wait_for_work(std::chrono::milliseconds longest);
+  /// Waits until there is something new, or until `timeout` has passed.
+  [[nodiscard]] Work wait_for_work(std::chrono::milliseconds timeout);
   /// \param events_left  whether the screen has yet to take events
   void shown(const std::shared_ptr<Screen>& screen, bool events_left);
   void replied(const std::shared_ptr<Screen>& screen, const session::StepReply& reply);
@@ -84,10 +84,10 @@ class WindowExchange {
   [[nodiscard]] WindowSurface surface() const;
   /// Waits until the newest screen is visible and has taken all events.
   /// \return false if that does not happen in time
-  [[nodiscard]] bool wait_until_shown(std::chrono::milliseconds longest);
+  [[nodiscard]] bool wait_until_shown(std::chrono::milliseconds timeout);
   /// Waits for the next picture.
   /// \return nothing if none comes in time
-  [[nodiscard]] std::optional<engine::ColourImage> picture(std::chrono::milliseconds longest);
+  [[nodiscard]] std::optional<engine::ColourImage> picture(std::chrono::milliseconds timeout);
   /// \throws what drawing threw
   void check() const;
 

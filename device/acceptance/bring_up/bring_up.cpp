@@ -15,18 +15,16 @@
 namespace touchtrial::device {
 namespace {
 
-constexpr double kRestRunS = 10.0;
+constexpr double kBringUpRestS = 10.0;
 constexpr std::size_t kSettledTicks = 4000;  ///< of the rest: the hand has let go
-constexpr double kWayRunS = 7.0;
+constexpr double kDirectionRunS = 7.0;
 constexpr std::size_t kEndTicks = 500;  ///< at the start and the end of a motion
 constexpr double kMinPathMm = 10.0;
 constexpr double kPushRunS = 2.5;
-constexpr double kPushReachMm = 30.0;
+constexpr double kBringUpReachMm = 30.0;
 constexpr double kRangeRunS = 20.0;
 constexpr double kSoftWall = 0.2;  ///< N/mm
 constexpr double kShareOfStiffest = 0.5;
-constexpr double kMinSwingMm = 0.15;
-constexpr double kMinContactS = 1.0;
 constexpr std::int64_t kWallMs = 2000;  ///< of its record
 
 /// Ends a bring-up that must not continue.
@@ -49,10 +47,10 @@ Workspace reach_of(std::span<const ServoSample> samples) {
   Workspace reach{samples.front().position_mm, samples.front().position_mm};
   for (const ServoSample& sample : samples) {
     const Vec3 at = sample.position_mm;
-    reach.least_mm = {std::min(reach.least_mm.x, at.x), std::min(reach.least_mm.y, at.y),
-                      std::min(reach.least_mm.z, at.z)};
-    reach.greatest_mm = {std::max(reach.greatest_mm.x, at.x), std::max(reach.greatest_mm.y, at.y),
-                         std::max(reach.greatest_mm.z, at.z)};
+    reach.min_mm = {std::min(reach.min_mm.x, at.x), std::min(reach.min_mm.y, at.y),
+                    std::min(reach.min_mm.z, at.z)};
+    reach.max_mm = {std::max(reach.max_mm.x, at.x), std::max(reach.max_mm.y, at.y),
+                    std::max(reach.max_mm.z, at.z)};
   }
   return reach;
 }
@@ -199,7 +197,7 @@ class Steps {
              "Keep your hands close: it may sink or rise. The program sends no force for 10 s."})) {
       return StepOutcome::left_out;
     }
-    Listening run(kRestRunS);
+    Listening run(kBringUpRestS);
     const ServoReport report = bench_.run("rest", run);
     const std::span<const ServoSample> samples = run.samples();
     // The rate of readings before a fault helps to explain it.
@@ -236,7 +234,7 @@ class Steps {
                            towards(axis))})) {
         return false;
       }
-      Listening run(kWayRunS);
+      Listening run(kDirectionRunS);
       runs_.measure("way " + name, run);
       const auto samples = run.samples();
       const std::size_t ends = std::min(kEndTicks, samples.size() / 3);
@@ -281,7 +279,7 @@ class Steps {
                            force_n)})) {
         return false;
       }
-      SteadyPush run(kPushRunS, (sign * force_n) * direction_of(axis), kPushReachMm);
+      SteadyPush run(kPushRunS, (sign * force_n) * direction_of(axis), kBringUpReachMm);
       runs_.measure("push " + std::string(name_of(axis)), run);
       const auto side = choose("Towards which side did it push?", kSides);
       if (!side) return false;
@@ -326,7 +324,7 @@ class Steps {
     runs_.measure("range", run);
     if (run.samples().empty()) return StepOutcome::failed;
     const Workspace reach = reach_of(run.samples());
-    const Vec3 size = reach.greatest_mm - reach.least_mm;
+    const Vec3 size = reach.max_mm - reach.min_mm;
     if (std::min({size.x, size.y, size.z}) < kMinPathMm) {
       return fail("the handle was moved by less than 1 cm along an axis");
     }

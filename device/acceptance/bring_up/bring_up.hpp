@@ -107,7 +107,7 @@ struct BringUp {
 /// \param facts  the driver's unverified facts, whose questions are asked
 /// \param record  from bring_up_of; complete up to now even after an exception
 /// \param save  called after each step
-/// \throws whatever bench, person and save throw
+/// \throws what bench, person and save throw
 void bring_up(AcceptanceBench& bench, AcceptancePerson& person,
               const std::vector<UnverifiedFact>& facts, BringUp& record,
               const std::function<void()>& save);

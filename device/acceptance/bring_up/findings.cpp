@@ -27,7 +27,7 @@ constexpr std::array<std::string_view, 5> kOutcomeNames = {"not_reached", "inter
 constexpr std::array<std::string_view, 4> kEndNames = {"stopped", "complete", "wrong_sign",
                                                        "fault"};
 
-constexpr double kAgainstMm = 2.0;
+constexpr double kMaxBackwardMm = 2.0;
 
 /// Words in the names of simulated devices.
 constexpr std::array<std::string_view, 8> kStandInWords = {"simul", "emul",  "virtual",  "fake",
@@ -150,7 +150,7 @@ PushSign sign_of_push(const BringUp& record, DeviceAxis axis, int sign) {
   const std::size_t pair = axis == DeviceAxis::x ? 0 : axis == DeviceAxis::y ? 2 : 4;
   const double along_mm = sign * dot(vec_of(record.find("moved_mm " + name)), direction_of(axis));
   const bool is_right = felt->word == kSides.at(pair + (sign > 0 ? 0 : 1));
-  return is_right && along_mm >= -kAgainstMm ? PushSign::right : PushSign::wrong;
+  return is_right && along_mm >= -kMaxBackwardMm ? PushSign::right : PushSign::wrong;
 }
 
 bool BringUp::signs_confirmed() const {
@@ -213,7 +213,7 @@ void note_extent(BringUp& record, const std::string& name, const Workspace& exte
   for (const DeviceAxis axis : kDeviceAxes) {
     const Vec3 along = direction_of(axis);
     record.note(name + std::string(name_of(axis)),
-                {dot(extent.least_mm, along), dot(extent.greatest_mm, along)});
+                {dot(extent.min_mm, along), dot(extent.max_mm, along)});
   }
 }
 

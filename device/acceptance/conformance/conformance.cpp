@@ -18,14 +18,14 @@ using Time = ServoClock::Time;
 
 constexpr Time kTick{1'000'000};
 /// How long the checks wait where no time limit is judged.
-constexpr double kPatienceS = 5.0;
-constexpr double kPatienceOutsideTimeS = 300.0;
+constexpr double kTimeoutS = 5.0;
+constexpr double kUntimedTimeoutS = 300.0;
 /// How long the force must remain zero.
 constexpr double kZeroLastsS = 0.050;
 constexpr double kMaxSpeedMmS = 2000.0;
 constexpr double kMaxPlaceMm = 10'000.0;
 constexpr double kWorkspaceMargin = 0.2;
-constexpr double kFastestRate = 10'000.0;
+constexpr double kMaxRate = 10'000.0;
 constexpr double kMaxStrength = 100.0;
 constexpr double kMinRate = 500.0;
 
@@ -45,14 +45,14 @@ std::string fault_in(const DeviceInfo& info) {
   if (!is_within(info.continuous_force_n, 0.0, info.max_force_n)) {
     return fmt::format("its continuous force is {:g} N", info.continuous_force_n);
   }
-  if (!is_within(info.max_rate_hz, kMinRate, kFastestRate)) {
+  if (!is_within(info.max_rate_hz, kMinRate, kMaxRate)) {
     return fmt::format("its rate is {:g} Hz", info.max_rate_hz);
   }
   if (!is_within(info.max_stiffness_n_per_mm, 0.0, kMaxStrength)) {
     return fmt::format("its largest stiffness is {:g} N/mm", info.max_stiffness_n_per_mm);
   }
   if (!info.workspace) return {};
-  const Vec3 size = info.workspace->greatest_mm - info.workspace->least_mm;
+  const Vec3 size = info.workspace->max_mm - info.workspace->min_mm;
   const bool sound = is_within(size.x, 1.0, 2000.0) && is_within(size.y, 1.0, 2000.0) &&
                      is_within(size.z, 1.0, 2000.0);
   return sound ? "" : fmt::format("its workspace is {:g} x {:g} x {:g} mm", size.x, size.y, size.z);
@@ -83,10 +83,10 @@ class VelocityJudge {
   static constexpr double kMovedMm = 1.0;
 
   void judge(Vec3 moved_mm) noexcept {
-    const double most_mm = std::max(norm(moved_mm), norm(travelled_mm_));
-    if (most_mm < kMovedMm) return;
+    const double max_mm = std::max(norm(moved_mm), norm(travelled_mm_));
+    if (max_mm < kMovedMm) return;
     ++parts_;
-    if (norm(moved_mm - travelled_mm_) > 0.5 * most_mm) ++wrong_;
+    if (norm(moved_mm - travelled_mm_) > 0.5 * max_mm) ++wrong_;
   }
 
   int ticks_ = 0;
@@ -99,8 +99,8 @@ class VelocityJudge {
 };
 
 bool is_inside(const Workspace& workspace, Vec3 position_mm) noexcept {
-  const Vec3 size = workspace.greatest_mm - workspace.least_mm;
-  const Vec3 middle = 0.5 * (workspace.greatest_mm + workspace.least_mm);
+  const Vec3 size = workspace.max_mm - workspace.min_mm;
+  const Vec3 middle = 0.5 * (workspace.max_mm + workspace.min_mm);
   const Vec3 off = position_mm - middle;
   const double share = 0.5 + kWorkspaceMargin;
   return std::abs(off.x) <= share * size.x && std::abs(off.y) <= share * size.y &&
@@ -159,8 +159,8 @@ class ConformanceRun {
       return false;
     });
   }
-  [[nodiscard]] double patience_s() const noexcept {
-    return options_.judges_time ? kPatienceS : kPatienceOutsideTimeS;
+  [[nodiscard]] double timeout_s() const noexcept {
+    return options_.judges_time ? kTimeoutS : kUntimedTimeoutS;
   }
 
   // --- The device -------------------------------------------------------------------------------
@@ -252,9 +252,9 @@ class ConformanceRun {
 
   /// \return whether there was a reading; else the check of their numbers fails
   bool wait_for_reading() {
-    const bool came = until(patience_s(), [&] { return read().sequence > 0 || lost_; });
+    const bool came = until(timeout_s(), [&] { return read().sequence > 0 || lost_; });
     if (!came && !is_stopped()) {
-      record_.fail(Id::numbering, fmt::format("no reading in {:.0f} s", patience_s()));
+      record_.fail(Id::numbering, fmt::format("no reading in {:.0f} s", timeout_s()));
     }
     return came && !lost_;
   }
@@ -428,7 +428,7 @@ class ConformanceRun {
     const double needed_hz = std::max(kMinRate, 0.5 * info_.max_rate_hz);
     const std::string rate = fmt::format("{:.0f} new readings a second", rate_hz);
     judge_time(Id::rate, rate_hz >= needed_hz, rate);
-    judge_time(Id::gaps, seen.longest_gap_s <= ConformanceOptions::kLongestGapS + 1e-9,
+    judge_time(Id::gaps, seen.longest_gap_s <= ConformanceOptions::kMaxGapS + 1e-9,
                fmt::format("oldest {:.1f} ms", 1e3 * seen.longest_gap_s));
   }
 
@@ -469,7 +469,7 @@ class ConformanceRun {
   }
   template <typename Holds>
   bool push(Vec3 force_n, const Holds& holds) {
-    return push(force_n, holds, patience_s());
+    return push(force_n, holds, timeout_s());
   }
 
   void check_pushing() {
@@ -494,7 +494,7 @@ class ConformanceRun {
   /// The time until the motors are without force.
   std::optional<double> time_to_zero(const std::function<void()>& meanwhile) {
     const double begin_s = now_s();
-    const bool zero = until(patience_s(), [&] {
+    const bool zero = until(timeout_s(), [&] {
       (void)read();
       if (meanwhile) meanwhile();
       return is_zero();
@@ -565,7 +565,7 @@ class ConformanceRun {
 
   /// \return whether there was a reading after this number
   bool has_new_reading(std::uint64_t& last) {
-    return until(patience_s(),
+    return until(timeout_s(),
                  [&] {
                    const DeviceSample sample = read();
                    write({});
@@ -600,7 +600,7 @@ class ConformanceRun {
 
   bool ended_by_second(std::uint64_t& last) {
     DeviceSample sample;
-    const bool reads = until(patience_s(), [&] {
+    const bool reads = until(timeout_s(), [&] {
       const DeviceStatus status = device_->read(sample);
       if (status == DeviceStatus::fault) return true;
       (void)device_->write({});

@@ -17,10 +17,10 @@ namespace touchtrial::device {
 
 /// In the order of execution and display.
 enum class ConformanceId {
-  library,  ///< of plug-ins alone
+  library,  ///< only for plug-ins
   opening,
   description,
-  memory,  ///< of plug-ins alone
+  memory,  ///< only for plug-ins
   staying,
   numbering,
   values,
@@ -37,7 +37,7 @@ enum class ConformanceId {
   closing_zero,
   opening_twice,
   reopening,
-  calls,  ///< of plug-ins alone
+  calls,  ///< only for plug-ins
 };
 
 enum class ConformanceOutcome {
@@ -100,7 +100,7 @@ struct ConformanceOptions {
   /// that for the device's own ticks and those of the observer.
   static constexpr double kZeroWithinS = 0.030;
   /// The safety chain treats older readings as stale.
-  static constexpr double kLongestGapS = 0.010;
+  static constexpr double kMaxGapS = 0.010;
 };
 
 /// Runs the checks on the calling thread; the clock paces them at 1 kHz. Checks that need more than

@@ -29,7 +29,7 @@ namespace {
 /// N.
 constexpr double kMaxMassChangeKg = 0.2;
 /// During the vendor's automatic motion of the arm: 32 ms.
-constexpr unsigned char kSlowestWatchdog = 255;
+constexpr unsigned char kMaxWatchdog = 255;
 /// For an unknown model, a weight above this share of the peak force is implausible.
 constexpr double kMaxWeightShare = 0.5;
 
@@ -103,20 +103,20 @@ class Session {
   }
   /// \return the largest possible weight of arms and end-effector, N; nothing if it is not
   ///   compensated
-  [[nodiscard]] std::optional<double> most_weight_n(const DeviceInfo& info) const {
+  [[nodiscard]] std::optional<double> max_weight_n(const DeviceInfo& info) const {
     if (!settings_.gravity_compensation || !has_switch()) return std::nullopt;
     return model_ ? model_->max_weight_n : kMaxWeightShare * info.max_force_n;
   }
   /// \throws DeviceError if the mass of the settings or of the device is implausible
   void check_mass(const DeviceInfo& info) const {
     check_change_of_mass();
-    const std::optional<double> most_n = most_weight_n(info);
+    const std::optional<double> max_n = max_weight_n(info);
     const double mass_kg =
         settings_.effector_mass_kg > 0.0 ? settings_.effector_mass_kg : own_mass_kg_.value_or(0.0);
-    if (!most_n || (mass_kg >= 0.0 && kStandardGravityMS2 * mass_kg <= *most_n)) return;
+    if (!max_n || (mass_kg >= 0.0 && kStandardGravityMS2 * mass_kg <= *max_n)) return;
     throw DeviceError("dhd: the library would carry an end-effector of " + number_text(mass_kg) +
                       " kg, but no device of this model (" + info.model + ") weighs more than " +
-                      number_text(*most_n) +
+                      number_text(*max_n) +
                       " N with its arms; set dhd.effector_mass_kg to what the scales say, or "
                       "dhd.gravity_compensation to false");
   }
@@ -155,18 +155,18 @@ class Session {
 
   /// Sets mass, limits and watchdogs, with force off.
   /// \param limit_n  of the rendered force, > 0
-  /// \param most_weight_n  as most_weight_n()
+  /// \param max_weight_n  as max_weight_n()
   /// \throws DeviceError naming what failed
-  void configure(double limit_n, std::optional<double> most_weight_n) {
+  void configure(double limit_n, std::optional<double> max_weight_n) {
     expect(api().enable_force(0, device_), "switching force off");
     set_mass();
-    expect(api().set_gravity_compensation(most_weight_n ? 1 : 0, device_),
+    expect(api().set_gravity_compensation(max_weight_n ? 1 : 0, device_),
            "dhd.gravity_compensation");
     set_time_guard();
     // An additional limit, missing in old firmware. Version 3.17.5 limits the requested force, then
     // adds the weight; other versions may limit the sum.
     if (api().set_max_force != nullptr) {
-      (void)api().set_max_force(limit_n + most_weight_n.value_or(0.0), device_);
+      (void)api().set_max_force(limit_n + max_weight_n.value_or(0.0), device_);
     }
     keep_watchdog(kWatchdog);
     if (!has_switch()) shed_weight();
@@ -185,14 +185,14 @@ class Session {
   }
 
   /// \throws DeviceError if the library reports an implausible weight of a calibrated device
-  void check_weight(double most_n) const {
+  void check_weight(double max_n) const {
     if (!is_calibrated()) return;
     const std::optional<Vec3> weight_n = added_weight_n(api(), device_);
-    if (!weight_n || is_plausible_weight(*weight_n, most_n)) return;
+    if (!weight_n || is_plausible_weight(*weight_n, max_n)) return;
     throw DeviceError("dhd: the library would add (" + number_text(weight_n->x) + ", " +
                       number_text(weight_n->y) + ", " + number_text(weight_n->z) +
                       ") N to every force for the weight of arms and end-effector, where at most " +
-                      number_text(most_n) +
+                      number_text(max_n) +
                       " N upwards can be true; calibrate the device again, or set "
                       "dhd.gravity_compensation to false");
   }
@@ -227,15 +227,15 @@ class Session {
         "USB node (scripts/install-udev-rules)"));
   }
 
-  [[nodiscard]] double force_n(const std::optional<double>& set_n, double most_n,
+  [[nodiscard]] double force_n(const std::optional<double>& set_n, double max_n,
                                const std::string& key) const {
-    if (!set_n && most_n == 0.0) refuse_unknown(identity().model, key);
-    if (set_n && most_n > 0.0 && *set_n > most_n) {
+    if (!set_n && max_n == 0.0) refuse_unknown(identity().model, key);
+    if (set_n && max_n > 0.0 && *set_n > max_n) {
       throw DeviceError("dhd: dhd." + key + " is " + number_text(*set_n) + " N, more than the " +
-                        number_text(most_n) + " N of a device of this model (" + model_->name +
+                        number_text(max_n) + " N of a device of this model (" + model_->name +
                         "); set it to what the data sheet says, or leave it out");
     }
-    return set_n.value_or(most_n);
+    return set_n.value_or(max_n);
   }
   [[noreturn]] static void refuse_unknown(const std::string& model, const std::string& key) {
     throw DeviceError(one_line("dhd: the size and the strength of this device (" + model +
@@ -356,7 +356,7 @@ std::string initialise_dhd(const DeviceSettings& settings) {
         kCalibrate));
   }
   if (session.is_calibrated()) return "is initialised already; nothing was moved";
-  session.keep_watchdog(kSlowestWatchdog);
+  session.keep_watchdog(kMaxWatchdog);
   if (api.drd_auto_init(session.device()) < 0) {
     throw DeviceError(
         one_line("dhd: the device was not initialised: " + session.library().last_error() +
@@ -373,10 +373,10 @@ struct DhdDevice::Running {
   Running(const DhdSettings& settings, double limit_n, std::chrono::nanoseconds (*now)())
       : session(settings), info(session.info()) {
     session.check_mass(info);
-    const std::optional<double> most_weight_n = session.most_weight_n(info);
-    session.configure(std::min(limit_n, info.max_force_n), most_weight_n);
-    if (most_weight_n) session.check_weight(*most_weight_n);
-    loop = std::make_unique<dhd::Loop>(session.api(), session.device(), most_weight_n, now);
+    const std::optional<double> max_weight_n = session.max_weight_n(info);
+    session.configure(std::min(limit_n, info.max_force_n), max_weight_n);
+    if (max_weight_n) session.check_weight(*max_weight_n);
+    loop = std::make_unique<dhd::Loop>(session.api(), session.device(), max_weight_n, now);
   }
 
   dhd::Session session;

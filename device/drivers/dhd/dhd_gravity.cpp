@@ -86,10 +86,10 @@ std::optional<Vec3> added_weight_n(const Api& api, char device) noexcept {
   return as_expert(api, [&]() noexcept { return modelled_force_n(api, device); });
 }
 
-bool is_plausible_weight(Vec3 force_n, double most_n) noexcept {
+bool is_plausible_weight(Vec3 force_n, double max_n) noexcept {
   return force_n.z >= -kSlackN &&
          std::hypot(force_n.x, force_n.y) <= kSidewaysShare * std::abs(force_n.z) + kSlackN &&
-         norm(force_n) <= most_n;
+         norm(force_n) <= max_n;
 }
 
 }  // namespace touchtrial::device::dhd

@@ -19,8 +19,8 @@ constexpr double kStandardGravityMS2 = 9.80665;
 [[nodiscard]] std::optional<Vec3> added_weight_n(const Api& api, char device) noexcept;
 
 /// \param force_n  DHD's frame
-/// \param most_n  > 0
-/// \return whether the force may be a weight: finite, neither down nor sideways, and at most most_n
-[[nodiscard]] bool is_plausible_weight(Vec3 force_n, double most_n) noexcept;
+/// \param max_n  > 0
+/// \return whether the force may be a weight: finite, neither down nor sideways, and at most max_n
+[[nodiscard]] bool is_plausible_weight(Vec3 force_n, double max_n) noexcept;
 
 }  // namespace touchtrial::device::dhd

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kUsualName = "libdhd.so";
+constexpr std::string_view kDefaultName = "libdhd.so";
 /// libdrd has the functions of libdhd, and functions for initialisation.
 constexpr std::array<std::string_view, 2> kStems = {"libdrd.so", "libdhd.so"};
 
@@ -88,7 +88,7 @@ void add_folders_of(const char* variable, std::vector<fs::path>& folders) {
   }
 }
 
-std::vector<fs::path> usual_folders() {
+std::vector<fs::path> library_folders() {
   std::vector<fs::path> folders;
   if (const char* const kit = std::getenv("FDSDK"); kit != nullptr && *kit != '\0') {
     folders = folders_of_kit(kit);
@@ -171,13 +171,14 @@ Api load_api(const DynamicLibrary& library) {
 std::vector<fs::path> library_candidates(const fs::path& named) {
   std::error_code error;
   if (fs::is_directory(named, error)) return libraries_in(folders_of_kit(named));
-  if (named != kUsualName) return {named};
+  if (named != kDefaultName) return {named};
   std::vector<fs::path> candidates;
   for (const std::string_view stem : kStems) {
     candidates.emplace_back(std::string(stem) + ".3");
     candidates.emplace_back(stem);
   }
-  for (fs::path& library : libraries_in(usual_folders())) candidates.push_back(std::move(library));
+  for (fs::path& library : libraries_in(library_folders()))
+    candidates.push_back(std::move(library));
   return candidates;
 }
 

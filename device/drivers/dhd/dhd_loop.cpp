@@ -27,8 +27,8 @@ Vec3 to_dhd_frame(Vec3 device) noexcept {
 
 }  // namespace
 
-Loop::Loop(const Api& api, char device, std::optional<double> most_weight_n, Now now)
-    : api_(api), device_(device), most_weight_n_(most_weight_n), now_(now) {
+Loop::Loop(const Api& api, char device, std::optional<double> max_weight_n, Now now)
+    : api_(api), device_(device), max_weight_n_(max_weight_n), now_(now) {
   check_status();  // so that readiness() is right from the start
   thread_ = std::thread([this] { run(); });
 }
@@ -93,7 +93,7 @@ DeviceReadiness Loop::need() const noexcept {
 /// After a halt or a fault, or while the device is not calibrated, force is off and the brakes are
 /// on. A force of zero would not suffice, because the library adds the weight to it.
 void Loop::switch_force() noexcept {
-  const bool is_shed = most_weight_n_ || tick_ >= kTicksToShedWeight;
+  const bool is_shed = max_weight_n_ || tick_ >= kTicksToShedWeight;
   const bool may_be_on = calibrated_ && is_shed && !link_.is_stopped();
   if (may_be_on == switched_on_) return;
   if (!may_be_on) {
@@ -122,9 +122,9 @@ void Loop::switch_off() noexcept {
 }
 
 bool Loop::is_weight_plausible() const noexcept {
-  if (!most_weight_n_) return true;
+  if (!max_weight_n_) return true;
   const std::optional<Vec3> weight_n = added_weight_n(api_, device_);
-  return !weight_n || is_plausible_weight(*weight_n, *most_weight_n_);
+  return !weight_n || is_plausible_weight(*weight_n, *max_weight_n_);
 }
 
 void Loop::take_sample() noexcept {
@@ -160,7 +160,7 @@ void Loop::send(Vec3 force_n) noexcept {
   if (result < 0) fail_call();
 }
 
-/// Reports a failed call: the device is gone, or the library gives another reason.
+/// Reports a failed call: the device was disconnected, or the library gives another reason.
 void Loop::fail_call() noexcept {
   Status status{};
   const bool there = api_.get_status(status.data(), device_) >= 0 && status[kConnected] != 0;

@@ -36,10 +36,10 @@ class Loop {
 
   /// \param api  must outlive this
   /// \param device  must stay open as long
-  /// \param most_weight_n  the largest weight that the library may add, else force is not switched
+  /// \param max_weight_n  the largest weight that the library may add, else force is not switched
   ///   on; nothing: it adds none
   /// \param now  the time of a reading, for velocities
-  Loop(const Api& api, char device, std::optional<double> most_weight_n, Now now);
+  Loop(const Api& api, char device, std::optional<double> max_weight_n, Now now);
   ~Loop();
   Loop(const Loop&) = delete;
   Loop& operator=(const Loop&) = delete;
@@ -65,7 +65,7 @@ class Loop {
 
   const Api& api_;
   char device_;
-  std::optional<double> most_weight_n_;
+  std::optional<double> max_weight_n_;
   Now now_;
   DeviceLink link_;
   VelocityEstimate<kVelocityReadings> velocity_;

@@ -169,7 +169,7 @@ void FalconDevice::send_final_zeros() noexcept {
       static_cast<void>(transport_->send(FalconExchange::zero_packet(), kFinalLimit));
     }
   } catch (const DeviceError&) {
-    // The device is gone, so no final packets are sent.
+    // The device was disconnected, so no final packets are sent.
   }
 }
 

@@ -85,7 +85,7 @@ class FalconDevice final : public LinkedDevice {
 
 /// Moves nothing.
 /// \return whether loaded firmware answers
-/// \throws DeviceError if the device is gone
+/// \throws DeviceError if the device was disconnected
 [[nodiscard]] bool falcon_answers(FtdiTransport& transport);
 
 }  // namespace touchtrial::device::falcon

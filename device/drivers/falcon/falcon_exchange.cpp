@@ -31,7 +31,7 @@ void FalconExchange::publish(Time now) noexcept {
 
 void FalconExchange::end() noexcept {
   overdue_ = due_ > 0 ? overdue_ + 1 : 0;
-  if (overdue_ >= kGivenUpAfter) due_ = overdue_ = 0;
+  if (overdue_ >= kLostAfterOverdue) due_ = overdue_ = 0;
   if (!read_) note_missing();
 }
 
@@ -62,9 +62,9 @@ bool FalconExchange::take(const Reply& reply, Time now) noexcept {
 bool FalconExchange::jumps(Vec3 position_mm, Time now) noexcept {
   if (!known_ || !homed_) return false;
   const double passed_s = std::chrono::duration<double>(now - pose_at_).count();
-  const double way_mm = norm(position_mm - to_device_mm(pose_.native_m));
+  const double distance_mm = norm(position_mm - to_device_mm(pose_.native_m));
   // Replies less than 1 ms apart are judged as if they were 1 ms apart: they may come together.
-  if (way_mm <= kMaxSpeedMmS * std::max(passed_s, 1e-3)) {
+  if (distance_mm <= kMaxSpeedMmS * std::max(passed_s, 1e-3)) {
     jumps_ = 0;
     return false;
   }

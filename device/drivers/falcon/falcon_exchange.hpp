@@ -40,7 +40,7 @@ class FalconExchange final : public FtdiStreamSink {
   /// ... and after which the device counts as lost.
   static constexpr int kLostAfter = 20;
   /// Exchanges in a row that ended with a reply still due, after which it counts as lost.
-  static constexpr int kGivenUpAfter = 3;
+  static constexpr int kLostAfterOverdue = 3;
   /// No hand moves faster: such a reply is corrupt, unless the next ones confirm it.
   static constexpr double kMaxSpeedMmS = 5'000.0;
   static constexpr int kMaxJumps = 3;

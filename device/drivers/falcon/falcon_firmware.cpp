@@ -39,7 +39,7 @@ constexpr milliseconds kSendLimit{200};
 /// Well above the latency timer, which sends a packet every 16 ms even if it is empty.
 constexpr milliseconds kBootPacketLimit{50};
 /// Empty packets after which no answer is expected.
-constexpr int kPatiencePackets = 2;
+constexpr int kTimeoutPackets = 2;
 
 void purge(FtdiTransport& transport) {
   transport.control(FtdiRequest::purge, kPurgeReceived);
@@ -59,7 +59,7 @@ bool receive_more(FtdiTransport& transport, Bytes& bytes) {
 /// Receives this many bytes, or fewer at the time limit.
 Bytes receive_bytes(FtdiTransport& transport, std::size_t count) {
   Bytes bytes;
-  for (int idle = 0; bytes.size() < count && idle < kPatiencePackets;) {
+  for (int idle = 0; bytes.size() < count && idle < kTimeoutPackets;) {
     idle = receive_more(transport, bytes) ? 0 : idle + 1;
   }
   return bytes;
@@ -68,7 +68,7 @@ Bytes receive_bytes(FtdiTransport& transport, std::size_t count) {
 /// \return whether the answer was received, possibly after other bytes, such as a leading zero
 bool answers(FtdiTransport& transport, std::span<const std::uint8_t> expected) {
   Bytes bytes;
-  for (int idle = 0; idle < kPatiencePackets && bytes.size() < kUsbPacketSize;) {
+  for (int idle = 0; idle < kTimeoutPackets && bytes.size() < kUsbPacketSize;) {
     idle = receive_more(transport, bytes) ? 0 : idle + 1;
     if (std::search(bytes.begin(), bytes.end(), expected.begin(), expected.end()) != bytes.end())
       return true;

@@ -26,7 +26,7 @@ constexpr int kFirmwareHandshakes = 100;
 /// Resets the device into its loader, sends the image, compares every byte with its echo, and sets
 /// the chip up for running. Takes about 2.5 s if nothing fails.
 /// \throws DeviceError with the last failure and the remedy after `kFirmwareLoads` loads, or at
-///   once if the device is gone
+///   once if the device was disconnected
 void load_falcon_firmware(FtdiTransport& transport, std::span<const std::uint8_t> image);
 
 /// Sets the chip up for loaded firmware: latency 1 ms, running speed, empty buffers.

@@ -17,7 +17,7 @@ ThermalBudget budget_of(const FalconSettings& settings) noexcept {
 }  // namespace
 
 FalconMotors::FalconMotors(const FalconSettings& settings) noexcept
-    : most_(settings.motor_peak),
+    : max_n_(settings.motor_peak),
       budgets_{budget_of(settings), budget_of(settings), budget_of(settings)} {}
 
 void FalconMotors::warm_until(Time now) noexcept {
@@ -39,12 +39,12 @@ MotorCommand FalconMotors::command(const PerLeg& torques_nm, Time now) noexcept 
   for (std::size_t i = 0; i < 3; ++i) {
     const double wanted = std::abs(kMotorValuePerNm * torques_nm[i]);
     if (!std::isfinite(wanted)) return {};
-    const double most = std::min(most_, budgets_[i].limit_n());
-    if (wanted > most) scale = std::min(scale, most / wanted);
+    const double max = std::min(max_n_, budgets_[i].limit_n());
+    if (wanted > max) scale = std::min(scale, max / wanted);
   }
   for (std::size_t i = 0; i < 3; ++i) {
     const double value = std::round(scale * (kMotorValuePerNm * torques_nm[i]));
-    sent_[i] = static_cast<std::int16_t>(std::clamp(value, -most_, most_));
+    sent_[i] = static_cast<std::int16_t>(std::clamp(value, -max_n_, max_n_));
   }
   return {sent_, scale < 1.0};
 }

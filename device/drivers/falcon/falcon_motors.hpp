@@ -46,7 +46,7 @@ class FalconMotors {
  private:
   void warm_until(Time now) noexcept;
 
-  double most_;
+  double max_n_;
   std::array<ThermalBudget, 3> budgets_;
   MotorValues sent_{};
   Time sent_at_{};

@@ -43,7 +43,7 @@ class FtdiTransport {
   /// Empty if the device has none.
   [[nodiscard]] virtual std::string serial() const = 0;
 
-  /// \name Setting up: each waits, and throws DeviceError if the device is gone
+  /// \name Setting up: each waits, and throws DeviceError if the device was disconnected
   ///@{
   virtual void control(FtdiRequest request, std::uint16_t value) = 0;
   /// \return the number of sent bytes; fewer than all at the time limit. Throws at once if the bus
@@ -72,7 +72,7 @@ class FtdiTransport {
   [[nodiscard]] virtual bool post(std::span<const std::uint8_t> bytes) noexcept = 0;
   static constexpr int kMaxStuck = 5;
   /// Waits for bytes, at most this long, and passes them to the sink.
-  virtual void serve(std::chrono::microseconds at_most) noexcept = 0;
+  virtual void serve(std::chrono::microseconds max_wait) noexcept = 0;
   /// \return whether the device is unplugged or unusable. Permanent: reopen the device.
   [[nodiscard]] virtual bool lost() const noexcept = 0;
   ///@}

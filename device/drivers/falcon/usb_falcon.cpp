@@ -19,7 +19,7 @@ constexpr unsigned kControlTimeoutMs = 1000;
 /// A bad cable may cause this many failed transfers in a row; after more the link is lost.
 constexpr int kMaxFailures = 20;
 /// The time limit for cancelled transfers.
-constexpr std::chrono::seconds kPatience{2};
+constexpr std::chrono::seconds kTimeout{2};
 
 /// Leaks a transfer that libusb did not return, because it might still write to the memory.
 void leave_to_libusb(UsbTransfer& transfer) {
@@ -45,7 +45,7 @@ class UsbFtdi final : public FtdiTransport {
   void start_stream(FtdiStreamSink& sink) override;
   void stop_stream() noexcept override;
   [[nodiscard]] bool post(std::span<const std::uint8_t> bytes) noexcept override;
-  void serve(std::chrono::microseconds at_most) noexcept override;
+  void serve(std::chrono::microseconds max_wait) noexcept override;
   [[nodiscard]] bool lost() const noexcept override { return lost_; }
 
  private:
@@ -143,8 +143,8 @@ void UsbFtdi::stop_stream() noexcept {
   next_size_ = 0;
   if (reading_) libusb_cancel_transfer(read_.get());
   if (sending_) libusb_cancel_transfer(send_.get());
-  // A transfer belongs to libusb until its callback has run, even if the device is gone.
-  const auto give_up = std::chrono::steady_clock::now() + kPatience;
+  // A transfer belongs to libusb until its callback has run, even if the device was disconnected.
+  const auto give_up = std::chrono::steady_clock::now() + kTimeout;
   while ((reading_ || sending_) && failed_polls_ <= kMaxFailures &&
          std::chrono::steady_clock::now() < give_up) {
     serve(std::chrono::milliseconds(100));
@@ -185,10 +185,10 @@ bool UsbFtdi::submit_next() noexcept {
   return sending_;
 }
 
-void UsbFtdi::serve(std::chrono::microseconds at_most) noexcept {
+void UsbFtdi::serve(std::chrono::microseconds max_wait) noexcept {
   timeval limit{};
-  limit.tv_sec = at_most.count() / 1'000'000;
-  limit.tv_usec = at_most.count() % 1'000'000;
+  limit.tv_sec = max_wait.count() / 1'000'000;
+  limit.tv_usec = max_wait.count() % 1'000'000;
   const int error = libusb_handle_events_timeout_completed(context_.get(), &limit, nullptr);
   if (error == LIBUSB_ERROR_INTERRUPTED) return;
   failed_polls_ = error == 0 ? 0 : failed_polls_ + 1;

@@ -45,7 +45,7 @@ class UsbClaim {
 [[nodiscard]] std::string place_of(libusb_device* device);
 /// \return empty if the device has none or does not report it
 [[nodiscard]] std::string serial_of(libusb_device_handle* handle);
-/// \throws DeviceError with the remedy if it may not be opened or is gone
+/// \throws DeviceError with the remedy if it may not be opened or was disconnected
 [[nodiscard]] UsbHandle open_usb_device(libusb_device* device);
 
 /// \return the cause and the remedy of an error of libusb, for the end of a message

@@ -20,15 +20,15 @@ constexpr double kRateHz = 1e9 / static_cast<double>(Inverse3Device::kPeriod.cou
 constexpr double kInverse3RadiusMm = 100.0;
 constexpr double kMinverseRadiusMm = 40.0;
 /// The arm cannot be further from the middle, m.
-constexpr double kFarthestM = 1.0;
+constexpr double kMaxM = 1.0;
 /// The middle of the workspace in the frame of the arm's base, which services before 3.5 use, m.
 /// From positions in the documentation's examples; not verified.
 constexpr Vec3 kCentreFromBaseM = {0.0, -0.12, 0.15};
 /// How often, and at what interval, the configuration is queried until it matches.
 constexpr int kReadBacks = 20;
-constexpr milliseconds kBetweenReadBacks{10};
-constexpr milliseconds kListPatience{5000};
-constexpr milliseconds kFinalPatience{200};
+constexpr milliseconds kReadBackInterval{10};
+constexpr milliseconds kListTimeout{5000};
+constexpr milliseconds kFinalTimeout{200};
 
 /// The service's x to the right, y away, z up, and ours: x to the right, y up, z towards the
 /// person.
@@ -52,8 +52,8 @@ ServiceAddress address_of(const Inverse3Settings& settings) {
 
 /// Sends a query that must have an answer.
 std::string answer_of(const ServiceAddress& http, const std::string& path,
-                      std::chrono::nanoseconds patience) {
-  const HttpAnswer answer = ask_service(http, path, patience);
+                      std::chrono::nanoseconds timeout) {
+  const HttpAnswer answer = ask_service(http, path, timeout);
   if (answer.status == 200) return answer.body;
   throw DeviceError(one_line("inverse3: the service at " + http.text() + " does not know " + path +
                              " (HTTP " + std::to_string(answer.status) +
@@ -82,11 +82,11 @@ KnownService service_at(const ServiceAddress& http, const std::string& version_a
 /// Older services, up to early 3.5, have HTTP on a separate port.
 /// \return nothing if that port has no HTTP either
 std::optional<KnownService> older_service(const Inverse3Settings& settings,
-                                          std::chrono::nanoseconds patience) {
+                                          std::chrono::nanoseconds timeout) {
   const ServiceAddress http{settings.host, settings.http_port};
   HttpAnswer answer;
   try {
-    answer = ask_service(http, "/version", patience);
+    answer = ask_service(http, "/version", timeout);
   } catch (const DeviceError&) {
     return std::nullopt;
   }
@@ -97,20 +97,20 @@ std::optional<KnownService> older_service(const Inverse3Settings& settings,
                              "later"));
 }
 
-KnownService find_service(const Inverse3Settings& settings, std::chrono::nanoseconds patience) {
-  const ServiceAddress usual = address_of(settings);
+KnownService find_service(const Inverse3Settings& settings, std::chrono::nanoseconds timeout) {
+  const ServiceAddress default_address = address_of(settings);
   std::string error;
   try {
-    const HttpAnswer answer = ask_service(usual, "/version", patience);
-    if (answer.status == 200) return service_at(usual, answer.body);
-    error = "inverse3: what listens at " + usual.text() + " has no HTTP, and nothing does at " +
-            std::to_string(settings.http_port) +
+    const HttpAnswer answer = ask_service(default_address, "/version", timeout);
+    if (answer.status == 200) return service_at(default_address, answer.body);
+    error = "inverse3: what listens at " + default_address.text() +
+            " has no HTTP, and nothing does at " + std::to_string(settings.http_port) +
             "; start Haply's Inverse service 3.5 or later, or correct inverse3.host, inverse3.port "
             "and inverse3.http_port";
   } catch (const NoService& none) {
     error = none.what();
   }
-  if (auto older = older_service(settings, patience)) return *older;
+  if (auto older = older_service(settings, timeout)) return *older;
   throw DeviceError(one_line(error));
 }
 
@@ -187,8 +187,8 @@ std::vector<DeviceListing> list_inverse3(const DeviceSettings& settings) {
   const Inverse3Settings& ours = settings.inverse3;
   DeviceListing nothing{"inverse3", "", "", address_of(ours).text(), false, {}};
   try {
-    const KnownService known = find_service(ours, kListPatience);
-    const ServiceReport inventory = report_in(answer_of(known.http, "/devices", kListPatience));
+    const KnownService known = find_service(ours, kListTimeout);
+    const ServiceReport inventory = report_in(answer_of(known.http, "/devices", kListTimeout));
     std::vector<DeviceListing> found;
     for (const DeviceReport& device : inventory.devices) {
       DeviceListing listing = nothing;
@@ -219,8 +219,8 @@ std::unique_ptr<HapticDevice> open_inverse3(const DeviceSettings& settings) {
 Inverse3Device::Inverse3Device(const Inverse3Settings& settings, Inverse3Options options)
     : settings_(settings),
       options_(std::move(options)),
-      known_(find_service(settings_, options_.patience)) {
-  service_ = std::make_unique<ServiceLink>(address_of(settings_), options_.patience);
+      known_(find_service(settings_, options_.timeout)) {
+  service_ = std::make_unique<ServiceLink>(address_of(settings_), options_.timeout);
   try {
     const ServiceReport inventory = report_in(service_->answer());
     choose_device(inventory);
@@ -278,7 +278,7 @@ void Inverse3Device::expect_no_other_session(const ServiceReport& inventory) con
     throw DeviceError(one_line("inverse3: another program uses " + id_ + remedy));
   }
   const std::vector<std::string> sessions =
-      sessions_in(answer_of(known_.http, "/sessions", options_.patience));
+      sessions_in(answer_of(known_.http, "/sessions", options_.timeout));
   if (sessions.size() <= 1) return;
   std::string names;
   for (const std::string& name : sessions) {
@@ -289,7 +289,7 @@ void Inverse3Device::expect_no_other_session(const ServiceReport& inventory) con
 }
 
 DeviceReport Inverse3Device::ask_for_inventory(const std::string& message) {
-  if (service_->exchange(message, options_.patience) != LinkOutcome::ok) {
+  if (service_->exchange(message, options_.timeout) != LinkOutcome::ok) {
     throw DeviceError(one_line("inverse3: the service at " + address_of(settings_).text() +
                                " does not answer its configuration; start it again"));
   }
@@ -304,7 +304,7 @@ void Inverse3Device::configure() {
   if (known_.version.has_filters()) {
     std::string trouble = "the service does not report its configuration; update it";
     for (int i = 0; i < kReadBacks && !trouble.empty(); ++i) {
-      if (i > 0) std::this_thread::sleep_for(kBetweenReadBacks);
+      if (i > 0) std::this_thread::sleep_for(kReadBackInterval);
       device = ask_for_inventory(inventory_request(known_.version, id_));
       if (device.config) trouble = fault_in(*device.config);
     }
@@ -322,7 +322,7 @@ void Inverse3Device::configure() {
 void Inverse3Device::refuse_home_return(DeviceConfig& config) const {
   const std::string path = "/inverse3/" + id_ + "/config/home_return";
   if (!config.home_return) {
-    const HttpAnswer answer = ask_service(known_.http, path, options_.patience);
+    const HttpAnswer answer = ask_service(known_.http, path, options_.timeout);
     if (answer.status == 200) config.home_return = home_return_in(answer.body);
   }
   if (!config.home_return.value_or(false)) return;
@@ -334,7 +334,7 @@ void Inverse3Device::refuse_home_return(DeviceConfig& config) const {
 
 /// Services before 3.5 may lack the channel.
 void Inverse3Device::listen_to_events() try {
-  service_->listen_to({settings_.host, settings_.events_port}, options_.patience);
+  service_->listen_to({settings_.host, settings_.events_port}, options_.timeout);
 } catch (const DeviceError&) {
   if (!known_.version.has_filters()) return;
   throw DeviceError(one_line(
@@ -398,7 +398,7 @@ void Inverse3Device::exchange() {
 
 void Inverse3Device::take(const DeviceReport& report, std::uint32_t buttons) noexcept {
   const Vec3 place_m = report.position_m - centre_m_;
-  if (norm(place_m) > kFarthestM) return link_.fail(DeviceFault::bad_data);
+  if (norm(place_m) > kMaxM) return link_.fail(DeviceFault::bad_data);
   if (report.status) note_status(*report.status);
   DeviceSample sample;
   sample.position_mm = kMmPerM * to_device_axes(place_m);
@@ -436,13 +436,13 @@ void Inverse3Device::send_final_zeros() noexcept {
       if (answers) {
         answers = service_->exchange(no_force, options_.silence) == LinkOutcome::ok;
       } else {
-        service_->post(no_force, kFinalPatience);
+        service_->post(no_force, kFinalTimeout);
       }
     }
   } catch (const std::exception&) {
     // Without messages the arm goes idle by itself.
   }
-  service_->close(kFinalPatience);
+  service_->close(kFinalTimeout);
 }
 
 Vec3 Inverse3Device::within_reach(Vec3 force_n) const noexcept {

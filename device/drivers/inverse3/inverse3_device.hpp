@@ -22,7 +22,7 @@ struct Inverse3Options {
   /// samples.
   SchedulingRequest scheduling{SchedulingPolicy::fifo, 81, true};
   /// Timeout of each step of opening.
-  std::chrono::nanoseconds patience = std::chrono::seconds(2);
+  std::chrono::nanoseconds timeout = std::chrono::seconds(2);
   /// Timeout of the answer to a force, after which the link counts as lost. The safety chain's
   /// limit on the age of a reading (10 ms) ends a run long before.
   std::chrono::nanoseconds silence = std::chrono::milliseconds(100);

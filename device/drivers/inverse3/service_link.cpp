@@ -25,8 +25,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMaxEvents = 256;
 
-Clock::time_point deadline_in(std::chrono::nanoseconds patience) {
-  return Clock::now() + std::chrono::duration_cast<Clock::duration>(patience);
+Clock::time_point deadline_in(std::chrono::nanoseconds timeout) {
+  return Clock::now() + std::chrono::duration_cast<Clock::duration>(timeout);
 }
 
 [[noreturn]] void refuse(const ServiceAddress& where, const std::string& why) {
@@ -157,8 +157,8 @@ LinkOutcome outcome_of(const error_code& error) {
 }  // namespace
 
 HttpAnswer ask_service(const ServiceAddress& service, const std::string& path,
-                       std::chrono::nanoseconds patience) {
-  const Clock::time_point deadline = deadline_in(patience);
+                       std::chrono::nanoseconds timeout) {
+  const Clock::time_point deadline = deadline_in(timeout);
   asio::io_context context;
   Tcp::socket socket(context);
   connect(context, socket, service, deadline);
@@ -204,9 +204,9 @@ struct ServiceLink::Channels {
   std::uint64_t sent = 1;
 };
 
-ServiceLink::ServiceLink(const ServiceAddress& service, std::chrono::nanoseconds patience)
-    : channels_(std::make_unique<Channels>(service, deadline_in(patience))) {
-  const LinkOutcome outcome = channels_->wait_for_answer(deadline_in(patience));
+ServiceLink::ServiceLink(const ServiceAddress& service, std::chrono::nanoseconds timeout)
+    : channels_(std::make_unique<Channels>(service, deadline_in(timeout))) {
+  const LinkOutcome outcome = channels_->wait_for_answer(deadline_in(timeout));
   if (outcome == LinkOutcome::silent)
     refuse(service, "it accepts connections, but does not answer");
   if (outcome != LinkOutcome::ok) refuse(service, "it ends the connection");
@@ -214,16 +214,16 @@ ServiceLink::ServiceLink(const ServiceAddress& service, std::chrono::nanoseconds
 
 ServiceLink::~ServiceLink() = default;
 
-void ServiceLink::listen_to(const ServiceAddress& events, std::chrono::nanoseconds patience) {
-  channels_->events.emplace(channels_->context, events, deadline_in(patience));
+void ServiceLink::listen_to(const ServiceAddress& events, std::chrono::nanoseconds timeout) {
+  channels_->events.emplace(channels_->context, events, deadline_in(timeout));
   channels_->events->keep_messages();
 }
 
 LinkOutcome ServiceLink::exchange(const std::string& message,
-                                  std::chrono::nanoseconds patience) noexcept {
+                                  std::chrono::nanoseconds timeout) noexcept {
   try {
     Channels& channels = *channels_;
-    const Clock::time_point deadline = deadline_in(patience);
+    const Clock::time_point deadline = deadline_in(timeout);
     // Messages since the last exchange were not requested.
     channels.context.restart();
     channels.context.poll();
@@ -237,18 +237,18 @@ LinkOutcome ServiceLink::exchange(const std::string& message,
   }
 }
 
-void ServiceLink::post(const std::string& message, std::chrono::nanoseconds patience) noexcept {
+void ServiceLink::post(const std::string& message, std::chrono::nanoseconds timeout) noexcept {
   try {
     ++channels_->sent;
-    (void)channels_->simulation.write(message, deadline_in(patience));
+    (void)channels_->simulation.write(message, deadline_in(timeout));
   } catch (const std::exception&) {
-    // The connection is gone, so there is no force.
+    // The connection is closed, so there is no force.
   }
 }
 
-void ServiceLink::close(std::chrono::nanoseconds patience) noexcept {
+void ServiceLink::close(std::chrono::nanoseconds timeout) noexcept {
   try {
-    const Clock::time_point deadline = deadline_in(patience);
+    const Clock::time_point deadline = deadline_in(timeout);
     channels_->simulation.close(deadline);
     if (channels_->events) channels_->events->close(deadline);
   } catch (const std::exception&) {

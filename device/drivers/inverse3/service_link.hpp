@@ -38,7 +38,7 @@ struct HttpAnswer {
 /// Sends GET `path`. Blocks for `patience` at most, plus name resolution.
 /// \throws NoService with the remedy if there is no answer
 [[nodiscard]] HttpAnswer ask_service(const ServiceAddress& service, const std::string& path,
-                                     std::chrono::nanoseconds patience);
+                                     std::chrono::nanoseconds timeout);
 
 /// The result of an exchange.
 enum class LinkOutcome {
@@ -55,22 +55,22 @@ class ServiceLink {
  public:
   /// Connects, and waits for the inventory, which the service sends first.
   /// \throws DeviceError with the remedy
-  ServiceLink(const ServiceAddress& service, std::chrono::nanoseconds patience);
+  ServiceLink(const ServiceAddress& service, std::chrono::nanoseconds timeout);
   ~ServiceLink();
   ServiceLink(const ServiceLink&) = delete;
   ServiceLink& operator=(const ServiceLink&) = delete;
 
   /// Also connects to the events channel.
   /// \throws DeviceError with the remedy
-  void listen_to(const ServiceAddress& events, std::chrono::nanoseconds patience);
+  void listen_to(const ServiceAddress& events, std::chrono::nanoseconds timeout);
 
   /// Sends a message and waits for its answer.
   [[nodiscard]] LinkOutcome exchange(const std::string& message,
-                                     std::chrono::nanoseconds patience) noexcept;
+                                     std::chrono::nanoseconds timeout) noexcept;
   /// Sends a message and does not wait for the answer, before `close`.
-  void post(const std::string& message, std::chrono::nanoseconds patience) noexcept;
+  void post(const std::string& message, std::chrono::nanoseconds timeout) noexcept;
   /// Closes the connection properly.
-  void close(std::chrono::nanoseconds patience) noexcept;
+  void close(std::chrono::nanoseconds timeout) noexcept;
 
   /// The newest answer, at first the inventory.
   [[nodiscard]] const std::string& answer() const noexcept;

@@ -70,7 +70,7 @@ struct DeviceReport {
   Vec3 velocity_m_s;
   std::optional<Vec3> delivered_n;     ///< from 3.5 on
   std::optional<ArmStatus> status;     ///< nothing: unchanged
-  std::optional<DeviceConfig> config;  ///< in an inventory alone
+  std::optional<DeviceConfig> config;  ///< only in an inventory
 };
 
 struct ServiceReport {

@@ -17,7 +17,7 @@ constexpr double kMass = 1e-4;
 constexpr double kDamping_n_s_per_mm = 0.012;
 constexpr double kHoverStiffness_n_per_mm = 0.4;
 /// Prevents a servo that stalled from throwing the hand when it continues.
-constexpr ServoClock::Time kLongestStep = std::chrono::milliseconds(20);
+constexpr ServoClock::Time kMaxStep = std::chrono::milliseconds(20);
 constexpr double kFinestStepS = 0.001;
 /// The device is not read between planes, so an old position of the hand is discarded.
 constexpr ServoClock::Time kUnread = std::chrono::milliseconds(200);
@@ -27,9 +27,9 @@ double seconds(ServoClock::Time time) noexcept {
 }
 
 /// \return the vector, shortened to a maximum length
-Vec2 limited(Vec2 vector, double greatest) noexcept {
+Vec2 limited(Vec2 vector, double max) noexcept {
   const double length = norm(vector);
-  return length > greatest ? (greatest / length) * vector : vector;
+  return length > max ? (max / length) * vector : vector;
 }
 
 double smooth(double share) noexcept {
@@ -37,8 +37,8 @@ double smooth(double share) noexcept {
 }
 
 void check(const MouseOptions& o) {
-  for (const double value : {o.pull_n_per_mm, o.greatest_pull_n, o.pull_time_s, o.pointer_time_s,
-                             o.greatest_speed_mm_s, o.push_n, o.push_time_s, o.hover_mm}) {
+  for (const double value : {o.pull_n_per_mm, o.max_pull_n, o.pull_time_s, o.pointer_time_s,
+                             o.max_speed_mm_s, o.push_n, o.push_time_s, o.hover_mm}) {
     if (!(value > 0.0) || !std::isfinite(value)) {
       throw std::invalid_argument("MouseDevice: an option is out of range");
     }
@@ -98,8 +98,7 @@ DeviceFault MouseDevice::fault() const noexcept {
 
 DeviceStatus MouseDevice::read(DeviceSample& sample) noexcept {
   const ServoClock::Time now = clock_.now();
-  const double step_s =
-      readings_ == 0 ? 0.0 : seconds(std::clamp(now - last_read_, {}, kLongestStep));
+  const double step_s = readings_ == 0 ? 0.0 : seconds(std::clamp(now - last_read_, {}, kMaxStep));
   if (readings_ > 0 && now - last_read_ > kUnread) lift();
   last_read_ = now;
   look_at(pointer_.newest(), now);
@@ -130,7 +129,7 @@ void MouseDevice::look_at(const PointerState& pointer, ServoClock::Time now) noe
   }
   seen_ = pointer;
   if (pointer.closed) closed_.store(true, std::memory_order_release);
-  pressed_ = pointer.pressed && !pointer.closed && now - news_at_ < kPatience &&
+  pressed_ = pointer.pressed && !pointer.closed && now - news_at_ < kTimeout &&
              !halted_.load(std::memory_order_acquire);
 }
 
@@ -142,10 +141,9 @@ void MouseDevice::lift() noexcept {
 }
 
 void MouseDevice::move(double step_s) noexcept {
-  hand_mm_ =
-      hand_mm_ + limited(seen_.position_mm - hand_mm_, options_.greatest_speed_mm_s * step_s);
+  hand_mm_ = hand_mm_ + limited(seen_.position_mm - hand_mm_, options_.max_speed_mm_s * step_s);
   followed_.step(hand_mm_, step_s);
-  const Vec2 pull_n = limited({force_n_.x, force_n_.y}, options_.greatest_pull_n);
+  const Vec2 pull_n = limited({force_n_.x, force_n_.y}, options_.max_pull_n);
   displaced_.step((1.0 / options_.pull_n_per_mm) * pull_n, step_s);
   const int parts = std::max(1, static_cast<int>(std::ceil(step_s / kFinestStepS)));
   for (int part = 0; part < parts; ++part) move_across(step_s / parts, force_n_.z);

@@ -54,12 +54,12 @@ class SmoothPull {
 /// docs/devices/mouse.md.
 struct MouseOptions {
   double pull_n_per_mm = 0.025;   ///< of the spring back to the pointer: 0.1 N shows as 4 mm; > 0
-  double greatest_pull_n = 0.3;   ///< greater tangential forces displace no further, > 0
+  double max_pull_n = 0.3;        ///< greater tangential forces displace no further, > 0
   double pull_time_s = 0.010;     ///< of the stylus on that spring: 16 Hz, > 0
   double pointer_time_s = 0.006;  ///< smooths the pointer's steps, > 0
-  double greatest_speed_mm_s = 800.0;  ///< limit of the stylus following the pointer, > 0
-  double push_n = 0.7;                 ///< on the plane while the button is held, > 0
-  double push_time_s = 0.1;            ///< rise and fall time of the push, > 0
+  double max_speed_mm_s = 800.0;  ///< limit of the stylus following the pointer, > 0
+  double push_n = 0.7;            ///< on the plane while the button is held, > 0
+  double push_time_s = 0.1;       ///< rise and fall time of the push, > 0
   /// Above the plane while the button is not held, > 0: above the height at which a stylus counts
   /// as landed.
   double hover_mm = 3.5;
@@ -72,11 +72,11 @@ struct MouseOptions {
 /// carries `push_n`. Stable at 1 to 10 kHz with any wall or texture of up to 10 N/mm. With the
 /// defaults no motion is faster than 1,700 mm/s, for any pointer motion and force.
 ///
-/// The device never waits for a window. If the window hangs for kPatience, the hand lets go; if it
+/// The device never waits for a window. If the window hangs for kTimeout, the hand lets go; if it
 /// closes, the link is lost.
 class MouseDevice final : public HapticDevice {
  public:
-  static constexpr ServoClock::Time kPatience = std::chrono::milliseconds(500);
+  static constexpr ServoClock::Time kTimeout = std::chrono::milliseconds(500);
   /// The limit of the hand's depth without a wall, and of its height, mm.
   static constexpr double kReachMm = 10.0;
 

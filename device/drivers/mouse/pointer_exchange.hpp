@@ -13,7 +13,7 @@ namespace touchtrial::device {
 struct PointerState {
   Vec2 position_mm;      ///< on the plane, from its top-left corner
   bool pressed = false;  ///< the button is held
-  bool closed = false;   ///< the window is gone for good
+  bool closed = false;   ///< the window was closed
   /// Counts the window's iterations, whether or not the pointer has moved; 0: none yet. A constant
   /// number means that the window hangs.
   std::uint64_t sequence = 0;

@@ -31,9 +31,9 @@ constexpr const char* kRemedy =
 
 /// Frames of zero before the scheduler is stopped, and how long to wait for them.
 constexpr int kZerosAtTheEnd = 5;
-constexpr milliseconds kPatience{500};
+constexpr milliseconds kTimeout{500};
 /// The time for a callback that is still inside the library after the scheduler was stopped.
-constexpr milliseconds kPatienceWithCallback{2000};
+constexpr milliseconds kCallbackTimeout{2000};
 
 /// The values of the Touch, for a library that does not report them.
 constexpr double kTouchMaxForceN = 3.3;
@@ -117,9 +117,8 @@ std::optional<Workspace> box_of(const Api& api, Enum what) {
   const auto w = numbers_of<6>(api, what);
   if (!w) return std::nullopt;
   const Workspace space{{(*w)[0], (*w)[1], (*w)[2]}, {(*w)[3], (*w)[4], (*w)[5]}};
-  const bool has_volume = space.least_mm.x < space.greatest_mm.x &&
-                          space.least_mm.y < space.greatest_mm.y &&
-                          space.least_mm.z < space.greatest_mm.z;
+  const bool has_volume = space.min_mm.x < space.max_mm.x && space.min_mm.y < space.max_mm.y &&
+                          space.min_mm.z < space.max_mm.z;
   return has_volume ? std::optional(space) : std::nullopt;
 }
 
@@ -213,7 +212,7 @@ class Session {
 };
 
 void wait_for_zeros(const Loop& loop) noexcept {
-  for (milliseconds waited(0); waited < kPatience; ++waited) {
+  for (milliseconds waited(0); waited < kTimeout; ++waited) {
     if (loop.zeros_sent() >= kZerosAtTheEnd) return;
     std::this_thread::sleep_for(milliseconds(1));
   }
@@ -294,7 +293,7 @@ class OpenHapticsDevice::Running {
     const hd::Api& api = session_.api();
     api.stop_scheduler();
     // A callback that never returns still uses the loop, so leak it instead of freeing it.
-    if (!loop_->close(hd::kPatienceWithCallback)) (void)loop_.release();
+    if (!loop_->close(hd::kCallbackTimeout)) (void)loop_.release();
     if (scheduled_) api.unschedule(callback_);
     api.make_current_device(session_.device());
     api.disable(hd::kForceOutput);

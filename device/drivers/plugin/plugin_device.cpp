@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kZerosAtTheEnd = 5;
 /// How long a call may delay closing.
-constexpr std::chrono::seconds kPatienceWithPlugin{2};
+constexpr std::chrono::seconds kPluginTimeout{2};
 
 /// \throws DeviceError if no plug-in is named, or loading its library crashes
 const std::filesystem::path& expect_loadable(const std::filesystem::path& library) {
@@ -126,7 +126,7 @@ PluginDevice::~PluginDevice() {
   running_->link.halt();
   running_->closing.store(true, std::memory_order_release);
   running_->pace->end();
-  if (ended_.wait_for(kPatienceWithPlugin) == std::future_status::ready) {
+  if (ended_.wait_for(kPluginTimeout) == std::future_status::ready) {
     thread_.join();
   } else {
     thread_.detach();  // a call hangs; its thread closes the device if it ever returns

@@ -14,11 +14,11 @@
 namespace touchtrial::device::plugin {
 namespace {
 
-constexpr std::size_t kLongestName = 32;
+constexpr std::size_t kMaxNameBytes = 32;
 constexpr double kMaxForceN = 100.0;
 constexpr double kMaxStiffnessNPerMm = 100.0;
-constexpr double kSlowestRateHz = 500.0;
-constexpr double kFastestRateHz = 10'000.0;
+constexpr double kMinRateHz = 500.0;
+constexpr double kMaxRateHz = 10'000.0;
 constexpr double kMinSideMm = 1.0;
 constexpr double kMaxSideMm = 2000.0;
 /// No desktop device reaches so far, and no hand is so fast.
@@ -48,10 +48,10 @@ class Guarded {
   throw DeviceError(one_line(who + ": " + what + "; " + kRemedy));
 }
 
-/// \return the length of a text, at most `most`
-std::size_t length_of(const char* text, std::size_t most) noexcept {
-  const void* const end = std::memchr(text, 0, most);
-  return end == nullptr ? most : static_cast<std::size_t>(static_cast<const char*>(end) - text);
+/// \return the length of a text, at most `max`
+std::size_t length_of(const char* text, std::size_t max) noexcept {
+  const void* const end = std::memchr(text, 0, max);
+  return end == nullptr ? max : static_cast<std::size_t>(static_cast<const char*>(end) - text);
 }
 
 template <std::size_t size>
@@ -82,14 +82,14 @@ void expect_sound_api(const std::string& file, const touchtrial_device_api* api)
 }
 
 std::string sound_name(const std::string& file, const char* name) {
-  const std::size_t length = name == nullptr ? 0 : length_of(name, kLongestName + 1);
-  const bool is_sound =
-      length > 0 && length <= kLongestName && std::all_of(name, name + length, [](unsigned char c) {
-        return c < 0x80 && (std::isalnum(c) != 0 || c == '-' || c == '_');
-      });
+  const std::size_t length = name == nullptr ? 0 : length_of(name, kMaxNameBytes + 1);
+  const bool is_sound = length > 0 && length <= kMaxNameBytes &&
+                        std::all_of(name, name + length, [](unsigned char c) {
+                          return c < 0x80 && (std::isalnum(c) != 0 || c == '-' || c == '_');
+                        });
   if (!is_sound) {
     refuse_plugin(
-        file, "has no name of 1 to " + std::to_string(kLongestName) + " letters, digits, - and _");
+        file, "has no name of 1 to " + std::to_string(kMaxNameBytes) + " letters, digits, - and _");
   }
   return {name, length};
 }
@@ -115,18 +115,18 @@ class DescriptionCheck {
 };
 
 Workspace workspace_in(const touchtrial_device_description& told, const DescriptionCheck& judge) {
-  const auto& least = told.workspace_least_mm;
-  const auto& greatest = told.workspace_greatest_mm;
+  const auto& min = told.workspace_least_mm;
+  const auto& max = told.workspace_greatest_mm;
   for (int axis = 0; axis < 3; ++axis) {
-    (void)judge.in_range("workspace_least_mm", least[axis], -kMaxSideMm, kMaxSideMm, true);
-    (void)judge.in_range("a side of the workspace in mm", greatest[axis] - least[axis], kMinSideMm,
+    (void)judge.in_range("workspace_least_mm", min[axis], -kMaxSideMm, kMaxSideMm, true);
+    (void)judge.in_range("a side of the workspace in mm", max[axis] - min[axis], kMinSideMm,
                          kMaxSideMm, true);
   }
   if (told.shape > TOUCHTRIAL_DEVICE_ELLIPSOID) {
     judge.refuse("shape is " + std::to_string(told.shape) + ", must be 0 or 1");
   }
-  return {{least[0], least[1], least[2]},
-          {greatest[0], greatest[1], greatest[2]},
+  return {{min[0], min[1], min[2]},
+          {max[0], max[1], max[2]},
           told.shape == TOUCHTRIAL_DEVICE_BOX ? WorkspaceShape::box : WorkspaceShape::ellipsoid};
 }
 
@@ -260,8 +260,7 @@ DeviceInfo OpenDevice::info() const {
   info.max_force_n = judge.in_range("max_force_n", told.max_force_n, 0.0, kMaxForceN, false);
   info.continuous_force_n =
       judge.in_range("continuous_force_n", told.continuous_force_n, 0.0, told.max_force_n, true);
-  info.max_rate_hz =
-      judge.in_range("max_rate_hz", told.max_rate_hz, kSlowestRateHz, kFastestRateHz, true);
+  info.max_rate_hz = judge.in_range("max_rate_hz", told.max_rate_hz, kMinRateHz, kMaxRateHz, true);
   info.max_stiffness_n_per_mm = judge.in_range(
       "max_stiffness_n_per_mm", told.max_stiffness_n_per_mm, 0.0, kMaxStiffnessNPerMm, true);
   info.workspace = workspace_in(told, judge);

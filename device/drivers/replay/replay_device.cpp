@@ -17,9 +17,9 @@ namespace touchtrial::device {
 namespace {
 
 constexpr std::uintmax_t kMaxFile = std::uintmax_t{512} << 20U;
-constexpr double kFarthestMm = 10'000.0;
-constexpr double kSlowestHz = 10.0;
-constexpr double kFastestHz = 20'000.0;
+constexpr double kMaxMm = 10'000.0;
+constexpr double kMinHz = 10.0;
+constexpr double kMaxHz = 20'000.0;
 constexpr std::array<std::string_view, 4> kColumns = {"time_s", "x_mm", "y_mm", "z_mm"};
 
 struct CsvRow {
@@ -101,7 +101,7 @@ TimedPosition position_from(const CsvRow& row, const std::array<std::size_t, 4>&
   std::array<double, 4> v{};
   for (std::size_t i = 0; i < v.size(); ++i) {
     v[i] = number_from(row.fields[columns[i]], kColumns[i], where);
-    if (i > 0 && std::abs(v[i]) > kFarthestMm) {
+    if (i > 0 && std::abs(v[i]) > kMaxMm) {
       refuse(where, std::string(kColumns[i]) + " is beyond 10 m; positions are in millimetres");
     }
   }
@@ -130,7 +130,7 @@ std::vector<TimedPosition> read_positions(CsvRows& rows, const std::string& name
 }
 
 /// \return the median step from row to row
-double usual_step_s(const std::vector<TimedPosition>& rows) {
+double median_step_s(const std::vector<TimedPosition>& rows) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < rows.size(); ++i) {
     steps.push_back(rows[i].time_s - rows[i - 1].time_s);
@@ -161,7 +161,7 @@ std::vector<Vec3> fill_ticks(const std::vector<TimedPosition>& rows, double step
 /// \return the mean rate of the whole recording, to the millihertz, unaffected by rounded times
 double rate_over(double duration_s, std::size_t ticks, const std::string& name) {
   const double rate_hz = std::round(static_cast<double>(ticks - 1) / duration_s * 1000.0) / 1000.0;
-  if (rate_hz >= kSlowestHz && rate_hz <= kFastestHz) return rate_hz;
+  if (rate_hz >= kMinHz && rate_hz <= kMaxHz) return rate_hz;
   refuse(name, "it does not have 10 to 20,000 rows a second; time_s is in seconds");
 }
 
@@ -208,7 +208,7 @@ RecordedMotion read_motion_csv(const std::filesystem::path& file) {
   const std::string name = file.string();
   CsvRows rows({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   const std::vector<TimedPosition> positions = read_positions(rows, name);
-  std::vector<Vec3> ticks = fill_ticks(positions, usual_step_s(positions), name);
+  std::vector<Vec3> ticks = fill_ticks(positions, median_step_s(positions), name);
   const double duration_s = positions.back().time_s - positions.front().time_s;
   const double rate_hz = rate_over(duration_s, ticks.size(), name);
   return {std::move(ticks), rate_hz};

@@ -15,7 +15,7 @@ bool are_alike(const MethodComparison& paired) {
   return paired.participants > 1 && !paired.known_interval();
 }
 
-/// What two methods differ in, over participants.
+/// Adds a difference between two methods over participants.
 /// \param get  the MethodComparison of a row
 template <typename Row, typename Get>
 void add_comparison(Get get, MeasureList<Row>& all) {
@@ -128,8 +128,8 @@ MeasureList<std::size_t> class_measures(const StudyReport& report, const MethodP
       label_of<Row>("class", "texture", [&report](Row i) { return report.classes[i]; }),
       member_of<Row>("first", [of](Row i) { return proportion_json(of(i).first); }),
       column_of<Row>(name(pair.first), [of](Row i) { return count_and_share(of(i).first); })
-          .with("Counts pool all participants. p is not adjusted for the number of textures: to "
-                "look at, not to test with. The other columns are those of the table above."),
+          .with("Counts pool all participants. p is not adjusted for the number of textures: "
+                "descriptive only. Other columns: as in the table above."),
       member_of<Row>("second", [of](Row i) { return proportion_json(of(i).second); }),
       column_of<Row>(name(pair.second), [of](Row i) { return count_and_share(of(i).second); })};
   MeasureList<Row> compared;

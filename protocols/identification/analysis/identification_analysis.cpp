@@ -91,10 +91,8 @@ class IdentificationAnalysis final : public ProtocolAnalysis {
     }
     return tables;
   }
-  std::vector<std::filesystem::path> export_model(
-      const record::StudyStore& store, const Outcomes& outcomes,
-      const std::filesystem::path& folder) const override {
-    return export_mixed_model(store, outcomes, folder);
+  std::optional<RModel> r_model(const Outcomes& outcomes) const override {
+    return mixed_model(outcomes);
   }
 };
 

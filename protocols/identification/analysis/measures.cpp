@@ -109,7 +109,7 @@ MeasureList<SubsetAccuracy> subset_measures() {
       {{member_of<Row>("trials", [](const Row& one) { return name_of(one.subset); })
             .shown("trials", [](const Row& one) { return words_of(one.subset); })
             .with("Mean over participants with Student's t interval. If a row's conclusion differs "
-                  "from the first's, say so beside the result.",
+                  "from the first row's, report it with the result.",
                   {Source::student})},
        pooled_and_mean<Row>(&Row::pooled, "pooled", &Row::mean)});
 }
@@ -150,13 +150,13 @@ MeasureList<GroupAccuracy> breakdown_measures(BreakdownKind kind) {
   if (of_people) {
     all = joined_measures<Row>({std::move(all), measures_in<Row>(&Row::mean, mean_measures())});
     all.front().notes = {
-        {"Mean of participants' own accuracies with Student's t interval: to look at. The "
-         "registered test decides, over the visits that were registered and all groups.",
+        {"Mean of participants' own accuracies with Student's t interval: descriptive. The "
+         "registered test uses the registered visits and all groups.",
          {Source::student}}};
   } else {
     all.front().notes = {
-        {"All participants' trials pooled as if independent: to look at, not to test with. Of many "
-         "such rows some stand out by chance.",
+        {"All participants' trials pooled as if independent: descriptive only. Of many such rows "
+         "some are extreme by chance.",
          {Source::wilson}}};
   }
   return all;
@@ -190,8 +190,8 @@ MeasureList<ParticipantAccuracy> participant_measures(const StudyReport& report)
                    [](const Row& one) { return share_figure(one.matching.accuracy.share()); }),
         column_of<Row>("exchange",
                        [&classes](const Row& one) { return exchange_of(one.matching, classes); })
-            .with("The exchange is the one-to-one matching of textures and answers with the most "
-                  "trials, chosen after the fact. p: sign test of the answers that agree with it "
+            .with("The exchange is the one-to-one matching of textures and answers that fits the "
+                  "most trials, chosen post hoc. p: sign test of the answers that agree with it "
                   "against those with the own label, times the number of exchanges of as many "
                   "labels; adjusted over all participants and methods.",
                   {Source::kuhn, Source::benjamini_hochberg}),
@@ -233,10 +233,9 @@ MeasureList<std::size_t> accuracy_measures(const StudyReport& report, const Meth
                   {Source::student, Source::hyndman_fan}),
         number_of<Row>("", "unbiased hits", share_figure, [=](Row i) { return hits(i).rate.mean; })
             .if_known()
-            .with("Unbiased hits: the share of a texture's presentations that were answered right, "
-                  "times the share of its answers that were right, mean over participants, which "
-                  "answering one texture often does not raise. At random: the same if answers had "
-                  "nothing to do with what was presented.",
+            .with("Unbiased hits: hit rate times the share of a texture's answers that were right, "
+                  "mean over participants; naming a texture often does not raise it. At random: "
+                  "the same if answers were independent of what was presented.",
                   {Source::wagner}),
         number_of<Row>("", "at random", share_figure, [=](Row i) { return hits(i).by_chance; })
             .if_known(),

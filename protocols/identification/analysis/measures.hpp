@@ -2,7 +2,7 @@
 /// Lists that take a part of a report refer to it: it must outlive them.
 #pragma once
 
-#include "analysis/report/measure.hpp"
+#include "analysis/report/listed_measures.hpp"
 #include "protocols/identification/analysis/report.hpp"
 
 #include <cstddef>
@@ -43,6 +43,9 @@ namespace touchtrial::analysis::identification {
 /// Of each class, by its index.
 [[nodiscard]] MeasureList<std::size_t> class_measures(const StudyReport& report,
                                                       const MethodPair& pair);
+
+/// What these lists make in results.json.
+[[nodiscard]] std::vector<ListedObject> listed_objects();
 
 /// The rows of a confusion matrix.
 [[nodiscard]] std::vector<int> class_indices(const ConfusionMatrix& confusion);

@@ -1,5 +1,6 @@
 #include "protocols/identification/analysis/methods.hpp"
 
+#include "analysis/statistics/cluster_bootstrap.hpp"
 #include "core/strict_json.hpp"
 #include "core/text.hpp"
 
@@ -62,8 +63,13 @@ std::string images_words(const study::Study& study) {
   const bool has_several = std::ranges::any_of(
       study.classes, [](const study::StudyClass& one) { return one.images.size() > 1; });
   if (!has_several) return {};
-  return "The image of a presentation was drawn at random from those of its texture, all of which "
-         "came before any was repeated.";
+  std::string text =
+      "The image of a presentation was drawn at random from those of its texture, all of which "
+      "came before any was repeated";
+  if (study.session.sight != study::Sight::blindfold) {
+    text += "; the picture to choose was always the first of them";
+  }
+  return text + ".";
 }
 
 std::string unscored_words(const study::TrialOptions& trials) {
@@ -79,6 +85,23 @@ std::string unscored_words(const study::TrialOptions& trials) {
   return parts.empty() ? "" : "Not scored were " + listed(parts, " and ") + ".";
 }
 
+/// How many orders the tests against chance visit.
+std::string orders_counted(const StudyReport& report) {
+  int deals = 0;
+  for (const MethodReport& one : report.methods) {
+    if (one.chance && !one.chance->exact) deals = std::max(deals, one.chance->deals);
+  }
+  return deals == 0 ? "all of them, exactly" : fmt::format("{} of them, drawn at random", deals);
+}
+
+/// How many patterns of signs the tests of pairs visit.
+std::string patterns_counted(const StudyReport& report) {
+  const bool are_exact = std::ranges::all_of(report.pairs, [](const MethodPair& one) {
+    return one.overall.participants <= kExactSignFlips;
+  });
+  return are_exact ? "all patterns of their signs" : "patterns of their signs drawn at random";
+}
+
 void add_accuracy(const StudyReport& report, Sentences& all) {
   const auto any = [&](auto has) { return std::ranges::any_of(report.methods, has); };
   all.push_back(
@@ -87,7 +110,9 @@ void add_accuracy(const StudyReport& report, Sentences& all) {
        "answer counted as wrong.",
        {Source::student}});
   if (any([](const MethodReport& one) { return one.bootstrap.has_value(); })) {
-    all.push_back({"Bootstrap intervals drew participants, with expanded percentiles.",
+    all.push_back({fmt::format("Bootstrap intervals drew participants {} times, with expanded "
+                               "percentiles.",
+                               kBootstrapDraws),
                    {Source::davison_hinkley, Source::hesterberg}});
   }
   if (any([](const MethodReport& one) { return one.spread.has_value(); })) {
@@ -97,10 +122,10 @@ void add_accuracy(const StudyReport& report, Sentences& all) {
          {Source::paule_mandel, Source::viechtbauer}});
   }
   if (any([](const MethodReport& one) { return one.chance.has_value(); })) {
-    all.push_back(
-        {"Whether anybody did better than chance was tested by permutation over the "
-         "orders that could have been dealt, one-sided.",
-         {Source::phipson_smyth}});
+    all.push_back({fmt::format("Whether anybody did better than chance was tested by permutation "
+                               "over the orders that could have been dealt ({}), one-sided.",
+                               orders_counted(report)),
+                   {Source::phipson_smyth}});
   }
   if (any([](const MethodReport& one) { return one.prevalence.has_value(); })) {
     all.push_back(
@@ -112,10 +137,10 @@ void add_accuracy(const StudyReport& report, Sentences& all) {
 
 void add_comparison(const StudyReport& report, Sentences& all) {
   if (report.pairs.empty()) return;
-  all.push_back(
-      {"Two methods were compared by the mean of participants' differences, with its t "
-       "interval and a two-sided sign-flip permutation test.",
-       {Source::student, Source::phipson_smyth}});
+  all.push_back({fmt::format("Two methods were compared by the mean of participants' differences, "
+                             "with its t interval and a two-sided permutation test over {}.",
+                             patterns_counted(report)),
+                 {Source::student, Source::phipson_smyth}});
   const auto any = [&](auto has) { return std::ranges::any_of(report.pairs, has); };
   if (any([](const MethodPair& one) { return one.p_holm.has_value(); })) {
     all.push_back({"Over all pairs of methods p was adjusted by Holm's method.", {Source::holm}});
@@ -141,8 +166,10 @@ void add_confusions(const StudyReport& report, Sentences& all) {
          {Source::luce, Source::townsend_landon, Source::miller, Source::wagner}});
   }
   if (any([](const MethodReport& one) { return one.d_prime.estimate.has_value(); })) {
-    all.push_back({"d′ was computed from pooled trials as that of as many alternatives.",
-                   {Source::green_swets, Source::hacker_ratcliff}});
+    all.push_back(
+        {"d′ was computed from pooled trials, for an unbiased observer with as many "
+         "alternatives as there are textures.",
+         {Source::green_swets, Source::hacker_ratcliff}});
   }
   if (any([](const MethodReport& one) { return one.confidence.has_value(); })) {
     all.push_back(

@@ -1,10 +1,7 @@
 #include "protocols/identification/analysis/mixed_model.hpp"
 
 #include "analysis/choices/people.hpp"
-#include "analysis/exports/data_table.hpp"
-#include "analysis/exports/export_folder.hpp"
 #include "analysis/exports/trial_tables.hpp"
-#include "core/errors.hpp"
 #include "core/text.hpp"
 
 #include <map>
@@ -92,7 +89,7 @@ std::string what_of_images(const Outcomes& outcomes) {
 
 std::string notes(const Outcomes& outcomes) {
   return fmt::format(
-      "# Mixed model of {}\n\n{}`mixed_model.csv` has one row a trial that counts. `Rscript "
+      "`mixed_model.csv` has one row a trial that counts. `Rscript "
       "mixed_model.R` prints two analyses; with `--csv`, all their digits.\n\n1. Student's t over "
       "participants' own accuracies: the result to quote. With methods in blocks of their own it "
       "is adjusted for the period.\n2. A binomial model with a logit link (lme4, sum-coded):\n\n   "
@@ -107,7 +104,6 @@ std::string notes(const Outcomes& outcomes) {
       "participant's blocks; `place` the trial's place among its participant's trials of the "
       "method; `previous_class` and `previous_response` are those of the previous presentation in "
       "the same block.\n",
-      outcomes.study, outcomes.simulated ? "SIMULATED: every participant is a program.\n\n" : "",
       mixed_model_formula(outcomes), what_of_images(outcomes));
 }
 
@@ -131,10 +127,6 @@ DataTable mixed_model_table(const Outcomes& outcomes) {
   return table;
 }
 
-std::string method_names(const Outcomes& outcomes) {
-  return listed(outcomes.methods, ", ", r_text);
-}
-
 }  // namespace
 
 std::string mixed_model_formula(const Outcomes& outcomes) {
@@ -150,23 +142,11 @@ std::string mixed_model_formula(const Outcomes& outcomes) {
   return "correct ~ " + (several ? "method" + image + " + period + " : image) + random;
 }
 
-std::vector<std::filesystem::path> export_mixed_model(const record::StudyStore& store,
-                                                      const Outcomes& outcomes,
-                                                      const std::filesystem::path& folder) {
-  const record::StudyCommitment& commitment = store.commitment();
-  return write_export(folder, {commitment.study, commitment.study_id, "r"},
-                      {text_file("mixed_model.csv", csv_text(mixed_model_table(outcomes))),
-                       text_file("mixed_model.R", mixed_model_script(outcomes)),
-                       text_file("mixed_model.md", notes(outcomes))});
-}
-
-std::string mixed_model_script(const Outcomes& outcomes) {
-  const std::string head = fmt::format(
-      "# Mixed model of the study {}{}. Run: Rscript mixed_model.R\n"
-      "# Needs lme4; reads mixed_model.csv beside this file. What it means: mixed_model.md.\n"
-      "methods <- c({})\n\n",
-      outcomes.study, outcomes.simulated ? " (SIMULATED)" : "", method_names(outcomes));
-  return head + std::string(mixed_model_functions());
+RModel mixed_model(const Outcomes& outcomes) {
+  return {"Mixed model", "mixed_model", mixed_model_table(outcomes),
+          fmt::format("methods <- c({})\n\n{}", listed(outcomes.methods, ", ", r_text),
+                      mixed_model_functions()),
+          notes(outcomes)};
 }
 
 }  // namespace touchtrial::analysis::identification

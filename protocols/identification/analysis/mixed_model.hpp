@@ -1,13 +1,11 @@
-/// \file Exports a long table for a mixed model in R with the script that fits it. Format:
+/// \file A long table of trials with the R script that fits a mixed model to it. Format:
 /// docs/exports.md.
 #pragma once
 
-#include "analysis/outcomes/outcomes.hpp"
+#include "analysis/report/results.hpp"
 
-#include <filesystem>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace touchtrial::analysis::identification {
 
@@ -19,14 +17,7 @@ namespace touchtrial::analysis::identification {
 /// The part of the script that is the same for every study: mixed_model_functions.R, built in.
 [[nodiscard]] std::string_view mixed_model_functions() noexcept;
 
-/// The text of mixed_model.R.
-[[nodiscard]] std::string mixed_model_script(const Outcomes& outcomes);
-
-/// Writes mixed_model.csv, mixed_model.R and mixed_model.md.
-/// \return the files, in the order written
-/// \throws FileError if the folder or a file cannot be written, or the folder holds other files
-std::vector<std::filesystem::path> export_mixed_model(const record::StudyStore& store,
-                                                      const Outcomes& outcomes,
-                                                      const std::filesystem::path& folder);
+/// The model with its table, one row for each counted trial.
+[[nodiscard]] RModel mixed_model(const Outcomes& outcomes);
 
 }  // namespace touchtrial::analysis::identification

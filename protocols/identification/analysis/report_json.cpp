@@ -1,7 +1,7 @@
 #include "analysis/choices/people_report.hpp"
 #include "analysis/report/bibliography.hpp"
 #include "analysis/report/json_figures.hpp"
-#include "protocols/identification/analysis/cues/cues_json.hpp"
+#include "protocols/identification/analysis/cues/cue_measures.hpp"
 #include "protocols/identification/analysis/measures.hpp"
 #include "protocols/identification/analysis/report.hpp"
 

@@ -15,7 +15,7 @@
 namespace touchtrial::analysis::identification {
 namespace {
 
-using Warnings = std::vector<std::string>;
+using WarningTexts = std::vector<std::string>;
 
 constexpr int kSmallCell = 5;
 constexpr std::size_t kMaxNames = 5;
@@ -32,7 +32,7 @@ std::string few(const std::vector<std::string>& names) {
 }
 
 void warn_of_small_classes(const MethodReport& method, const std::vector<std::string>& classes,
-                           Warnings& warnings) {
+                           WarningTexts& warnings) {
   std::vector<std::string> small;
   for (std::size_t i = 0; i < classes.size(); ++i) {
     const int n = method.accuracy[i].accuracy.n;
@@ -45,7 +45,7 @@ void warn_of_small_classes(const MethodReport& method, const std::vector<std::st
 }
 
 void warn_of_unanswered_classes(const MethodReport& method, const std::vector<std::string>& classes,
-                                Warnings& warnings) {
+                                WarningTexts& warnings) {
   if (method.confusion.answered() == 0) return;
   std::vector<std::string> never;
   for (int j = 0; j < method.confusion.classes(); ++j) {
@@ -58,23 +58,23 @@ void warn_of_unanswered_classes(const MethodReport& method, const std::vector<st
                   method.method, few(never)));
 }
 
-void warn_of_swapped_labels(const MethodReport& method, Warnings& warnings) {
+void warn_of_swapped_labels(const MethodReport& method, WarningTexts& warnings) {
   std::vector<std::string> suspects;
   for (const ParticipantAccuracy& one : method.per_participant) {
     if (one.swap_adjusted > kFalseSwaps) continue;
     suspects.push_back(fmt::format("{} ({}, but {} under the best exchange)", one.participant,
-                                   percent_of(one.accuracy), percent_of(one.matching.accuracy)));
+                                   share_figure(one.accuracy.share()),
+                                   share_figure(one.matching.accuracy.share())));
   }
   if (suspects.empty()) return;
   warnings.push_back(
-      fmt::format("{}: labels may have been swapped by {}; consistency is then more "
-                  "informative than accuracy. A study in which nobody swaps labels raises this "
-                  "with a probability of "
-                  "0.05 at most (Benjamini, Hochberg 1995, over all participants).",
+      fmt::format("{}: labels may have been swapped by {}; consistency is then more informative "
+                  "than accuracy. If nobody swaps labels, this warning appears with a probability "
+                  "of at most 0.05 (Benjamini, Hochberg 1995, over all participants).",
                   method.method, few(suspects)));
 }
 
-void warn_of_chance(const MethodReport& method, Warnings& warnings) {
+void warn_of_chance(const MethodReport& method, WarningTexts& warnings) {
   if (!method.chance || method.chance->exact) return;
   const double floor = 1.0 / (method.chance->deals + 1.0);
   if (method.chance->p > 1.5 * floor) return;
@@ -84,28 +84,28 @@ void warn_of_chance(const MethodReport& method, Warnings& warnings) {
                   method.method, p_value(method.chance->p), method.chance->deals));
 }
 
-void warn_of_ceiling(const MethodReport& method, Warnings& warnings) {
+void warn_of_ceiling(const MethodReport& method, WarningTexts& warnings) {
   const Proportion all = method.overall;
   if (all.n == 0) return;
   if (all.correct == all.n) {
-    warnings.push_back(
-        method.method +
-        ": every answer was right, so d' has only a lower bound and no difference can show.");
+    warnings.push_back(method.method +
+                       ": every answer was right, so d' has only a lower bound, and differences "
+                       "cannot be detected.");
   } else if (all.share().value_or(0.0) >= kCeiling) {
     warnings.push_back(fmt::format(
         "{}: {} right is close to the ceiling; d' and differences there depend on few trials.",
-        method.method, percent_of(all)));
+        method.method, share_figure(all.share())));
   }
 }
 
-void warn_of_choice_model(const MethodReport& method, Warnings& warnings) {
+void warn_of_choice_model(const MethodReport& method, WarningTexts& warnings) {
   if (!method.choice || method.choice->converged) return;
   warnings.push_back(method.method +
                      ": the choice model did not converge; do not quote its estimates.");
 }
 
 /// Warns if the headline depends on trials that do not meet the study's own rule.
-void warn_of_validity(const MethodReport& method, Warnings& warnings) {
+void warn_of_validity(const MethodReport& method, WarningTexts& warnings) {
   const auto of = [&](TrialSubset subset) {
     return std::ranges::find(method.robustness, subset, &SubsetAccuracy::subset);
   };
@@ -121,33 +121,33 @@ void warn_of_validity(const MethodReport& method, Warnings& warnings) {
   warnings.push_back(fmt::format(
       "{}: without {} not valid by the study's rule the mean over participants is {} in place of "
       "{}.",
-      method.method, counted(invalid, "trial"), percent_of_share(valid->mean.mean),
-      percent_of_share(all->mean.mean)));
+      method.method, counted(invalid, "trial"), share_figure(valid->mean.mean),
+      share_figure(all->mean.mean)));
 }
 
-void warn_of_order(const Outcomes& outcomes, Warnings& warnings) {
+void warn_of_order(const Outcomes& outcomes, WarningTexts& warnings) {
   if (outcomes.design.trials.order != study::TrialOrder::uniform) return;
   warnings.emplace_back(
-      "Classes were drawn independently, so that they came unequally often; pooled accuracy weighs "
-      "them as they came.");
+      "Classes were drawn independently and so presented unequally often; pooled accuracy weights "
+      "them accordingly.");
 }
 
 constexpr int kFewParticipants = 10;
 
 /// Warns of the smallest p that n participants can give. All 2^n sign patterns are equally likely,
 /// and Holm multiplies the smallest p by the number of pairs. Powers of two print exactly.
-void warn_of_floor(int n, std::size_t pairs, Warnings& warnings) {
+void warn_of_floor(int n, std::size_t pairs, WarningTexts& warnings) {
   const double floor = std::ldexp(2.0, -n);
   const double adjusted = std::min(1.0, floor * static_cast<double>(pairs));
   if (adjusted <= kUsualLevel) return;
   std::string text =
       fmt::format("With {} the sign-flip p cannot fall below {}", counted(n, "participant"), floor);
   if (pairs > 1) text += fmt::format(", nor the least p adjusted by Holm below {}", adjusted);
-  warnings.push_back(text + ", whatever the methods do.");
+  warnings.push_back(text + ", whatever the data.");
 }
 
 /// Warns of the smallest p that the pair with the fewest participants can give.
-void warn_of_sign_flips(const StudyReport& report, Warnings& warnings) {
+void warn_of_sign_flips(const StudyReport& report, WarningTexts& warnings) {
   int n = 0;
   for (const MethodPair& pair : report.pairs) {
     const int own = pair.overall.participants;
@@ -166,7 +166,7 @@ void warn_of_sign_flips(const StudyReport& report, Warnings& warnings) {
 }
 
 /// Methods in blocks: whatever is not adjusted for the period has its effect in its error.
-void warn_of_periods(const Outcomes& outcomes, const StudyReport& report, Warnings& warnings) {
+void warn_of_periods(const Outcomes& outcomes, const StudyReport& report, WarningTexts& warnings) {
   if (report.pairs.empty() || outcomes.design.trials.blocks == study::Blocks::mixed) return;
   const std::string effect = "learning or fatigue widens intervals and raises p.";
   const bool adjusts = report.primary && report.primary->crossover;
@@ -177,7 +177,7 @@ void warn_of_periods(const Outcomes& outcomes, const StudyReport& report, Warnin
                               : "No test here adjusts for the period: " + effect));
 }
 
-void warn_of_several(const StudyReport& report, Warnings& warnings) {
+void warn_of_several(const StudyReport& report, WarningTexts& warnings) {
   if (report.methods.size() < 3) return;
   warnings.push_back(
       fmt::format("{} methods make {} pairs: quote the p adjusted by Holm; the p of single classes "
@@ -185,12 +185,12 @@ void warn_of_several(const StudyReport& report, Warnings& warnings) {
                   report.methods.size(), report.pairs.size()));
   if (report.together) {
     warnings.emplace_back(
-        "Cochran's Q: its p under chi-square takes a participant's trials as independent; the p to "
-        "quote is the permuted one.");
+        "Cochran's Q: its p under chi-square takes a participant's trials as independent; quote "
+        "the permuted p.");
   }
 }
 
-void warn_of_images(const Outcomes& outcomes, const StudyReport& report, Warnings& warnings) {
+void warn_of_images(const Outcomes& outcomes, const StudyReport& report, WarningTexts& warnings) {
   const bool one_image_each = std::ranges::all_of(
       outcomes.exemplars, [](const auto& images) { return images.size() == 1; });
   if (report.pairs.empty() || !one_image_each) return;
@@ -199,24 +199,24 @@ void warn_of_images(const Outcomes& outcomes, const StudyReport& report, Warning
                   outcomes.exemplars.size()));
 }
 
-void warn_of_few_participants(const StudyReport& report, Warnings& warnings) {
+void warn_of_few_participants(const StudyReport& report, WarningTexts& warnings) {
   if (report.participants < 2 || report.participants >= kFewParticipants) return;
-  warnings.push_back(fmt::format(
-      "{} participants are few: only large effects can show, and the t interval leans on "
-      "normality.",
-      report.participants));
+  warnings.push_back(
+      fmt::format("With only {} participants, only large effects are detectable, and the t "
+                  "interval relies on normality.",
+                  report.participants));
 }
 
 template <typename Which>
 void warn_of_sessions(const Outcomes& outcomes, const std::string& why, Which which,
-                      Warnings& warnings) {
+                      WarningTexts& warnings) {
   const auto n = std::count_if(outcomes.sessions.begin(), outcomes.sessions.end(),
                                [&](const SessionOutcome& one) { return which(one.row); });
   if (n > 0) warnings.push_back(fmt::format("Left out: {}, {}.", counted(n, "session"), why));
 }
 
-void warn_of_state(const Outcomes& outcomes, Warnings& warnings) {
-  const std::string unadjusted = unadjusted_words(outcomes.looked.looks);
+void warn_of_state(const Outcomes& outcomes, WarningTexts& warnings) {
+  const std::string unadjusted = unadjusted_words(outcomes.look_record.looks);
   if (!unadjusted.empty()) warnings.push_back("Looks at outcomes before the end: " + unadjusted);
   if (outcomes.pilot) warnings.emplace_back("A pilot: not to be pooled with the study's data.");
   if (outcomes.visual) {
@@ -225,7 +225,7 @@ void warn_of_state(const Outcomes& outcomes, Warnings& warnings) {
   }
   if (!outcomes.state.closed) {
     warnings.emplace_back(
-        "An interim look: the study is still open, and what is seen here may not decide when it "
+        "An interim look: the study is still open, and this result must not influence when it "
         "ends.");
   }
   if (outcomes.sessions_unseen > 0) {
@@ -255,7 +255,7 @@ void warn_of_state(const Outcomes& outcomes, Warnings& warnings) {
       warnings);
 }
 
-void warn_of_trials(const Outcomes& outcomes, Warnings& warnings) {
+void warn_of_trials(const Outcomes& outcomes, WarningTexts& warnings) {
   const std::set<int> counting = choices::counted_sessions(outcomes);
   const auto unfinished = [&](const TrialOutcome& trial) {
     return trial.scored && !trial.counted && counting.contains(trial.row.session);
@@ -275,7 +275,7 @@ void warn_of_trials(const Outcomes& outcomes, Warnings& warnings) {
   }
 }
 
-void warn_of_time_outs(const StudyReport& report, Warnings& warnings) {
+void warn_of_time_outs(const StudyReport& report, WarningTexts& warnings) {
   for (const MethodReport& method : report.methods) {
     const int answered = method.confusion.answered();
     const int missed = method.overall.n - answered;
@@ -286,24 +286,24 @@ void warn_of_time_outs(const StudyReport& report, Warnings& warnings) {
   }
 }
 
-void warn_of_participants(const StudyReport& report, Warnings& warnings) {
+void warn_of_participants(const StudyReport& report, WarningTexts& warnings) {
   if (report.participants == 0) {
     warnings.emplace_back("No participant's session counts: there are no results yet.");
   } else if (report.participants == 1) {
     warnings.emplace_back(
-        "One participant: there are no intervals over participants, and those of a class are too "
-        "wide to use.");
+        "One participant: there are no intervals over participants, and intervals of single "
+        "classes are too wide to use.");
   }
   for (const MethodReport& method : report.methods) {
     if (method.mean.participants > 1 && !method.mean.known_interval()) {
       warnings.push_back(method.method +
-                         ": all participants have the same accuracy, so that there is no t "
-                         "interval; that is no certainty.");
+                         ": all participants have the same accuracy, so there is no t interval; "
+                         "this does not mean that the mean is certain.");
     }
   }
 }
 
-void warn_of_information(const StudyReport& report, Warnings& warnings) {
+void warn_of_information(const StudyReport& report, WarningTexts& warnings) {
   const int wanted = trials_for_information_transfer(static_cast<int>(report.classes.size()));
   for (const MethodReport& method : report.methods) {
     const int answered = method.confusion.answered();
@@ -315,28 +315,34 @@ void warn_of_information(const StudyReport& report, Warnings& warnings) {
   }
 }
 
-/// Somebody who prefers a picture is right with it more often than its texture is felt, and less
+/// Somebody who prefers a picture is right with it more often than sensitivity allows, and less
 /// often with all others.
-void warn_of_preferences(const StudyReport& report, Warnings& warnings) {
+void warn_of_preferences(const StudyReport& report, WarningTexts& warnings) {
   if (!report.places) return;
-  const std::string who = choices::preference_words(report.places->own, report.classes);
+  const choices::Preferences& own = report.places->own;
+  const std::string who = choices::preference_words(own, report.classes);
   if (!who.empty()) {
-    warnings.push_back(
-        who +
-        ". Whether they prefer the picture or its place cannot be told; their accuracy with a "
-        "texture reflects the preference as much as sensitivity.");
+    std::string text = fmt::format("{} ({}, by people).", who, p_phrase(own.anybody.p));
+    if (!own.of_those_who_prefer().empty()) {
+      text +=
+          " Whether they prefer the picture or its place cannot be determined; their accuracy with "
+          "a "
+          "texture reflects the preference as much as sensitivity.";
+    }
+    warnings.push_back(std::move(text));
   }
   if (report.places->p > kUsualLevel) return;
-  warnings.push_back(fmt::format(
-      "Participants preferred places on the screen ({}, layouts dealt anew): answers that follow "
-      "the place are right only by chance, so accuracy is too low.",
-      p_phrase(report.places->p)));
+  warnings.push_back(
+      fmt::format("Participants preferred places on the screen ({}, permutation of layouts): "
+                  "answers that follow "
+                  "the place are right only by chance, so accuracy is too low.",
+                  p_phrase(report.places->p)));
 }
 
 }  // namespace
 
 std::vector<std::string> report_warnings(const Outcomes& outcomes, const StudyReport& report) {
-  Warnings warnings;
+  WarningTexts warnings;
   warn_of_state(outcomes, warnings);
   warn_of_trials(outcomes, warnings);
   warn_of_time_outs(report, warnings);

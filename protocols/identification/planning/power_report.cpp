@@ -109,9 +109,9 @@ std::vector<std::string> warnings_of(const PowerReport& report) {
   const auto all = [&](const auto& holds) { return std::ranges::all_of(report.rows, holds); };
   if (all([](const PowerRow& row) { return row.significant.correct == row.significant.n; })) {
     warnings.emplace_back(
-        "Every simulated study was significant, with every size: for this test the smallest size "
-        "is enough if people are as sensitive as assumed; choose the size by the interval's "
-        "width.");
+        "Every simulated study of every size was significant: if people are as sensitive as "
+        "assumed, the smallest size is enough for this test; choose the size by the width of the "
+        "interval.");
   }
   return warnings;
 }
@@ -124,40 +124,39 @@ std::string condition_words(const PowerSetting& setting) {
 
 std::string stated_null_sentence(const PowerReport& report) {
   if (report.setting.estimate != kDifferenceWords) {
-    return "Type-I error: for people who guess, everybody.";
+    return "Type-I error: everybody guesses.";
   }
   return report.plan.margin > 0.0
              ? fmt::format(
-                   "Type-I error: for the same spread around {:.4g} points, by which the "
-                   "first method is then worse.",
+                   "Type-I error: the first method is worse by {:.4g} points on average, with the "
+                   "same spread.",
                    100.0 * report.plan.margin)
-             : std::string("Type-I error: for the same spread around no difference.");
+             : std::string("Type-I error: no difference on average, with the same spread.");
 }
 
 std::string null_sentence(const PowerReport& report) {
   if (!report.setting.feels()) return stated_null_sentence(report);
   if (report.plan.margin > 0.0) {
     return fmt::format(
-        "Power: for methods that feel alike; each presentation is felt as one of the two at "
-        "random. Type-I error: the same, but people miss so many of their right answers with the "
-        "first method that it is worse by the margin, {:.4g} points.",
+        "Power: the methods feel the same; each presentation is felt as one of the two at random. "
+        "Type-I error: likewise, but right answers with the first method are turned into wrong "
+        "ones until it is worse by the margin, {:.4g} points.",
         100.0 * report.plan.margin);
   }
   return report.setting.estimate == kDifferenceWords
-             ? "Type-I error: for methods that feel alike; each presentation is felt as one of "
-               "the two at random."
-             : "Type-I error: for participants who feel a random texture, whatever is presented, "
+             ? "Type-I error: the methods feel the same; each presentation is felt as one of the "
+               "two at random."
+             : "Type-I error: participants feel a random texture instead of the presented one, "
                "with the same biases and lapses.";
 }
 
 constexpr const char* kBankSentence =
-    "Monte-Carlo intervals do not include the error of these explorations and trainings, which "
-    "all studies share: other seeds show it, and more runs do not reduce it.";
+    "Monte-Carlo intervals do not include the error of these explorations and trainings, which are "
+    "common to all studies; to see it, use other seeds. More runs do not reduce it.";
 
 constexpr const char* kOrdersSentence =
-    "Orders of this study do not present every class equally often: all numbers, and above all "
-    "type-I errors, hold for the orders that this study's seed draws; another seed gives other "
-    "orders.";
+    "Orders of this study do not present every class equally often: all numbers, especially type-I "
+    "errors, hold for the orders drawn by this study's seed; another seed gives other orders.";
 
 /// One sentence for each target.
 std::vector<std::string> target_sentences(const PowerReport& report) {
@@ -171,8 +170,9 @@ std::vector<std::string> target_sentences(const PowerReport& report) {
     } else {
       sentences.push_back(fmt::format(
           "{}: {} participants by the estimate; {}.", power, *target.smallest,
-          target.surely ? fmt::format("{} beyond Monte-Carlo error", *target.surely)
-                        : std::string("no size beyond Monte-Carlo error; more runs would decide")));
+          target.surely
+              ? fmt::format("{} beyond Monte-Carlo error", *target.surely)
+              : std::string("no size exceeds it beyond Monte-Carlo error; use more runs")));
     }
   }
   return sentences;
@@ -183,15 +183,14 @@ std::vector<std::string> method_sentences(const PowerReport& report) {
   const PowerPlan& plan = report.plan;
   std::vector<std::string> sentences;
   sentences.push_back(fmt::format(
-      "{} simulated studies of each size and hypothesis, seed {}; no participant is in two "
-      "of them; {}",
+      "{} simulated studies of each size and hypothesis, seed {}; every study has different "
+      "participants; {}",
       plan.runs, plan.seed,
-      !report.setting.feels()
-          ? std::string("answers are drawn from the stated mean and spread. Nobody feels anything: "
-                        "neither device nor hand nor texture has part in the numbers.")
-          : fmt::format("feelings drawn from {} explorations of each stimulus and {} "
-                        "trainings through the servo.",
-                        plan.explorations, plan.trainings)));
+      !report.setting.feels() ? std::string("answers are drawn from the stated mean and spread. "
+                                            "Device, hand and textures have no effect.")
+                              : fmt::format("features are drawn from {} explorations of each "
+                                            "stimulus and {} trainings through the servo.",
+                                            plan.explorations, plan.trainings)));
   if (report.setting.feels()) sentences.push_back(kBankSentence);
   sentences.push_back(null_sentence(report));
   if (!report.setting.has_fixed_counts) sentences.push_back(kOrdersSentence);
@@ -199,10 +198,10 @@ std::vector<std::string> method_sentences(const PowerReport& report) {
       report.rows, [](const PowerRow& row) { return row.attainable != row.level; });
   sentences.push_back(
       is_exact
-          ? fmt::format("Attainable: the exact type-I error; sign patterns are counted, so no p "
-                        "is exactly {}.",
+          ? fmt::format("Attainable: the exact type-I error; with a finite number of sign patterns "
+                        "p is never exactly {}.",
                         report.plan.level)
-          : "Attainable: the level itself, which a t test of shares holds approximately.");
+          : "Attainable: the level of the test, which a t test of proportions has approximately.");
   sentences.emplace_back("Monte-Carlo intervals are Wilson's at 95 %.");
   sentences.push_back("Interval width: of the 95 % t interval of the mean over participants.");
   return sentences;

@@ -17,7 +17,7 @@ std::string_view name_of(Hypothesis hypothesis) {
   return hypothesis == Hypothesis::null ? "null" : "population";
 }
 
-analysis::Outcomes nobody_yet(const study::Study& study) {
+analysis::Outcomes no_participants(const study::Study& study) {
   analysis::Outcomes outcomes;
   outcomes.study = study.name;
   outcomes.simulated = true;

@@ -22,8 +22,8 @@ namespace touchtrial::planning::identification {
 enum class Hypothesis {
   population,  ///< participants as in the subject file
   /// The same participants without an effect. For a test against chance, they feel a random
-  /// stimulus of the method, whatever is presented. For a test between two methods, they feel the
-  /// presented stimulus with one of the two methods at random.
+  /// stimulus of the method, independent of the presented stimulus. For a test between two methods,
+  /// they feel the presented stimulus with one of the two methods at random.
   null,
 };
 [[nodiscard]] std::string_view name_of(Hypothesis hypothesis);
@@ -43,7 +43,7 @@ class Rehearsal {
 };
 
 /// The outcomes of a study without participants.
-[[nodiscard]] analysis::Outcomes nobody_yet(const study::Study& study);
+[[nodiscard]] analysis::Outcomes no_participants(const study::Study& study);
 /// A completed session.
 /// \param order_block  as in analysis::SessionOutcome
 [[nodiscard]] analysis::SessionOutcome completed_session(int number, int session_number, int visit,

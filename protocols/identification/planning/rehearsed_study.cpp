@@ -83,7 +83,7 @@ RehearsedStudy::RehearsedStudy(const study::Study& study, const simulation::Subj
       feelings_(feelings),
       visits_(study.visits.count),
       of_method_(stimuli_of_method(study, test.first)),
-      empty_(nobody_yet(study)) {
+      empty_(no_participants(study)) {
   require_answers(study, subject);
   const study::StudyKey key = study::simulated_study_key(study);
   for (int i = 0; i < max_participants * visits_; ++i) {

@@ -110,7 +110,7 @@ std::string words_of(const StatedPeople& people) {
 
 StatedRehearsal::StatedRehearsal(const study::Study& study, const StatedPeople& people,
                                  const PrimaryTest& test, int max_participants)
-    : people_(people), test_(test), visits_(study.visits.count), empty_(nobody_yet(study)) {
+    : people_(people), test_(test), visits_(study.visits.count), empty_(no_participants(study)) {
   require_possible(people, test);
   const study::StudyKey key = study::simulated_study_key(study);
   for (int number = 1; number <= max_participants; ++number) {

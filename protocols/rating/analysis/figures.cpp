@@ -46,7 +46,7 @@ std::string mean_with_interval(const MeanEstimate& mean) {
 }
 
 std::string alt_of(const RatingReport& report, const ScaleReport& scale) {
-  std::string alt = "Mean rating by texture and method with 95 % intervals, and participants.";
+  std::string alt = "Mean rating by texture and method with 95% intervals, and participants.";
   for (const ItemMean& one : scale.means.items) {
     if (!one.mean.mean) continue;
     alt += fmt::format(
@@ -130,7 +130,7 @@ std::optional<Figure> ratings_figure(const RatingReport& report, const ScaleRepo
       report.simulated,
       caption_of(report, scale,
                  "ratings by texture and method: participants' means as dots, the mean over "
-                 "participants and its 95 % t interval") +
+                 "participants and its 95% t interval") +
           (shows ? "; below, the items' pictures." : "."));
   return figure;
 }

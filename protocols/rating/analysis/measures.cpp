@@ -63,7 +63,7 @@ MeasureList<GroupMean> group_measures(const std::string& member,
                                       const std::vector<std::string>& labels) {
   using Row = GroupMean;
   MeasureList<Row> all{
-      label_of<Row>(member, "over all of",
+      label_of<Row>(member, "mean over",
                     [&labels, member](const Row& one) { return named(labels, one.group); }),
       count_of<Row>("items", "items", &Row::items)};
   add_mean<Row>(kRatingDecimals, &Row::mean, all);

@@ -1,7 +1,7 @@
 /// \file The numbers of a rating study, for its page and its results.json.
 #pragma once
 
-#include "analysis/report/measure.hpp"
+#include "analysis/report/listed_measures.hpp"
 #include "protocols/rating/analysis/report.hpp"
 
 #include <cstddef>
@@ -30,6 +30,9 @@ inline constexpr int kCorrelationDecimals = 2;
 /// \param labels  by GroupMean::group; must outlive the list
 [[nodiscard]] MeasureList<GroupMean> group_measures(const std::string& member,
                                                     const std::vector<std::string>& labels);
+
+/// What these lists make in results.json.
+[[nodiscard]] std::vector<ListedObject> listed_objects();
 
 /// Student's t of a difference; nothing if all differences are the same.
 [[nodiscard]] std::optional<TStatistic> statistic_of(const MethodDifference& difference);

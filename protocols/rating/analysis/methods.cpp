@@ -1,5 +1,6 @@
 #include "protocols/rating/analysis/methods.hpp"
 
+#include "analysis/statistics/paired_tests.hpp"
 #include "core/text.hpp"
 #include "protocols/rating/study/rating.hpp"
 
@@ -50,7 +51,7 @@ std::string catches_sentence(const study::Study& study) {
   if (catches == 0) return {};
   return fmt::format(
       "In {} at random places a plane without texture was felt under the picture of a random "
-      "texture.",
+      "texture; means and differences leave these trials out.",
       counted(catches, "catch trial"));
 }
 
@@ -68,9 +69,11 @@ ProtocolMethods protocol_methods(const RatingReport& report, const Outcomes& out
        {Source::student}}};
   const auto any = [&](auto has) { return std::ranges::any_of(report.scales, has); };
   if (any([](const ScaleReport& one) { return !one.differences.empty(); })) {
+    const bool are_exact = report.people.size() <= kExactSignFlips;
     methods.statistics.push_back(
-        {"Two methods were compared by participants' differences, with exact sign flips, "
-         "two-sided, adjusted over all pairs of methods by Holm's method.",
+        {fmt::format("Two methods were compared by participants' differences, with {}, two-sided, "
+                     "adjusted over all pairs of methods by Holm's method.",
+                     are_exact ? "exact sign flips" : "sign flips drawn at random"),
          {Source::holm}});
     methods.statistics.push_back(
         {"Sizes of differences are d_z, with noncentral t and jackknife intervals.",

@@ -23,10 +23,10 @@ std::string question_sentence(const RatingReport& report, const ScaleReport& sca
 }
 
 std::string mean_words(const MeanEstimate& mean) {
-  if (mean.participants == 1) return "of one participant";
-  return fmt::format("mean of {} with its 95 % t interval {}",
-                     counted(mean.participants, "participant"),
-                     plain_range(mean.known_interval(), kRatingDecimals));
+  if (mean.participants == 1) return " (one participant)";
+  return fmt::format(", 95% t interval {} ({})",
+                     plain_range(mean.known_interval(), kRatingDecimals),
+                     counted(mean.participants, "participant"));
 }
 
 /// What the study is about: the first method less the second, or the only one.
@@ -36,16 +36,16 @@ std::string result_sentence(const RatingReport& report, const ScaleReport& scale
     if (scale.means.methods.empty()) return "";
     const GroupMean& only = scale.means.methods.front();
     if (!only.mean.mean) return "Nobody rated every texture, so there is no mean.";
-    return fmt::format("{}: {}, {}.", label(only.group),
+    return fmt::format("Mean rating, {}: {}{}.", label(only.group),
                        plain_figure(only.mean.mean, kRatingDecimals), mean_words(only.mean));
   }
   const MethodDifference& pair = scale.differences.front();
-  const std::string names = label(pair.first) + " less " + label(pair.second);
+  const std::string names = "Mean rating, " + label(pair.first) + " less " + label(pair.second);
   if (!pair.difference.mean) {
     return names + ": nobody rated every texture by both, so there is no difference.";
   }
   std::string text =
-      fmt::format("{}: {}, {}", names, signed_plain_figure(pair.difference.mean, kRatingDecimals),
+      fmt::format("{}: {}{}", names, signed_plain_figure(pair.difference.mean, kRatingDecimals),
                   mean_words(pair.difference));
   if (const auto statistic = statistic_of(pair)) {
     text += fmt::format("; {}, d_z = {}", t_phrase(*statistic), effect_figure(statistic));

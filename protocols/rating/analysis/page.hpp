@@ -21,7 +21,7 @@ namespace touchtrial::analysis::rating {
 [[nodiscard]] Section differences_section(const RatingReport& report);
 /// Agreement between participants, and of participants with themselves.
 [[nodiscard]] Section reliability_section(const RatingReport& report);
-/// What each participant makes of the scale.
+/// Use of the scale by participant.
 [[nodiscard]] Section use_section(const RatingReport& report);
 /// Catch trials beside scored ones.
 [[nodiscard]] Section catches_section(const RatingReport& report);

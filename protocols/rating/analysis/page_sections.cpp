@@ -32,7 +32,7 @@ Table groups_table(const RatingReport& report, const ScaleReport& scale) {
 Table differences_table(const RatingReport& report, const ScaleReport& scale) {
   return table_of(
       id_of(report, scale, "differences-of-methods"),
-      caption_of(report, scale, "How much higher the first method is rated than the second"),
+      caption_of(report, scale, "Ratings of the first method minus those of the second"),
       scale.differences, difference_measures(report));
 }
 
@@ -50,27 +50,28 @@ Table reliability_table(const RatingReport& report, const ScaleReport& scale) {
               {{"of", Align::left}, {"n"}, {"estimate"}, {"95%"}}};
   const Agreement& agreement = scale.agreement;
   const std::string people = std::to_string(agreement.participants);
-  add_correlation("one participant with another: ICC(2,1)", people, agreement.single, table);
-  add_correlation("means of as many participants: ICC(2,k)", people, agreement.average, table);
+  add_correlation("between single participants: ICC(2,1)", people, agreement.single, table);
+  add_correlation("between means of k participants: ICC(2,k)", people, agreement.average, table);
   const RetestReliability& retest = scale.retest;
-  table.rows.push_back({"a participant's repeats: ICC(1,1)", std::to_string(retest.participants),
+  table.rows.push_back({"repeats within a participant: ICC(1,1)",
+                        std::to_string(retest.participants),
                         plain_figure(retest.mean, kCorrelationDecimals),
                         plain_range(retest.interval, kCorrelationDecimals)});
   table.notes = {
       {fmt::format("ICC(2,1) and ICC(2,k): absolute agreement about {} (Shrout and Fleiss 1979), "
-                   "with the intervals of McGraw and Wong 1996, which assume that participants "
-                   "scatter alike: if some scatter much more, they are too narrow. An estimate "
-                   "below 0 means 0.",
+                   "with the intervals of McGraw and Wong 1996, which assume equal variances of "
+                   "participants and are too narrow otherwise. Read an estimate below 0 as 0.",
                    counted(agreement.items, "item"))},
       {"Repeats: each participant's own ICC(1,1) of items, averaged by Fisher's z, with a t "
-       "interval over participants. It is the larger, the more textures differ to a participant."}};
+       "interval over participants. It increases with the differences that a participant perceives "
+       "between textures."}};
   return table;
 }
 
 Table use_table(const RatingReport& report, const ScaleReport& scale) {
   return table_of(id_of(report, scale, "use-of-the-scale"),
-                  caption_of(report, scale, "What each participant makes of the scale"),
-                  people_of(report), use_measures(report, scale));
+                  caption_of(report, scale, "Use of the scale by participant"), people_of(report),
+                  use_measures(report, scale));
 }
 
 Table catches_table(const RatingReport& report, const ScaleReport& scale) {
@@ -83,10 +84,11 @@ std::string catches_sentence(const ScaleReport& scale) {
   const CatchComparison& catches = scale.catches;
   return fmt::format(
       "In catch trials there is a picture and nothing to feel. Textures were rated {} higher than "
-      "these {} ({}); {} of them rated catch trials at least as high.",
+      "these {} ({}); {} rated catch trials at least as high.",
       signed_plain_figure(catches.difference.mean, kRatingDecimals),
       plain_range(catches.difference.known_interval(), kRatingDecimals),
-      counted(catches.difference.participants, "participant"), catches.not_lower);
+      counted(catches.difference.participants, "participant"),
+      catches.not_lower == 0 ? "nobody" : std::to_string(catches.not_lower));
 }
 
 bool has_ratings(const ScaleReport& scale) {

@@ -88,10 +88,8 @@ class RatingAnalysis final : public ProtocolAnalysis {
   std::vector<TrialColumn> trial_columns(const Outcomes& outcomes) const override {
     return rating_columns(outcomes);
   }
-  std::vector<std::filesystem::path> export_model(
-      const record::StudyStore& store, const Outcomes& outcomes,
-      const std::filesystem::path& folder) const override {
-    return export_rating_model(store, outcomes, folder);
+  std::optional<RModel> r_model(const Outcomes& outcomes) const override {
+    return rating_model(outcomes);
   }
 };
 

@@ -15,9 +15,9 @@ constexpr double kUsualLevel = 0.05;
 /// 200. Source: docs/rating.md, "Agreement".
 constexpr double kUnevenScatter = 2.5;
 
-using Sentences = std::vector<std::string>;
+using Warnings = std::vector<std::string>;
 
-void warn_of_catches(const RatingReport& report, const ScaleReport& scale, Sentences& all) {
+void warn_of_catches(const RatingReport& report, const ScaleReport& scale, Warnings& all) {
   std::vector<std::string> names;
   for (const CatchRating& one : scale.catches.participants) {
     if (without_noise(one.scored - one.catches) > 0.0) continue;
@@ -26,10 +26,10 @@ void warn_of_catches(const RatingReport& report, const ScaleReport& scale, Sente
   const int n = static_cast<int>(scale.catches.participants.size());
   const auto interval = scale.catches.difference.known_interval();
   if (n > 0 && (scale.catches.difference.mean <= 0.0 || (interval && interval->low <= 0.0))) {
-    all.push_back(fmt::format(
-        "Catch trials, in which there is nothing to feel, are not rated lower than textures as far "
-        "as {} tell: ratings may reflect the pictures alone.",
-        counted(n, "participant")));
+    all.push_back(
+        fmt::format("Catch trials, in which there is nothing to feel, are not rated reliably lower "
+                    "than textures ({}): ratings may reflect the pictures alone.",
+                    counted(n, "participant")));
   }
   if (names.empty()) return;
   all.push_back(fmt::format("Catch trials are rated at least as high as textures by {}.",
@@ -37,7 +37,7 @@ void warn_of_catches(const RatingReport& report, const ScaleReport& scale, Sente
 }
 
 /// The least sign-flip p of so many people, adjusted for all pairs, is above the usual level.
-void warn_of_few(const ScaleReport& scale, Sentences& all) {
+void warn_of_few(const ScaleReport& scale, Warnings& all) {
   if (scale.differences.empty()) return;
   const auto pairs = static_cast<double>(scale.differences.size());
   int fewest = scale.differences.front().difference.participants;
@@ -51,19 +51,19 @@ void warn_of_few(const ScaleReport& scale, Sentences& all) {
       pairs > 1.0 ? fmt::format(" for the first of {} pairs", scale.differences.size()) : ""));
 }
 
-void warn_of_narrow_use(const RatingReport& report, const ScaleReport& scale, Sentences& all) {
+void warn_of_narrow_use(const RatingReport& report, const ScaleReport& scale, Warnings& all) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < report.people.size(); ++i) {
     if (scale.use.participants[i].narrow) names.push_back(report.people[i]);
   }
   if (names.empty()) return;
-  all.push_back(fmt::format(
-      "Almost none of the scale is used by {} (standard deviation below {:.0f} % of its length): "
-      "such answers can hardly tell textures or methods apart.",
-      listed(names, " and "), 100.0 * kNarrowUse));
+  all.push_back(
+      fmt::format("Very little of the scale is used by {} (standard deviation below {:.0f}% of its "
+                  "length): such ratings hardly distinguish textures or methods.",
+                  listed(names, " and "), 100.0 * kNarrowUse));
 }
 
-void warn_of_scatter(const ScaleReport& scale, Sentences& all) {
+void warn_of_scatter(const ScaleReport& scale, Warnings& all) {
   std::vector<double> known;
   for (const auto& one : scale.scatter) {
     if (one) known.push_back(*one);
@@ -73,27 +73,27 @@ void warn_of_scatter(const ScaleReport& scale, Sentences& all) {
   const double most = *std::ranges::max_element(known);
   if (most <= kUnevenScatter * *spread.median) return;
   all.push_back(
-      "People scatter by very different amounts about what they have in common. The intervals of "
-      "ICC(2,1) and ICC(2,k) assume that they scatter alike, and are too narrow.");
+      "Participants' variances around the common pattern differ strongly. The intervals of "
+      "ICC(2,1) and ICC(2,k) assume equal variances and are too narrow.");
 }
 
-void warn_of_left_out(const ScaleReport& scale, Sentences& all) {
+void warn_of_left_out(const ScaleReport& scale, Warnings& all) {
   if (scale.agreement.left_out == 0) return;
-  all.push_back(fmt::format(
-      "{} without a rating of every texture by every method; means over several textures and the "
-      "agreement leave them out.",
-      scale.agreement.left_out == 1
-          ? "One participant is"
-          : fmt::format("{} participants are", scale.agreement.left_out)));
+  all.push_back(
+      fmt::format("{} without a rating of every texture by every method; means over textures and "
+                  "the agreement exclude them.",
+                  scale.agreement.left_out == 1
+                      ? "One participant is"
+                      : fmt::format("{} participants are", scale.agreement.left_out)));
 }
 
 }  // namespace
 
 std::vector<std::string> rating_warnings(const RatingReport& report) {
-  Sentences all;
+  Warnings all;
   if (report.people.empty()) return all;
   for (const ScaleReport& scale : report.scales) {
-    Sentences own;
+    Warnings own;
     warn_of_catches(report, scale, own);
     warn_of_few(scale, own);
     warn_of_narrow_use(report, scale, own);

@@ -80,22 +80,22 @@ std::string stamp_of(const RatingPlanReport& report) {
 
 std::vector<std::string> sentences_of(const RatingPlanReport& report) {
   std::vector<std::string> sentences = {
-      fmt::format("Samples of each size: {}, drawn from the simulated participants, each anew from "
-                  "all of them. Monte-Carlo intervals (Wilson's, 95 %) are of the samples alone: "
-                  "that the pool is finite is the error of the mean in the first table, and other "
-                  "seeds show it.",
-                  report.plan.runs),
+      fmt::format(
+          "Samples of each size: {}, drawn from the simulated participants with replacement. "
+          "Monte-Carlo intervals (Wilson's, 95 %) refer only to sampling; for the error due to the "
+          "finite pool see the error of the mean in the first table, or use other seeds.",
+          report.plan.runs),
       fmt::format("Power: sign flips of participants' differences, two-sided, level {:.4g}. Type-I "
-                  "error: the same samples, each difference with a random sign. Attainable: the "
-                  "most that it can be, as sign patterns are counted.",
+                  "error: the same samples, each difference with a random sign. Attainable: its "
+                  "maximum, given the finite number of sign patterns.",
                   report.plan.alpha),
       "Interval width: of the 95 % t interval of the mean difference, in units of the scale; its "
-      "mean over samples. Who has not rated every texture by both methods is missing in a sample, "
-      "as in a study. Add the participants that you expect to lose."};
+      "mean over samples. Participants who have not rated every texture with both methods are "
+      "excluded from a sample, as in a study. Add the participants that you expect to lose."};
   if (report.pool.scales.size() > 1) {
     sentences.emplace_back(
-        "Each scale is tested by itself: several are several questions, and the study must say "
-        "which decides.");
+        "Each scale is tested separately, without adjustment: with several scales, the study "
+        "should state which one decides.");
   }
   return sentences;
 }

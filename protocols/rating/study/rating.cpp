@@ -23,7 +23,7 @@ namespace {
 
 constexpr const char* kOwnScale = "fit";  ///< the scale that has texts in the language files
 
-void describe_words(ObjectIo& io, std::string_view key, Translated& words, const About& about) {
+void describe_words(ObjectIo& io, std::string_view key, Translated& words, const KeyInfo& about) {
   io.member(key, about, true, [&words](ValueIo& value) { describe_translated(value, words); });
 }
 
@@ -36,14 +36,12 @@ void describe_scale(ObjectIo& io, RatedScale& scale) {
     for (const char* key : {"text", "low", "high"}) static_cast<void>(object.at(key));
   });
   describe_words(io, "text", scale.text,
-                 {.meaning = "the question, by language, the study's among them; of the scale "
-                             "`fit` this and the words at the ends may be left out: then the "
-                             "languages' own",
+                 {.meaning = "the question, by language, including the study's; for the scale "
+                             "`fit`, question and end labels default to the program's",
                   .range = "by language"});
-  describe_words(io, "low", scale.low,
-                 {.meaning = "the words at the low end", .range = "by language"});
+  describe_words(io, "low", scale.low, {.meaning = "label of the low end", .range = "by language"});
   describe_words(io, "high", scale.high,
-                 {.meaning = "the words at the high end", .range = "by language"});
+                 {.meaning = "label of the high end", .range = "by language"});
   io.integer("points", scale.points, 0, kMaxPoints,
              {.meaning = "2 to 11: numbers from 1; 0: a line from 0 to 1, in steps of .001",
               .range = "0, 2 to 11"});
@@ -53,9 +51,9 @@ void describe_scale(ObjectIo& io, RatedScale& scale) {
 }
 
 void describe(ObjectIo& io, RatingOptions& options) {
-  io.list("scales", options.scales, {.fewest = 1, .most = kMaxScales},
+  io.list("scales", options.scales, {.min = 1, .max = kMaxScales},
           {.meaning = "the scales, all asked in each trial",
-           .otherwise = "`fit` alone",
+           .default_text = "`fit` alone",
            .range = "1 to 6 entries"},
           [](ValueIo& value, RatedScale& scale) { value.part(scale, describe_scale); });
   io.rule([&options](const JsonValue& place, const JsonObject& /*object*/) {
@@ -68,17 +66,17 @@ void describe(ObjectIo& io, RatingOptions& options) {
           in_quotes(scales[i].id) + " is the id of another scale; ids must be unique");
     }
   });
-  io.truth("anchors", options.anchors,
-           {"practice begins with the scale's ends: a plane without texture, then a texture under "
-            "its own picture"});
+  io.boolean("anchors", options.anchors,
+             {"practice begins with examples of the scale's ends: a plane without texture, then a "
+              "texture with its own picture"});
 }
 
 std::string section_schema() {
-  RatingOptions usual;
+  RatingOptions defaults;
   return annotated_section({.meaning = "the scales of the protocol `rating`: "
                                        "[rating.md](rating.md)",
-                            .otherwise = "one scale, `fit`"},
-                           [&usual](ObjectIo& io) { describe(io, usual); });
+                            .default_text = "one scale, `fit`"},
+                           [&defaults](ObjectIo& io) { describe(io, defaults); });
 }
 
 /// Chooses a class's images in random order; all are used before any repeats.
@@ -262,7 +260,7 @@ void RatingTask::check(const JsonValue& file, const Study& study) const {
   if (trials.order != TrialOrder::shuffled) refuse("/order", "must be \"shuffled\" for ratings");
   if (trials.lead_in > 0) refuse("/lead_in", "must be 0, because ratings have no lead-in");
   if (trials.max_run > 0) {
-    refuse("/max_run", "must be 0, because every texture is felt once before any is repeated");
+    refuse("/max_run", "must be 0, because every texture is presented once before any is repeated");
   }
   if (study.visits.methods == VisitMethods::divided) {
     file.refuse_below("/visits/methods",

@@ -1,7 +1,5 @@
 #include "protocols/threshold/analysis/exports.hpp"
 
-#include "analysis/exports/data_table.hpp"
-#include "analysis/exports/export_folder.hpp"
 #include "core/errors.hpp"
 #include "protocols/threshold/analysis/report.hpp"
 
@@ -98,7 +96,7 @@ std::string notes_on_model(const Outcomes& outcomes) {
   const ThresholdOptions& options = options_of(outcomes);
   const double share = procedures::share_at_threshold(options.track.grid.shape);
   return fmt::format(
-      "# Threshold model of {}\n\n{}`threshold_model.csv` has one row for each answered trial of a "
+      "`threshold_model.csv` has one row for each answered trial of a "
       "track, catch trials among them, in sessions that count. `Rscript threshold_model.R` fits "
       "one "
       "model to all of them with lme4 and prints thresholds and their differences; with `--csv`, "
@@ -122,8 +120,6 @@ std::string notes_on_model(const Outcomes& outcomes) {
       "model shows whether they depend on fitting each track alone.\n\nColumns: `level_db` ({}), "
       "`comparison` (the quantity of the comparison), `target` and `response` (of the choices), "
       "`correct`, `kind` (`track`, or `catch`: not heard by the procedure).\n",
-      one_line(outcomes.study),
-      outcomes.simulated ? "SIMULATED: every participant is a program.\n\n" : "",
       study::threshold::name_of(options.track.grid.shape), options.track.grid.guess,
       100.0 * (options.track.grid.guess + (1.0 - options.track.grid.guess) * share),
       study::threshold::unit_of_level(options));
@@ -152,34 +148,21 @@ DataTable track_trials_table(const Outcomes& outcomes) {
   return table;
 }
 
-std::string threshold_model_script(const Outcomes& outcomes) {
+RModel threshold_model(const Outcomes& outcomes) {
   const ThresholdOptions& options = options_of(outcomes);
-  const std::vector<double>& levels = options.track.levels;
-  const double range = std::max(levels.back() - levels.front(), 1.0);
-  const procedures::ParameterGrid& grid = options.track.grid;
-  return fmt::format(
-             "# Threshold model of the study {}{}. Run: Rscript threshold_model.R\n"
-             "# Needs lme4; reads threshold_model.csv beside this file. What it means: "
-             "threshold_model.md.\nshape <- \"{}\"\nguess <- {:.17g}\n"
-             "scale_db <- {:.17g}\n\n",
-             one_line(outcomes.study), outcomes.simulated ? " (SIMULATED)" : "",
-             study::threshold::name_of(grid.shape), grid.guess, range / 8.0) +
-         std::string(threshold_model_functions());
-}
-
-std::vector<std::filesystem::path> export_threshold_model(const record::StudyStore& store,
-                                                          const Outcomes& outcomes,
-                                                          const std::filesystem::path& folder) {
-  if (options_of(outcomes).question == study::threshold::Question::same_different) {
+  if (options.question == study::threshold::Question::same_different) {
     throw UsageError(
         "\"same or different\" has no guess rate, and so no model of thresholds; the report and "
         "--format csv have its d'");
   }
-  const record::StudyCommitment& commitment = store.commitment();
-  return write_export(folder, {commitment.study, commitment.study_id, "r"},
-                      {text_file("threshold_model.csv", csv_text(model_table(outcomes))),
-                       text_file("threshold_model.R", threshold_model_script(outcomes)),
-                       text_file("threshold_model.md", notes_on_model(outcomes))});
+  const std::vector<double>& levels = options.track.levels;
+  const double range = std::max(levels.back() - levels.front(), 1.0);
+  const procedures::ParameterGrid& grid = options.track.grid;
+  return {"Threshold model", "threshold_model", model_table(outcomes),
+          fmt::format("shape <- \"{}\"\nguess <- {:.17g}\nscale_db <- {:.17g}\n\n{}",
+                      study::threshold::name_of(grid.shape), grid.guess, range / 8.0,
+                      threshold_model_functions()),
+          notes_on_model(outcomes)};
 }
 
 }  // namespace touchtrial::analysis::threshold

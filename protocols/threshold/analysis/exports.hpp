@@ -5,10 +5,9 @@
 #pragma once
 
 #include "analysis/exports/trial_tables.hpp"
+#include "analysis/report/results.hpp"
 #include "protocols/threshold/analysis/report.hpp"
 
-#include <filesystem>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -24,15 +23,7 @@ namespace touchtrial::analysis::threshold {
 /// The part of the script that is the same for every study: threshold_model_functions.R, built in.
 [[nodiscard]] std::string_view threshold_model_functions() noexcept;
 
-/// The text of threshold_model.R.
-[[nodiscard]] std::string threshold_model_script(const Outcomes& outcomes);
-
-/// Writes threshold_model.csv, threshold_model.R and threshold_model.md.
-/// \return the files, in the order written
 /// \throws UsageError for the task "same or different", which has no guess rate
-/// \throws FileError as write_export does
-std::vector<std::filesystem::path> export_threshold_model(const record::StudyStore& store,
-                                                          const Outcomes& outcomes,
-                                                          const std::filesystem::path& folder);
+[[nodiscard]] RModel threshold_model(const Outcomes& outcomes);
 
 }  // namespace touchtrial::analysis::threshold

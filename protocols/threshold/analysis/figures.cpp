@@ -42,10 +42,10 @@ std::string beyond_in_words(const StandardReport& one) {
 }
 
 std::string alt_of_thresholds(const ThresholdReport& report) {
-  std::string alt = "Each participant's threshold as a dot, the mean and its 95 % interval.";
+  std::string alt = "Each participant's threshold as a dot, the mean and its 95% interval.";
   for (const StandardReport& one : report.standards) {
-    if (one.mean.participants == 0) continue;
-    alt += fmt::format(" {}: {} participants{}, {}.", one.words, one.mean.participants,
+    if (one.people.empty()) continue;
+    alt += fmt::format(" {}: {} participants{}, {}.", one.words, one.people.size(),
                        beyond_in_words(one), decibels_with_interval(one.mean));
   }
   return alt;
@@ -226,8 +226,8 @@ std::optional<Figure> thresholds_figure(const ThresholdReport& report) {
   figure.alt = alt_of_thresholds(report);
   figure.caption = stamped(
       report.simulated,
-      "participants' thresholds in ascending order with their 95 % intervals, triangles for those "
-      "beyond the levels; line, band and number: the mean of all with its 95 % interval.");
+      "participants' thresholds in ascending order with their 95% intervals, triangles for those "
+      "beyond the levels; line, band and number: the mean of all with its 95% interval.");
   return figure;
 }
 
@@ -277,7 +277,7 @@ std::optional<Figure> d_prime_figure(const ThresholdReport& report) {
   if (figure.panels.size() > 1) figure.width_cm = kPage_cm;
   figure.caption = stamped(report.simulated,
                            "d' of same or different by level, by differencing: all participants' "
-                           "answers pooled, with 95 % bootstrap intervals over participants.");
+                           "answers pooled, with 95% bootstrap intervals over participants.");
   return figure;
 }
 

@@ -85,7 +85,7 @@ Panel functions_panel(const ThresholdReport& report, std::size_t standard) {
              .colour = series_colour(0),
              .size = 1.8,
              .in_key = true};
-  Layer band{.kind = LayerKind::band, .name = "mean, 95 % interval", .colour = series_colour(0)};
+  Layer band{.kind = LayerKind::band, .name = "mean, 95% interval", .colour = series_colour(0)};
   const std::size_t every = (observers.size() + kMaxFunctions - 1) / kMaxFunctions;
   std::size_t number = 0;
   const auto level_at = [&](int i) {
@@ -110,8 +110,11 @@ Panel functions_panel(const ThresholdReport& report, std::size_t standard) {
   Panel panel;
   panel.x = level_axis(report);
   panel.y = right_axis(report, "right, %");
-  panel.layers = {dashed_rule(100.0 * *report.criterion, "threshold"), std::move(own),
-                  std::move(band), std::move(mean)};
+  const double criterion = 100.0 * *report.criterion;
+  Layer threshold = dashed_rule(criterion, "threshold");
+  threshold.rows.front().text.clear();  // the label stands where the functions are low
+  panel.layers = {std::move(threshold), std::move(own), std::move(band), std::move(mean),
+                  direct_label(level_at(0), criterion + 3.0, "threshold", std::string(kInk))};
   return panel;
 }
 

@@ -77,8 +77,8 @@ auto number_of_censored(Censored censored) {
 std::string reversals_note(const ThresholdReport& report) {
   return fmt::format(
       "Reversals: mean of the last turns of the staircase. It estimates the level with {} right, "
-      "not the threshold's {}, so the two are not to be compared; it has no interval, and is above "
-      "or below where one of these turns was at a bound of the levels.",
+      "not the threshold's {}, so do not compare the two. It has no interval; above or below means "
+      "that a turn was at an end of the levels.",
       share_figure(procedures::convergence_of(report.options().track.up_down)),
       share_figure(report.criterion));
 }
@@ -138,12 +138,11 @@ MeasureList<TrackReport> track_measures(const ThresholdReport& report) {
           .shown("threshold and 95% (dB)",
                  [=](const Row& one) { return threshold_cell(estimate(one), one); })
           .in_csv({"threshold_db", "low_db", "high_db", "censored"})
-          .with("Threshold: with its 95 % interval, as under Methods. Above, below: with usual "
+          .with("Threshold: with its 95% interval, as under Methods. Above, below: with usual "
                 "lapse rates the whole interval lies beyond the highest or the lowest level. Not "
-                "determined: the answers tell neither a threshold inside the levels nor a side; "
-                "where an end of the interval is known it is stated. n and right: trials that the "
-                "procedure chose; catch trials are at the highest level and count in the threshold "
-                "too."),
+                "determined: the answers determine neither a threshold within the levels nor a "
+                "side; a known end of the interval is given. n and right: trials chosen by the "
+                "procedure; catch trials are at the highest level and also enter the threshold."),
       member_of<Row>("in_mean",
                      [=](const Row& one) -> Json {
                        if (!one.estimate) return nullptr;
@@ -171,10 +170,9 @@ MeasureList<TrackReport> track_measures(const ThresholdReport& report) {
           .shown("p of the fit",
                  [](const Row& one) { return one.fit ? p_figure(one.fit->p) : kNoFigure; })
           .in_csv({"", "fit_p", ""})
-          .with(
-              "p of the fit: the share of data sets of the fitted observer itself that deviate as "
-              "much from their own fits, of 399 (Wichmann and Hill 2001). With few trials a level "
-              "it finds coarse departures alone.")
+          .with("p of the fit: the share of 399 data sets simulated from the fit whose deviance is "
+                "at least as large (Wichmann and Hill 2001). With few trials per level it detects "
+                "only large deviations.")
           .if_known(),
       number_member<Row>("learning_db", &Row::learning_db).in_csv({"learning_db"}),
       number_member<Row>("", [&report](const Row&) { return report.criterion; })
@@ -199,11 +197,13 @@ MeasureList<StandardReport> standard_measures(const ThresholdReport& report) {
                            }),
         member_of<Row>("tracks", &Row::tracks),
         count_of<Row>("n", "n", [](const Row& one) { return one.mean.participants; })
-            .with("n: participants with a track, all of whom the mean counts, each with the mean "
-                  "of the own tracks. Known: the estimate lies inside the levels; beyond: below "
-                  "the lowest or above the highest, and counts as that. Not determined: the "
-                  "answers say hardly anything, or own tracks differ in this. If more than half "
-                  "are not known there is no mean."),
+            .with("n: participants with a share in the mean; each counts with the mean of their "
+                  "tracks. Known: every track has a number. Beyond: the whole interval lies below "
+                  "the lowest or above the highest level; counted as censored. Not determined: "
+                  "neither, or the tracks disagree; the likeliest threshold enters the mean, or "
+                  "its side if it lies beyond the levels, and nothing if both ends are open. If "
+                  "more than half are not determined or have no value, there is no mean."),
+        member_of<Row>("no_share", [](const Row& one) { return one.mean.open; }),
         column_of<Row>(
             "mean and 95% (dB)",
             [](const Row& one) { return threshold_text(mean_threshold(one.mean), one.levels); }),
@@ -235,8 +235,7 @@ MeasureList<DifferenceReport> difference_measures(const ThresholdReport& report)
                                {{"difference", "difference (dB)"}, {"interval", "95% (dB)"}})),
        {count_of<Row>("participants", "n",
                       [](const Row& one) { return one.difference.participants; }),
-        count_of<Row>("known", "known", [](const Row& one) { return one.difference.exact; }),
-        number_of<Row>("p", "p", p_figure, &Row::p),
+        count_of<Row>("known", "known", &Row::known), number_of<Row>("p", "p", p_figure, &Row::p),
         number_of<Row>("p_holm", "p by Holm", p_figure, &Row::p_holm),
         column_of<Row>(
             "t",
@@ -244,7 +243,7 @@ MeasureList<DifferenceReport> difference_measures(const ThresholdReport& report)
         member_of<Row>("statistic", [](const Row& one) { return statistic_json(one.statistic); })
             .shown("d_z, 95%", [](const Row& one) { return effect_figure(one.statistic); })
             .with("Mean, interval and p, two-sided, as for thresholds; a difference is known if "
-                  "both thresholds are, and has a bound if one of them lies beyond the levels. By "
+                  "both thresholds are, and has a bound if one of them enters by a side. By "
                   "Holm: adjusted over all pairs. t and d_z, the mean over its standard deviation "
                   "between participants, if every difference is known.",
                   {Source::student, Source::tobin, Source::holm, Source::cumming_finch})}});
@@ -270,8 +269,8 @@ MeasureList<RightAnswers> right_measures(bool of_participants) {
        right,
        {number_of<Row>("p_holm", "p by Holm", p_figure, &Row::p_holm)
             .with("p: exact binomial probability of as many right answers or more by guessing; by "
-                  "Holm: adjusted over participants. Targets are drawn trial by trial, so under "
-                  "guessing trials are independent, whoever answers.",
+                  "Holm: adjusted over participants. Targets are drawn independently, so trials "
+                  "are independent under guessing.",
                   {Source::holm})}});
 }
 

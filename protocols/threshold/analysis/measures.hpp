@@ -2,10 +2,11 @@
 /// that take a report refer to it: it must outlive them.
 #pragma once
 
-#include "analysis/report/measure.hpp"
+#include "analysis/report/listed_measures.hpp"
 #include "protocols/threshold/analysis/report.hpp"
 
 #include <string>
+#include <vector>
 
 namespace touchtrial::analysis::threshold {
 
@@ -29,5 +30,9 @@ namespace touchtrial::analysis::threshold {
 /// Of same or different.
 [[nodiscard]] MeasureList<SameDifferentLevel> level_measures(const ThresholdReport& report);
 [[nodiscard]] MeasureList<SameDifferentGroup> group_measures(const ThresholdReport& report);
+
+/// What these lists make in results.json.
+/// \param report  of any threshold study; it may be without numbers
+[[nodiscard]] std::vector<ListedObject> listed_objects(const ThresholdReport& report);
 
 }  // namespace touchtrial::analysis::threshold

@@ -2,10 +2,13 @@
 
 #include "core/strict_json.hpp"
 #include "core/text.hpp"
+#include "protocols/procedures/estimates.hpp"
+#include "study/ask.hpp"
 
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace touchtrial::analysis::threshold {
 namespace {
@@ -18,7 +21,10 @@ using study::threshold::Task;
 using study::threshold::ThresholdOptions;
 
 std::string plane_words(const ThresholdOptions& options) {
-  if (options.task == Task::detection) return "one plane had the texture, the other planes none";
+  if (options.task == Task::detection) {
+    return options.intervals == 2 ? "one plane had the texture, the other none"
+                                  : "one plane had the texture, the others none";
+  }
   static constexpr auto kWords =
       std::to_array<Named<Along>>({{"by the gain of its forces", Along::gain},
                                    {"by its pitch, in millimetres per pixel", Along::pitch},
@@ -37,7 +43,7 @@ std::string asked_words(const ThresholdOptions& options) {
     case Question::which_interval:
       break;
   }
-  const std::string drawn = ", whose place was drawn in each trial";
+  const std::string drawn = "; its place was drawn in each trial";
   if (options.task == Task::detection) return "which plane had the texture" + drawn;
   return (options.along == Along::pitch ? "which plane was coarser" : "which plane felt stronger") +
          drawn;
@@ -55,13 +61,37 @@ std::string values_words(const std::vector<double>& values) {
   return fmt::format("{:g} to {:g} in steps of {:g}", values.front(), values.back(), step);
 }
 
-std::string level_sentence(const ThresholdOptions& options) {
-  std::string text =
-      options.task == Task::detection
-          ? "Levels were gains in dB re the gain of the stimuli"
-          : "Levels were 20 log10(ΔA / A) in dB, with A the standard's value and ΔA the change";
-  text += ", of " + values_words(options.track.levels) + " dB";
-  return text + "; planes without texture and all others were walls of one height.";
+/// What A is, where levels are 20 log10(ΔA / A).
+std::string amplitude_words(Along along) {
+  static constexpr auto kWords = std::to_array<Named<Along>>(
+      {{"the standard's gain (stated in dB re the gain of the stimuli)", Along::gain},
+       {"the standard's pitch", Along::pitch},
+       {"the standard's order", Along::order},
+       {"1 and ΔA the share of the second texture", Along::blend}});
+  return std::string(name_in(kWords, along));
+}
+
+std::string level_sentence(const ThresholdReport& report) {
+  const ThresholdOptions& options = report.options();
+  std::string text = "Levels were gains in dB re the gain of the stimuli";
+  if (options.task == Task::discrimination) {
+    text = "Levels were 20 log10(ΔA / A) in dB, with A " + amplitude_words(options.along);
+    if (options.along != Along::blend) text += " and ΔA the comparison's value less A";
+  }
+  std::vector<std::string> of_standards;
+  bool are_equal = true;
+  for (const study::threshold::Standard& one : study::threshold::standards_of(report.design)) {
+    const std::vector<double> levels = study::threshold::levels_of(options, one);
+    are_equal = are_equal && levels == options.track.levels;
+    of_standards.push_back(values_words(levels) + " dB for " +
+                           study::threshold::words_of(report.design, one));
+  }
+  text += are_equal ? ", of " + values_words(options.track.levels) + " dB"
+                    : fmt::format(
+                          "; without those of which a comparison could be above the "
+                          "stimuli's gain there were {}",
+                          fmt::join(of_standards, "; "));
+  return text + ". All planes, with and without texture, had the same mean height.";
 }
 
 std::string standards_sentence(const ThresholdReport& report) {
@@ -70,7 +100,7 @@ std::string standards_sentence(const ThresholdReport& report) {
   for (const study::threshold::Standard& one : study::threshold::standards_of(report.design)) {
     words.push_back(study::threshold::words_of(report.design, one));
   }
-  return "Thresholds were measured for " + listed(words, "; and ") + ".";
+  return fmt::format("Thresholds were measured for {}.", fmt::join(words, "; "));
 }
 
 std::string staircase_words(const TrackSettings& track) {
@@ -120,6 +150,11 @@ struct ProcedureWords {
   std::vector<Source> sources;
 };
 
+/// Whether the procedure has beliefs on a grid, which grid_words describes.
+bool has_grid(const TrackSettings& track) {
+  return track.procedure == "quest-plus" || track.procedure.starts_with("psi");
+}
+
 Cited procedure_sentence(const ThresholdOptions& options) {
   const TrackSettings& track = options.track;
   const std::string trials = counted(track.trials, "trial") + " a track";
@@ -160,35 +195,50 @@ Cited procedure_sentence(const ThresholdOptions& options) {
   return {fmt::format("The level of each trial was chosen by {}, in {}.", track.procedure, trials)};
 }
 
+std::size_t number_of_tracks(const ThresholdReport& report) {
+  return study::threshold::standards_of(report.design).size() *
+         static_cast<std::size_t>(report.options().tracks_each);
+}
+
 std::string tracks_sentence(const ThresholdReport& report) {
-  const std::size_t tracks = study::threshold::standards_of(report.design).size() *
-                             static_cast<std::size_t>(report.options().tracks_each);
+  const std::size_t tracks = number_of_tracks(report);
   if (tracks < 2) return {};
   return fmt::format("{} tracks were interleaved: each came once in every round, in random order.",
                      tracks);
 }
 
-std::string catch_sentence(const ThresholdOptions& options) {
+std::string catch_sentence(const ThresholdReport& report) {
+  const ThresholdOptions& options = report.options();
   if (options.catch_trials == 0) return {};
   return fmt::format(
-      "There were {} at the highest level, at random places among the others; the procedure was "
-      "not "
-      "told of them, and the estimate counts them.",
-      counted(options.catch_trials, "catch trial"));
+      "There were {} at the highest level{}, at random places among the others; the procedure did "
+      "not use them, but the estimate counts them.",
+      counted(options.catch_trials, "catch trial"),
+      number_of_tracks(report) > 1 ? ", dealt evenly to the tracks" : "");
+}
+
+std::string repeated_sentence() {
+  return "The repetition of a trial had the same level and a right answer that was drawn anew.";
 }
 
 std::string rove_sentence(const ThresholdOptions& options) {
   if (options.rove_db == 0.0) return {};
-  return fmt::format("The gain of each plane was drawn from a range of {} dB.",
-                     number_text(options.rove_db));
+  return fmt::format(
+      "The gain of each textured plane was drawn from a range of {} dB {}.",
+      number_text(options.rove_db),
+      options.along == Along::gain ? "about its level" : "that ended at the stimulus's gain");
 }
 
-std::string control_sentence(const ThresholdOptions& options) {
+std::string control_sentence(const ThresholdReport& report) {
+  const ThresholdOptions& options = report.options();
   if (options.control_trials == 0) return {};
   return fmt::format(
-      "At the end came {} with the hand off the device, which played the forces of the highest "
-      "level by itself, to show whether the answer could be heard.",
-      counted(options.control_trials, "trial"));
+      "At the end came {} with the hand off the device, to show whether the answer could be heard: "
+      "the device played the lateral forces of a circular stroke at {:g} mm/s under {:g} N, at the "
+      "highest level{}, and for {} s a plane.",
+      counted(options.control_trials, "trial"), study::kPlayedMmS, study::kPlayedLoadN,
+      study::threshold::standards_of(report.design).size() > 1 ? " of a standard" : "",
+      number_text(options.interval_s));
 }
 
 void add_estimates(const ThresholdReport& report, Sentences& all) {
@@ -202,11 +252,24 @@ void add_estimates(const ThresholdReport& report, Sentences& all) {
   all.push_back(
       {fmt::format("A threshold is the level with {:.1f} % right, of an observer without lapses.",
                    100.0 * *report.criterion)});
+  const TrackSettings& track = report.options().track;
+  all.push_back({fmt::format(
+      "It was estimated from the numbers of right answers at each level, catch trials included, by "
+      "{}. Its 95 % interval holds the thresholds that a likelihood-ratio test (χ², one degree of "
+      "freedom) does not reject, with likelihoods averaged over widths w (F from 0.05 to 0.95) of "
+      "{:g} to {:g} dB with a density in proportion to w^{:g}, and over lapse rates up to {:g} "
+      "with that of Beta(1, {:g}). Its value is the most likely one in that interval if widths are "
+      "log-normal (median {:g} dB, SD {:g} of the natural logarithm) and lapse rates Beta(1, "
+      "{:g}).",
+      has_grid(track) ? std::string("the same function F, not by the procedure's posterior")
+                      : fmt::format("{} p = γ + (1 − γ − λ) F(x) and γ = {:.3g}",
+                                    shape_words(track.grid.shape), track.grid.guess),
+      procedures::kMinWidth_db, procedures::kMaxWidth_db, procedures::kWidthPower,
+      procedures::kMaxLapse, procedures::kAnyLapse, procedures::kTypicalWidth_db,
+      procedures::kTypicalSpread, procedures::kTypicalLapse)});
   all.push_back(
-      {"It was estimated from the answers at each level alone, catch trials included, and not from "
-       "the procedure's beliefs: its 95 % interval holds the thresholds whose likelihood, averaged "
-       "over widths of 2 to 60 dB and lapse rates up to 0.5, is not rejected by a ratio test, and "
-       "its value is the likeliest one of observers with usual widths and lapse rates."});
+      {"A track has a threshold only if that value lies within the levels and the test rejects "
+       "that all levels are felt and that none is."});
   all.push_back(
       {"Participants with a threshold beyond the levels count by that bound: the mean is "
        "that of the normal distribution most likely for all, with an interval by "
@@ -231,12 +294,12 @@ ProtocolMethods protocol_methods(const ThresholdReport& report) {
   ProtocolMethods methods;
   methods.trial = {
       {fmt::format("In each trial {} planes were felt one after the other; {}, and participants "
-                   "said {}.",
+                   "answered {}.",
                    options.intervals, plane_words(options), asked_words(options))}};
-  methods.sequence = {{standards_sentence(report)}, {level_sentence(options)},
+  methods.sequence = {{standards_sentence(report)}, {level_sentence(report)},
                       procedure_sentence(options),  {tracks_sentence(report)},
-                      {catch_sentence(options)},    {rove_sentence(options)},
-                      {control_sentence(options)}};
+                      {catch_sentence(report)},     {repeated_sentence()},
+                      {rove_sentence(options)},     {control_sentence(report)}};
   add_estimates(report, methods.statistics);
   if (report.control) {
     methods.statistics.push_back(

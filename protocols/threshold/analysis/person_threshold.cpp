@@ -1,14 +1,18 @@
 #include "protocols/threshold/analysis/person_threshold.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace touchtrial::analysis::threshold {
 namespace {
 
 using procedures::Censored;
 
-Censored side_of(const Bounds& bounds, std::span<const double> levels) {
-  if (bounds.exact()) return Censored::no;
-  if (bounds.low >= levels.back()) return Censored::above;
-  return bounds.high <= levels.front() ? Censored::below : Censored::undetermined;
+Censored state_of(std::span<const procedures::ThresholdEstimate> tracks) {
+  const Censored first = tracks.front().threshold.censored;
+  const bool alike = std::ranges::all_of(
+      tracks, [first](const auto& track) { return track.threshold.censored == first; });
+  return alike ? first : Censored::undetermined;
 }
 
 }  // namespace
@@ -30,14 +34,41 @@ PersonThreshold person_threshold(std::span<const procedures::ThresholdEstimate> 
     sum.high += own.high;
   }
   const auto n = static_cast<double>(tracks.size());
-  const Bounds mean{sum.low / n, sum.high / n};
-  return {mean, side_of(mean, levels)};
+  return {{sum.low / n, sum.high / n}, state_of(tracks)};
+}
+
+PersonThreshold difference_of(const PersonThreshold& first,
+                              const PersonThreshold& second) noexcept {
+  using enum Censored;
+  const Bounds bounds = difference_of(first.bounds, second.bounds);
+  if (first.censored == no && second.censored == no) return {bounds, no};
+  if (first.censored == undetermined || second.censored == undetermined) {
+    return {bounds, undetermined};
+  }
+  if (std::isfinite(bounds.low)) return {bounds, above};
+  return {bounds, std::isfinite(bounds.high) ? below : undetermined};
 }
 
 std::vector<Bounds> bounds_of(std::span<const PersonThreshold> people) {
   std::vector<Bounds> bounds;
   for (const PersonThreshold& one : people) bounds.push_back(one.bounds);
   return bounds;
+}
+
+CensoredMean mean_of(std::span<const PersonThreshold> people, double level) {
+  const CensoredMean mean = censored_mean(bounds_of(people), level);
+  const auto undetermined =
+      std::ranges::count(people, Censored::undetermined, &PersonThreshold::censored);
+  if (2 * static_cast<std::size_t>(undetermined) <= people.size()) return mean;
+  return {.participants = mean.participants,
+          .exact = mean.exact,
+          .open = mean.open,
+          .lack = Lack::most};
+}
+
+std::optional<double> p_of(std::span<const PersonThreshold> people, double null, Sides sides) {
+  if (mean_of(people).lack == Lack::most) return std::nullopt;
+  return censored_p(bounds_of(people), null, sides);
 }
 
 }  // namespace touchtrial::analysis::threshold

@@ -2,6 +2,7 @@
 
 #include "analysis/choices/selections.hpp"
 #include "analysis/statistics/censored_mean.hpp"
+#include "core/text.hpp"
 #include "protocols/threshold/study/registered_standards.hpp"
 
 #include <algorithm>
@@ -20,6 +21,7 @@ namespace {
 using choices::OwnTrials;
 using choices::Person;
 using choices::Selection;
+using procedures::Censored;
 using study::Estimand;
 
 using Tracks = std::vector<TrackReport>;
@@ -77,36 +79,36 @@ class KnownTracks {
   std::map<OwnTrials, Tracks> known_;
 };
 
-/// The bounds of one participant's threshold at a standard.
-std::optional<Bounds> own_bounds(const ThresholdReport& report, const Tracks& tracks,
-                                 std::size_t standard) {
+/// One participant's threshold at a standard.
+std::optional<PersonThreshold> own_threshold(const ThresholdReport& report, const Tracks& tracks,
+                                             std::size_t standard) {
   std::vector<procedures::ThresholdEstimate> own;
   for (const TrackReport& track : tracks) {
     if (track.standard == standard && track.estimate) own.push_back(*track.estimate);
   }
   if (own.empty()) return std::nullopt;
-  return person_threshold(own, report.standards[standard].levels).bounds;
+  return person_threshold(own, report.standards[standard].levels);
 }
 
-/// The bounds of one participant's thresholds, by the study's standards; nothing without a track.
-using OwnBounds = std::vector<std::optional<Bounds>>;
+/// One participant's thresholds, by the study's standards; nothing without a track.
+using OwnThresholds = std::vector<std::optional<PersonThreshold>>;
 
 /// The people of a selection.
 struct Sample {
-  std::vector<OwnBounds> people;
+  std::vector<OwnThresholds> people;
   int trials = 0;
 
-  /// The bounds of the people who have them.
-  [[nodiscard]] std::vector<Bounds> of(std::size_t standard) const {
-    std::vector<Bounds> all;
-    for (const OwnBounds& own : people) {
+  /// The thresholds of the people who have one, or both.
+  [[nodiscard]] std::vector<PersonThreshold> of(std::size_t standard) const {
+    std::vector<PersonThreshold> all;
+    for (const OwnThresholds& own : people) {
       if (own[standard]) all.push_back(*own[standard]);
     }
     return all;
   }
-  [[nodiscard]] std::vector<Bounds> of(std::size_t first, std::size_t second) const {
-    std::vector<Bounds> all;
-    for (const OwnBounds& own : people) {
+  [[nodiscard]] std::vector<PersonThreshold> of(std::size_t first, std::size_t second) const {
+    std::vector<PersonThreshold> all;
+    for (const OwnThresholds& own : people) {
       if (own[first] && own[second]) all.push_back(difference_of(*own[first], *own[second]));
     }
     return all;
@@ -119,9 +121,9 @@ Sample sample_of(const ThresholdReport& report, const std::vector<Person>& peopl
   for (const Person& person : people) {
     const Tracks& tracks = known.of(person);
     if (tracks.empty()) continue;
-    OwnBounds& own = sample.people.emplace_back(report.standards.size());
+    OwnThresholds& own = sample.people.emplace_back(report.standards.size());
     for (std::size_t i = 0; i < own.size(); ++i) {
-      own[i] = own_bounds(report, tracks, i);
+      own[i] = own_threshold(report, tracks, i);
     }
     for (const TrackReport& track : tracks) sample.trials += track.answers.n + track.catches.n;
   }
@@ -139,15 +141,15 @@ struct Registered {
   [[nodiscard]] double interval_level() const { return 1.0 - (margin ? 2.0 : 1.0) * level; }
 };
 
-std::vector<Bounds> mirrored(std::vector<Bounds> people) {
-  for (Bounds& one : people) one = {-one.high, -one.low};
+std::vector<PersonThreshold> mirrored(std::vector<PersonThreshold> people) {
+  for (PersonThreshold& one : people) one.bounds = {-one.bounds.high, -one.bounds.low};
   return people;
 }
 
 /// The larger p of the two tests that the mean lies above -margin and below margin.
-std::optional<double> equality_p(const std::vector<Bounds>& people, double margin) {
-  const auto above = censored_p(people, -margin, Sides::one);
-  const auto below = censored_p(mirrored(people), -margin, Sides::one);
+std::optional<double> equality_p(const std::vector<PersonThreshold>& people, double margin) {
+  const auto above = p_of(people, -margin, Sides::one);
+  const auto below = p_of(mirrored(people), -margin, Sides::one);
   if (!above || !below) return std::nullopt;
   return std::max(*above, *below);
 }
@@ -163,8 +165,8 @@ std::vector<PrimaryPair> pairs_of(const ThresholdReport& report, const Registere
     for (std::size_t j = i + 1; j < question.standards.size(); ++j) {
       const std::size_t first = question.standards[i];
       const std::size_t second = question.standards[j];
-      const std::vector<Bounds> people = sample.of(first, second);
-      const CensoredMean found = censored_mean(people, question.interval_level());
+      const std::vector<PersonThreshold> people = sample.of(first, second);
+      const CensoredMean found = mean_of(people, question.interval_level());
       pairs.push_back({pair_words(report, first, second), found.participants, found.mean,
                        found.interval, equality_p(people, *question.margin)});
     }
@@ -181,8 +183,8 @@ const PrimaryPair& furthest(const std::vector<PrimaryPair>& pairs) {
   return *std::ranges::max_element(pairs, {}, reach);
 }
 
-/// The bounds of the people over whom the question's mean is taken.
-std::vector<Bounds> people_asked(const Registered& question, const Sample& sample) {
+/// The people over whom the question's mean is taken, or their differences.
+std::vector<PersonThreshold> people_asked(const Registered& question, const Sample& sample) {
   const std::vector<std::size_t>& of = question.standards;
   return question.estimand == Estimand::mean_threshold ? sample.of(of.front())
                                                        : sample.of(of[0], of[1]);
@@ -200,8 +202,7 @@ PrimaryChoice choice_of(const ThresholdReport& report, const Registered& questio
     choice.pair = pair.words;
     return choice;
   }
-  const CensoredMean found =
-      censored_mean(people_asked(question, sample), question.interval_level());
+  const CensoredMean found = mean_of(people_asked(question, sample), question.interval_level());
   choice.participants = found.participants;
   choice.estimate = found.mean;
   choice.interval = found.interval;
@@ -221,38 +222,63 @@ void put_registered_choice(const ThresholdReport& report, const Registered& ques
     }
     return;
   }
-  const std::vector<Bounds> people = people_asked(question, sample);
-  result.p = censored_p(people, 0.0, question.sides);
-  result.statistic = known_t_statistic(people);
+  const std::vector<PersonThreshold> people = people_asked(question, sample);
+  result.p = p_of(people, 0.0, question.sides);
+  result.statistic = known_t_statistic(bounds_of(people));
   if (question.sides == Sides::two || question.level >= 0.5) return;
-  const CensoredMean found = censored_mean(people, 1.0 - 2.0 * question.level);
+  const CensoredMean found = mean_of(people, 1.0 - 2.0 * question.level);
   if (found.interval) result.bound = found.interval->low;
 }
 
+/// How people without a threshold enter the mean, after who they are: "1 of 6 at bark".
+std::string words_on_unknown(const std::vector<std::string>& who, int open) {
+  std::string text = fmt::format(
+      "Without a threshold: {}. The mean takes each of them by the likeliest threshold if that "
+      "lies inside the levels, else by the side on which it lies.",
+      fmt::join(who, "; "));
+  if (open > 0) {
+    text += fmt::format(" {} {} no share in it: the answers leave both ends open.",
+                        counted(open, "threshold"), open == 1 ? "has" : "have");
+  }
+  return text;
+}
+
 /// Adds the number of people without a threshold at the registered standards, and whether it is too
-/// large.
+/// large for a mean, or for that of a difference.
 void put_unknown(const ThresholdReport& report, const Registered& question, const Sample& sample,
                  PrimaryResult& result) {
   std::vector<std::string> some;
   std::vector<std::string> most;
-  for (const std::size_t standard : question.standards) {
-    const std::vector<Bounds> people = sample.of(standard);
-    const auto all = static_cast<int>(people.size());
-    const int unknown = all - static_cast<int>(std::ranges::count_if(people, &Bounds::exact));
-    if (unknown == 0) continue;
+  int open = 0;
+  const auto add = [&](const std::vector<PersonThreshold>& people, const std::string& of,
+                       bool is_noted) {
+    const auto known = std::ranges::count(people, Censored::no, &PersonThreshold::censored);
     const std::string words =
-        fmt::format("{} of {} at {}", unknown, all, report.standards[standard].words);
+        fmt::format("{} of {} at {}", people.size() - known, people.size(), of);
+    const CensoredMean mean = mean_of(people);
+    if (mean.lack == Lack::most) most.push_back(words);
+    if (!is_noted || known == std::ssize(people)) return;
     some.push_back(words);
-    if (2 * unknown > all) most.push_back(words);
+    open += mean.open;
+  };
+  for (const std::size_t standard : question.standards) {
+    add(sample.of(standard), report.standards[standard].words, true);
+  }
+  if (most.empty()) {
+    for (std::size_t i = 0; i < question.standards.size(); ++i) {
+      for (std::size_t j = i + 1; j < question.standards.size(); ++j) {
+        const std::size_t first = question.standards[i];
+        const std::size_t second = question.standards[j];
+        add(sample.of(first, second), pair_words(report, first, second), false);
+      }
+    }
   }
   if (!most.empty()) {
     result.nothing_follows = fmt::format(
         "More than half of the participants have no threshold ({}), so nothing follows.",
         fmt::join(most, "; "));
   } else if (!some.empty()) {
-    result.note = fmt::format(
-        "Participants without a threshold, who count by the bounds of their intervals: {}.",
-        fmt::join(some, "; "));
+    result.note = words_on_unknown(some, open);
   }
 }
 
@@ -315,7 +341,7 @@ std::optional<PrimaryResult> primary_result(const Outcomes& outcomes, const Thre
                        .margin = question.margin};
   std::vector<Selection> chosen = choices::selections(outcomes);
   // A trial without an answer belongs to no track.
-  std::erase_if(chosen, [](const Selection& one) { return one.answered_alone; });
+  std::erase_if(chosen, [](const Selection& one) { return one.only_answered; });
   std::vector<std::vector<Person>> people;
   for (const Selection& selection : chosen) people.push_back(people_in(outcomes, selection));
   KnownTracks known(outcomes, report);

@@ -83,18 +83,18 @@ StandardReport standard_report(const ThresholdReport& report, std::size_t standa
   for (const auto& own : tracks) {
     result.thresholds.push_back(person_threshold(own, result.levels));
   }
-  result.mean = censored_mean(bounds_of(result.thresholds));
+  result.mean = mean_of(result.thresholds);
   return result;
 }
 
-std::vector<Bounds> paired_differences(const StandardReport& first, const StandardReport& second) {
-  std::vector<Bounds> differences;
+std::vector<PersonThreshold> paired_differences(const StandardReport& first,
+                                                const StandardReport& second) {
+  std::vector<PersonThreshold> differences;
   for (std::size_t i = 0; i < first.people.size(); ++i) {
     const auto other = std::ranges::find(second.people, first.people[i]);
     if (other == second.people.end()) continue;
     const auto place = static_cast<std::size_t>(other - second.people.begin());
-    differences.push_back(
-        difference_of(first.thresholds[i].bounds, second.thresholds[place].bounds));
+    differences.push_back(difference_of(first.thresholds[i], second.thresholds[place]));
   }
   return differences;
 }
@@ -112,10 +112,17 @@ std::vector<DifferenceReport> difference_reports(std::span<const StandardReport>
   std::vector<double> p;
   for (std::size_t i = 0; i < standards.size(); ++i) {
     for (std::size_t j = i + 1; j < standards.size(); ++j) {
-      const std::vector<Bounds> differences = paired_differences(standards[i], standards[j]);
-      all.push_back({i, j, censored_mean(differences), censored_p(differences, 0.0, Sides::two),
-                     std::nullopt, known_t_statistic(differences)});
-      if (all.back().p) p.push_back(*all.back().p);
+      const std::vector<PersonThreshold> differences =
+          paired_differences(standards[i], standards[j]);
+      DifferenceReport& one = all.emplace_back();
+      one.first = i;
+      one.second = j;
+      one.difference = mean_of(differences);
+      one.known = static_cast<int>(
+          std::ranges::count(differences, procedures::Censored::no, &PersonThreshold::censored));
+      one.p = p_of(differences, 0.0, Sides::two);
+      one.statistic = known_t_statistic(bounds_of(differences));
+      if (one.p) p.push_back(*one.p);
     }
   }
   const std::vector<double> adjusted = holm_adjusted(p);

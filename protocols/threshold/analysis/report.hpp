@@ -68,7 +68,7 @@ struct StandardReport {
   std::vector<PersonThreshold> thresholds;  ///< theirs
   CensoredMean mean;                        ///< in units of the level
 
-  /// How many of `people` are censored so, or (no) have a threshold that is known.
+  /// How many of `people` are censored so, or (no) have tracks with a number.
   [[nodiscard]] int number_of(procedures::Censored censored) const;
 };
 
@@ -77,7 +77,8 @@ struct DifferenceReport {
   std::size_t first = 0;  ///< indices into ThresholdReport::standards
   std::size_t second = 1;
   CensoredMean difference;
-  std::optional<double> p{};              ///< censored_p, two-sided
+  int known = 0;                          ///< people both of whose thresholds are known
+  std::optional<double> p{};              ///< two-sided
   std::optional<double> p_holm{};         ///< over all pairs
   std::optional<TStatistic> statistic{};  ///< if every difference is known
 };

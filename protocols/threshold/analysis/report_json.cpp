@@ -5,6 +5,7 @@ namespace touchtrial::analysis::threshold {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
 /// Right answers of all together, and of participants.
 Json outside_json(const AgainstGuessing& outside, double guess) {
   Json object = object_of(outside.pooled, right_measures(false));

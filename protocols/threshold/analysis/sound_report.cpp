@@ -16,7 +16,7 @@ CensoredMean mean_without(const StandardReport& standard, const std::vector<std:
       others.push_back(standard.thresholds[i]);
     }
   }
-  return censored_mean(bounds_of(others));
+  return mean_of(others);
 }
 
 }  // namespace

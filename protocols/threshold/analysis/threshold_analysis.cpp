@@ -61,10 +61,8 @@ class ThresholdAnalysis final : public ProtocolAnalysis {
   std::vector<TrialColumn> trial_columns(const Outcomes&) const override {
     return threshold_trial_columns();
   }
-  std::vector<std::filesystem::path> export_model(
-      const record::StudyStore& store, const Outcomes& outcomes,
-      const std::filesystem::path& folder) const override {
-    return export_threshold_model(store, outcomes, folder);
+  std::optional<RModel> r_model(const Outcomes& outcomes) const override {
+    return threshold_model(outcomes);
   }
 };
 

@@ -1,6 +1,7 @@
 #include "analysis/choices/people_report.hpp"
 #include "analysis/report/page/wording.hpp"
 #include "core/text.hpp"
+#include "protocols/threshold/analysis/page/sections.hpp"
 #include "protocols/threshold/analysis/report.hpp"
 
 #include <fmt/format.h>
@@ -10,13 +11,13 @@ namespace {
 
 using study::threshold::Along;
 
-using Sentences = std::vector<std::string>;
+using Warnings = std::vector<std::string>;
 
-void warn_of_sound(const ThresholdReport& report, Sentences& all) {
+void warn_of_sound(const ThresholdReport& report, Warnings& all) {
   if (!report.control) {
     all.emplace_back(
-        "There was no control block with the hand off the device, so it is not known whether "
-        "participants could hear what they were meant to feel.");
+        "There was no control block with the hand off the device, so it is unknown whether "
+        "participants could hear what they should feel.");
     return;
   }
   if (!report.control->anybody.found()) return;
@@ -35,25 +36,27 @@ void warn_of_sound(const ThresholdReport& report, Sentences& all) {
                   who));
 }
 
-void warn_of_censored(const ThresholdReport& report, Sentences& all) {
+void warn_of_censored(const ThresholdReport& report, Warnings& all) {
   for (const StandardReport& one : report.standards) {
-    if (one.mean.exact == one.mean.participants) continue;
+    const int inside = one.number_of(procedures::Censored::no);
+    if (inside == std::ssize(one.people)) continue;
     const std::string known = fmt::format("{}: of {} {} {} a threshold inside the levels",
-                                          one.words, counted(one.mean.participants, "participant"),
-                                          one.mean.exact, one.mean.exact == 1 ? "has" : "have");
+                                          one.words, counted(std::ssize(one.people), "participant"),
+                                          inside, inside == 1 ? "has" : "have");
     if (one.mean.lack == Lack::most) {
       all.push_back(known +
                     ", fewer than half, so there is no mean. Present a wider range of "
                     "levels, or a texture that is easier to feel.");
     } else if (one.mean.mean) {
-      all.push_back(known +
-                    "; the mean counts the others as beyond the levels, and assumes that "
-                    "all thresholds together are normally distributed in dB.");
+      const std::string taken = taken_words(one);
+      all.push_back(known + ". " + (taken.empty() ? "" : taken + ". ") +
+                    "The mean counts those beyond the levels by their side, and assumes that all "
+                    "thresholds together are normally distributed in dB.");
     }
   }
 }
 
-void warn_of_attention(const ThresholdReport& report, Sentences& all) {
+void warn_of_attention(const ThresholdReport& report, Warnings& all) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < report.attention.size(); ++i) {
     if (!report.attention[i].is_doubtful()) continue;
@@ -62,14 +65,14 @@ void warn_of_attention(const ThresholdReport& report, Sentences& all) {
         fmt::format("{} ({} of {})", one.participant, one.answers.correct, one.answers.n));
   }
   if (names.empty()) return;
-  all.push_back(fmt::format(
-      "Fewer catch trials, which are at the highest level, were answered right than somebody who "
-      "attends would ({} or more; by Holm over participants) by {}: not attending, not "
-      "understanding, or levels that are too low.",
-      share_figure(choices::kAttentive), listed(names, " and ")));
+  all.push_back(
+      fmt::format("Too few right answers in catch trials, which are at the highest level ({} or "
+                  "more are expected; Holm over participants), by {}: inattention, "
+                  "misunderstanding, or levels that are too low.",
+                  share_figure(choices::kAttentive), listed(names, " and ")));
 }
 
-void warn_of_fit(const ThresholdReport& report, Sentences& all) {
+void warn_of_fit(const ThresholdReport& report, Warnings& all) {
   int tracks = 0;
   int rejected = 0;
   for (const TrackReport& track : report.tracks) {
@@ -78,47 +81,51 @@ void warn_of_fit(const ThresholdReport& report, Sentences& all) {
     rejected += track.fit->p <= kUsualLevel ? 1 : 0;
   }
   if (tracks == 0 || rejected * 10 <= tracks) return;
-  all.push_back(fmt::format(
-      "{} of {} fit worse than 95 of 100 tracks of the fitted observers themselves do; by chance "
-      "5 % would. The function or the independence of trials may not hold.",
-      rejected, counted(tracks, "track")));
+  all.push_back(
+      fmt::format("The fit of {} of {} is rejected at the 5% level; 5% would be by chance. The "
+                  "function or the independence of trials may not hold.",
+                  rejected, counted(tracks, "track")));
 }
 
-void warn_of_habits(const ThresholdReport& report, Sentences& all) {
+void warn_of_habits(const ThresholdReport& report, Warnings& all) {
   const GroupTest& learning = report.learning_db;
   if (learning.p && *learning.p <= kUsualLevel) {
     all.push_back(fmt::format(
-        "Participants became {} in the course of their tracks ({}), so one threshold does not "
+        "Participants became {} during their tracks ({}), so one threshold does not "
         "describe a track.",
         learning.mean.mean.value_or(0.0) < 0.0 ? "better" : "worse", p_phrase(*learning.p)));
   }
   const std::string who = choices::preference_words(report.preferences, report.choices);
   if (who.empty()) return;
-  all.push_back(who +
-                ". Answers that follow a preference are right only by chance, so these thresholds "
-                "are too high: by 0.4 dB if, at the threshold, those shares are 94 % and 70 %, by "
-                "1.4 dB if they are 99 % and 64 %.");
+  std::string text =
+      fmt::format("{} ({}, by people).", who, p_phrase(report.preferences.anybody.p));
+  if (!report.preferences.of_those_who_prefer().empty()) {
+    text +=
+        " Answers that follow a preference are right only by chance, so the thresholds of "
+        "people who have one may be too high: by 0.4 dB if, at the threshold, those shares are "
+        "94 % and 70 %, by 1.4 dB if they are 99 % and 64 %.";
+  }
+  all.push_back(std::move(text));
 }
 
-void warn_of_design(const ThresholdReport& report, Sentences& all) {
+void warn_of_design(const ThresholdReport& report, Warnings& all) {
   const auto& options = report.options();
   if (study::threshold::missing_catch_trials(report.design) > 0) {
     all.emplace_back(
-        "Fewer than six trials of a track, or than a tenth, were surely at its highest level, "
-        "where only lapses make answers wrong. A lapse then looks like a higher threshold: "
-        "thresholds of people who lapse are biased.");
+        "Fewer than six trials, or a tenth, of a track were certain to be at its highest level, "
+        "where only lapses cause errors. Lapses then raise the estimated thresholds.");
   }
   if (options.along == Along::order && options.rove_db == 0.0) {
     all.emplace_back(
-        "Another order also has another strength, and gains were not roved: participants may have "
-        "compared strengths.");
+        "Orders also differ in strength, and gains were not roved: participants may have compared "
+        "strengths.");
   }
 }
 
 }  // namespace
 
 std::vector<std::string> threshold_warnings(const ThresholdReport& report) {
-  Sentences all;
+  Warnings all;
   if (report.tracks.empty()) return all;
   warn_of_sound(report, all);
   warn_of_censored(report, all);

@@ -126,10 +126,9 @@ std::vector<std::string> warnings_without_mean(const ThresholdPlanReport& report
       const CensoredMean mean = analysis::censored_mean(thresholds_in(pool, i));
       if (mean.lack != analysis::Lack::most) continue;
       sentences.push_back(fmt::format(
-          "{}, {} trials: {} of {} simulated participants have a threshold inside the levels, "
-          "fewer "
-          "than half, so there is no mean, and hardly a study would have one. Give levels that "
-          "reach farther, a texture that is felt more easily, or another device.",
+          "{}, {} trials: {} of {} simulated participants have a threshold within the levels, "
+          "fewer than half, so there is no mean, and most studies would have none. Extend the "
+          "levels, or use a texture that is easier to feel, or another device.",
           pool.standards[i], pool.trials, mean.exact, mean.participants));
     }
   }
@@ -138,22 +137,23 @@ std::vector<std::string> warnings_without_mean(const ThresholdPlanReport& report
 
 std::vector<std::string> sentences_of(const ThresholdPlanReport& report) {
   std::vector<std::string> sentences = {
-      fmt::format("Samples of each size: {}, drawn from the simulated participants, each anew from "
-                  "all of them. Monte-Carlo intervals (Wilson's, 95 %) are of the samples alone: "
-                  "that the pool is finite is the error of the mean in the first table, and other "
-                  "seeds show it.",
-                  report.plan.runs),
-      "Half-width: of the 95 % interval of the mean over participants; its median, and what nine "
-      "tenths of samples stay below. Means count everybody, as the report does: people beyond the "
-      "levels by the probability to lie there. Without: samples that have no interval, because "
-      "more than half are beyond. Add the participants that you expect to lose."};
+      fmt::format(
+          "Samples of each size: {}, drawn from the simulated participants with replacement. "
+          "Monte-Carlo intervals (Wilson's, 95 %) refer only to sampling; for the error due to the "
+          "finite pool see the error of the mean in the first table, or use other seeds.",
+          report.plan.runs),
+      "Half-width: of the 95 % interval of the mean over participants; its median and 90 % point "
+      "over samples. Means include everybody, as in the report: people beyond the levels "
+      "contribute the probability of lying there. Without: samples without an interval, because "
+      "more than half of the people are beyond the levels. Add the participants that you expect to "
+      "lose."};
   std::ranges::move(warnings_without_mean(report), std::back_inserter(sentences));
   if (report.plan.difference) {
-    sentences.push_back(fmt::format(
-        "Power: test of the mean difference by the same likelihood, two-sided, level {:.4g}; if "
-        "everybody is inside the levels it is the paired t test. Type-I error: the same people, "
-        "with their mean difference taken off everybody's.",
-        report.plan.alpha));
+    sentences.push_back(
+        fmt::format("Power: test of the mean difference by the same likelihood, two-sided, level "
+                    "{:.4g}; if everybody is within the levels it is the paired t test. Type-I "
+                    "error: the same people, minus their mean difference.",
+                    report.plan.alpha));
   }
   return sentences;
 }

@@ -35,7 +35,7 @@ constexpr double kMaxTables = 20e6;  ///< numbers of all tracks' posteriors
 
 /// Describes an ascending list of values.
 void describe_list(ValueIo& io, std::vector<double>& values, const NumberRange& range) {
-  io.list(values, {.fewest = 1, .most = kMaxValues},
+  io.list(values, {.min = 1, .max = kMaxValues},
           [&range](ValueIo& item, double& value) { item.number(value, range); });
   io.rule([&values](const JsonValue& place) {
     if (std::ranges::adjacent_find(values, std::greater_equal<>()) != values.end()) {
@@ -65,7 +65,7 @@ void describe_steps(ObjectIo& io, std::vector<double>& values, const NumberRange
 
 /// Describes values as a list, or as {"from", "to", "step"}.
 void describe_values(ObjectIo& io, std::string_view key, std::vector<double>& values,
-                     const NumberRange& range, const About& about) {
+                     const NumberRange& range, const KeyInfo& about) {
   io.member(key, about, true, [&](ValueIo& value) {
     const ValueIo::Form forms[] = {
         {[](const JsonValue& place) { return place.is_object(); },
@@ -73,17 +73,17 @@ void describe_values(ObjectIo& io, std::string_view key, std::vector<double>& va
            one.object([&](ObjectIo& keys) { describe_steps(keys, values, range); });
          }},
         {{}, [&](ValueIo& one) { describe_list(one, values, range); }}};
-    value.either(1, forms);
+    value.one_of(1, forms);
   });
 }
 
 void describe_windows(ObjectIo& io, HandRange& windows) {
   constexpr NumberRange kSpeed{0.0, 1000.0};
   constexpr NumberRange kForce{0.0, 100.0};
-  io.number("slowest_mm_s", windows.slowest_mm_s, kSpeed, {"slowest speed along the plane"});
-  io.number("fastest_mm_s", windows.fastest_mm_s, kSpeed, {"fastest speed along the plane"});
-  io.number("lightest_n", windows.lightest_n, kForce, {"smallest force across the plane"});
-  io.number("strongest_n", windows.strongest_n, kForce, {"largest force across the plane"});
+  io.number("slowest_mm_s", windows.slowest_mm_s, kSpeed, {"minimum speed along the plane"});
+  io.number("fastest_mm_s", windows.fastest_mm_s, kSpeed, {"maximum speed along the plane"});
+  io.number("lightest_n", windows.lightest_n, kForce, {"minimum force normal to the plane"});
+  io.number("strongest_n", windows.strongest_n, kForce, {"maximum force normal to the plane"});
   io.rule([&windows](const JsonValue& place, const JsonObject& /*object*/) {
     if (windows.slowest_mm_s >= windows.fastest_mm_s) {
       place.refuse("has fastest_mm_s not above slowest_mm_s; raise fastest_mm_s");
@@ -98,8 +98,9 @@ void describe_windows(ObjectIo& io, HandRange& windows) {
 void describe_first_level(ObjectIo& io, procedures::TrackSettings& track) {
   std::optional<double> wanted;
   if (!track.levels.empty()) wanted = track.levels[track.up_down.first_level];
-  io.number("first_level", wanted, kLevelRange,
-            {.meaning = "level of the first trial, one of the levels", .otherwise = "the highest"});
+  io.number(
+      "first_level", wanted, kLevelRange,
+      {.meaning = "level of the first trial, one of the levels", .default_text = "the highest"});
   io.rule([&](const JsonValue& place, const JsonObject& object) {
     if (!object.find("first_level")) return;
     const auto found = std::ranges::find_if(
@@ -116,8 +117,8 @@ void describe_up_down(ObjectIo& io, procedures::TrackSettings& track) {
   io.integer("correct_for_down", rule.correct_for_down, 1, 20,
              {"right answers in a row that lower the level"});
   io.integer("wrong_for_up", rule.wrong_for_up, 1, 20, {"wrong answers in a row that raise it"});
-  io.list("steps_down", rule.steps_down, {.fewest = 1, .most = kMaxValues},
-          {"in places of the list of levels: the next one at each reversal, then the last"},
+  io.list("steps_down", rule.steps_down, {.min = 1, .max = kMaxValues},
+          {"in steps of the list of levels: the next entry after each reversal, then the last one"},
           [](ValueIo& item, int& step) { item.integer(step, 1, kMaxValues); });
   io.integer("up_for_one_down", rule.up_for_one_down, 1, 100, {"a step up in steps down"});
   describe_first_level(io, track);
@@ -126,7 +127,7 @@ void describe_up_down(ObjectIo& io, procedures::TrackSettings& track) {
 void describe_grid(ObjectIo& io, procedures::ParameterGrid& grid) {
   io.choice("shape", grid.shape, kShapeNames, {"of the psychometric function"});
   describe_values(io, "thresholds", grid.thresholds, kLevelRange,
-                  {.meaning = "thresholds, ascending", .otherwise = "the levels"});
+                  {.meaning = "thresholds, ascending", .default_text = "the levels"});
   describe_values(io, "slopes", grid.slopes, {0.0, 1000.0, true}, {"slopes, ascending"});
   describe_values(io, "lapses", grid.lapses, {0.0, 0.5, false, true}, {"lapse rates, ascending"});
 }
@@ -137,9 +138,9 @@ void describe_practice(ObjectIo& io, ThresholdOptions& options) {
   io.rule([&options](const JsonValue& /*place*/, const JsonObject& /*object*/) {
     options.practice_criterion = options.practice_trials;
   });
-  io.integer(
-      "criterion", options.practice_criterion, 0, 100,
-      {.meaning = "right answers that end the practice, at most `trials`", .otherwise = "all"});
+  io.integer("criterion", options.practice_criterion, 0, 100,
+             {.meaning = "right answers in a round that end practice, at most `trials`",
+              .default_text = "all"});
   io.rule([&options](const JsonValue& place, const JsonObject& /*object*/) {
     if (options.practice_criterion <= options.practice_trials) return;
     place.refuse_below("/criterion",
@@ -156,15 +157,16 @@ void describe_question(ObjectIo& io, ThresholdOptions& options) {
                         "standard or a comparison",
              .required = true});
   io.choice("question", options.question, kQuestionNames,
-            {"which of the planes had the texture, or was stronger or coarser; which is unlike the "
-             "others (three planes; either kind is odd equally often); whether two are alike (half "
-             "of the trials differ; constant stimuli only)"});
+            {"`which-interval`: which plane had the texture, or was stronger or coarser; "
+             "`odd-one-out`: which of three planes differs from the others (each kind is odd "
+             "equally often); `same-different`: whether two planes are alike (they differ in half "
+             "of the trials; constant stimuli only)"});
   io.choice("along", options.along, kAlongNames, {"the quantity that differs"});
   io.rule([&options](const JsonValue& /*place*/, const JsonObject& /*object*/) {
     options.intervals = options.question == Question::odd_one_out ? 3 : 2;
   });
   io.integer("intervals", options.intervals, 2, 3,
-             {.meaning = "planes of a trial", .otherwise = "2 (odd one out: 3)"});
+             {.meaning = "planes per trial", .default_text = "2 (odd one out: 3)"});
   io.rule([&options](const JsonValue& place, const JsonObject& /*object*/) {
     if (options.question == Question::odd_one_out && options.intervals != 3) {
       place.refuse_below("/intervals", "must be 3 for the question odd-one-out");
@@ -206,8 +208,8 @@ void describe_procedure(ObjectIo& io, ThresholdOptions& options) {
   std::vector<std::string_view> names;
   for (const auto& kind : procedures::procedure_kinds()) names.push_back(kind.name);
   auto at = static_cast<std::size_t>(std::ranges::find(names, track.procedure) - names.begin());
-  io.member("procedure", {"what decides which level comes next: the [procedure](#procedures)"},
-            true, [&](ValueIo& value) { value.choice(at, names); });
+  io.member("procedure", {"the rule that chooses the next level: [procedures](#procedures)"}, true,
+            [&](ValueIo& value) { value.choice(at, names); });
   track.procedure = names.at(at);
   io.rule([&](const JsonValue& place, const JsonObject& /*object*/) {
     if (options.question == Question::same_different && track.procedure != "constant-stimuli") {
@@ -219,14 +221,15 @@ void describe_procedure(ObjectIo& io, ThresholdOptions& options) {
   });
   io.integer("trials", track.trials, 1, 2000, {"of each track"});
   io.integer("tracks", options.tracks_each, 1, 8,
-             {"of each class and standard, interleaved; at most 8 in all"});
-  io.truth("blocked", track.blocked, {"constant stimuli: all trials of a level together"});
+             {"tracks for each class and standard, interleaved; at most 8 in total"});
+  io.boolean("blocked", track.blocked,
+             {"constant stimuli only: all trials of a level in succession"});
   io.part("up_down", track, {"for staircases"}, describe_up_down);
   if (track.grid.slopes.empty()) {
     track.grid.slopes = {1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0};
     track.grid.lapses = {0.0, 0.02, 0.05, 0.1, 0.15, 0.2};
   }
-  io.part("grid", track.grid, {"the observers considered possible, all equally likely at first"},
+  io.part("grid", track.grid, {"the possible observers, with equal prior probabilities"},
           describe_grid);
 }
 
@@ -249,37 +252,38 @@ void describe_standards(ObjectIo& io, ThresholdOptions& options) {
     }
   });
   io.member("standards",
-            {.meaning = "for discrimination along gain (dB re the pack's gain, at most 0) or order "
-                        "(between 0 and 1), which need it; ascending",
-             .otherwise = "none"},
+            {.meaning = "the standards, ascending; required for discrimination along gain (dB re "
+                        "the pack's gain, at most 0) or order (between 0 and 1)",
+             .default_text = "none"},
             true, [&](ValueIo& value) { describe_list(value, options.standards, range); });
 }
 
 void describe(ObjectIo& io, ThresholdOptions& options) {
   describe_question(io, options);
   describe_values(io, "levels", options.track.levels, kLevelRange,
-                  {.meaning = "the only levels ever presented, ascending: [levels](#levels)",
+                  {.meaning = "all levels that can be presented, ascending: [levels](#levels)",
                    .required = true,
                    .unit = "dB"});
   describe_standards(io, options);
   describe_procedure(io, options);
   io.number("interval_s", options.interval_s, {0.25, 60.0},
             {"exploration of each plane: [intervals](#intervals)"});
-  io.part("windows", options.windows, {"what the hand must do for an interval's clock to run"},
+  io.part("windows", options.windows, {"the hand movement required for an interval's clock to run"},
           describe_windows);
-  io.integer("catch", options.catch_trials, 0, 1000,
-             {"trials at the highest level, dealt evenly to the tracks: [catch trials](#tracks)"});
+  io.integer(
+      "catch", options.catch_trials, 0, 1000,
+      {"trials at the highest level, divided evenly among the tracks: [catch trials](#tracks)"});
   io.number("rove_db", options.rove_db, {0.0, 40.0},
-            {"width of the range from which each interval's gain is drawn: about its level along "
-             "gain, else below the ceiling"});
-  io.truth("feedback", options.feedback,
-           {"tell participants after each answer whether it was right"});
+            {"width of the range from which each interval's gain is drawn: centred on the level "
+             "along gain, else below the maximum gain"});
+  io.boolean("feedback", options.feedback,
+             {"whether participants see after each answer if it was right"});
   io.part("practice", options,
           {.meaning = "rounds at the highest level, with feedback, before the first trial",
-           .otherwise = "none"},
+           .default_text = "none"},
           describe_practice);
   io.integer("control", options.control_trials, 0, 500,
-             {"trials at the end with the hand off the device, which is only heard"});
+             {"trials at the end with the hand off the device, so that it can only be heard"});
 }
 
 }  // namespace
@@ -310,11 +314,11 @@ std::string section_json(const ThresholdOptions& options) {
 }
 
 std::string section_schema() {
-  ThresholdOptions usual;
+  ThresholdOptions defaults;
   return annotated_section({.meaning = "what is compared, at which levels, by which procedure: "
                                        "[thresholds.md](thresholds.md)",
-                            .otherwise = "required by `threshold`"},
-                           [&usual](ObjectIo& io) { describe(io, usual); });
+                            .default_text = "required by `threshold`"},
+                           [&defaults](ObjectIo& io) { describe(io, defaults); });
 }
 
 void check_section(const JsonValue& file, const Study& study) {

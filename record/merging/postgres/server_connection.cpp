@@ -160,7 +160,8 @@ void ServerConnection::require_within_limits() const {
   if (now - began_ > limits_.whole) reason = "its answer does not come to an end";
   if (is_too_large_) reason = "its answer is absurdly large";
   if (reason == nullptr) return;
-  refuse("the server's connection was broken off; check that the address is the right one", reason);
+  refuse("the connection to the server was interrupted; check that the address is the right one",
+         reason);
 }
 
 /// On another thread, because libpq reads a message to its end, which may be 2 GB away.

@@ -83,9 +83,9 @@ void read_sessions(analysis::Outcomes& outcomes, const std::filesystem::path& fo
     const auto note = [&](const char* word, std::set<int>& sessions) {
       if (decided.find(word) != std::string::npos) sessions.insert(session.session);
     };
-    note("excluded", outcomes.looked.excluded_afterwards);
-    note("replaced", outcomes.looked.replaced_afterwards);
-    note("erased", outcomes.looked.erased_afterwards);
+    note("excluded", outcomes.look_record.excluded_afterwards);
+    note("replaced", outcomes.look_record.replaced_afterwards);
+    note("erased", outcomes.look_record.erased_afterwards);
   }
 }
 
@@ -104,7 +104,7 @@ void read_looks(analysis::Outcomes& outcomes, const std::filesystem::path& folde
                             analysis::LookKind::unregistered, analysis::LookKind::person}) {
       if (analysis::name_of(kind) == row.at("kind")) look.kind = kind;
     }
-    outcomes.looked.looks.push_back(look);
+    outcomes.look_record.looks.push_back(look);
   }
 }
 

@@ -5,6 +5,7 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 #include "support/temp_folder.hpp"
 
 namespace touchtrial {
@@ -32,7 +33,7 @@ TEST_CASE("A second export removes what the first wrote and it does not hold, wi
 TEST_CASE("A folder with another study's export is refused untouched") {
   const TempFolder folder;
   analysis::write_export(folder.path(), {"single", "bb22", "csv"}, {file("trials.csv", "theirs")});
-  const std::string complaint = complaint_of<FileError>([&] {
+  const std::string complaint = message_of<FileError>([&] {
     analysis::write_export(folder.path(), kOurs,
                            {file("other.csv", "ours"), file("trials.csv", "ours")});
   });
@@ -44,7 +45,7 @@ TEST_CASE("A folder with another study's export is refused untouched") {
 TEST_CASE("A file that no export wrote is not overwritten") {
   const TempFolder folder;
   replace_file(folder.path() / "trials.csv", "mine");
-  const std::string complaint = complaint_of<FileError>([&] {
+  const std::string complaint = message_of<FileError>([&] {
     analysis::write_export(folder.path(), kOurs,
                            {file("other.csv", "ours"), file("trials.csv", "ours")});
   });
@@ -89,7 +90,7 @@ TEST_CASE("A mark that was tampered with removes nothing outside of its folder")
 TEST_CASE("A file that is not a valid mark is named") {
   const TempFolder folder;
   replace_file(folder.path() / analysis::kExportMark, "{");
-  const std::string complaint = complaint_of<FileError>(
+  const std::string complaint = message_of<FileError>(
       [&] { analysis::write_export(folder.path(), kOurs, {file("a.csv", "1")}); });
   CHECK(contains(complaint, analysis::kExportMark));
 }

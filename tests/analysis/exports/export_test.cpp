@@ -6,6 +6,7 @@
 #include "core/files.hpp"
 #include "protocols/identification/analysis/report.hpp"
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 
 #include <map>
 
@@ -277,7 +278,7 @@ TEST_CASE("Exporting twice gives the same bytes and leaves other files alone") {
 
 TEST_CASE("An export into a file instead of a folder is refused") {
   FakeStudy study(study::identification::classification());
-  const std::string complaint = complaint_of<FileError>(
+  const std::string complaint = message_of<FileError>(
       [&] { analysis::export_csv(study.store(), std::nullopt, study.database()); });
   CHECK(contains(complaint, study.database().string()));
 }

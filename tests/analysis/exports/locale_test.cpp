@@ -48,7 +48,7 @@ void export_everything(FakeStudy& study, const fs::path& out) {
   analysis::export_json(study.store(), outcomes, out / "json");
   analysis::export_bids(source, {.traces = true}, out / "bids");
   analysis::export_psych_ds(source, {}, out / "psych");
-  analysis::identification::export_mixed_model(study.store(), outcomes, out / "r");
+  analysis::export_r_model(study.store(), outcomes, out / "r");
 }
 
 }  // namespace

@@ -18,6 +18,10 @@ void fill(FakeStudy& study) {
   study.close_and_unblind();
 }
 
+std::string script_of(const analysis::Outcomes& outcomes) {
+  return analysis::r_script_of(analysis::identification::mixed_model(outcomes), outcomes);
+}
+
 }  // namespace
 
 TEST_CASE("The table for a mixed model has the trials of the report and what came before them") {
@@ -26,7 +30,7 @@ TEST_CASE("The table for a mixed model has the trials of the report and what cam
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   const analysis::identification::StudyReport report =
       analysis::identification::make_report(outcomes);
-  analysis::identification::export_mixed_model(study.store(), outcomes, study.folder() / "r");
+  analysis::export_r_model(study.store(), outcomes, study.folder() / "r");
   const std::vector<CsvRow> rows = rows_of(study.folder() / "r" / "mixed_model.csv");
   REQUIRE(static_cast<int>(rows.size()) == report.trials);
   int correct = 0;
@@ -49,8 +53,7 @@ TEST_CASE("In the mixed model people differ in what is compared, and few images 
   analysis::Outcomes two = analysis::load_outcomes(pair.store(), pair.key());
   CHECK(analysis::identification::mixed_model_formula(two) ==
         "correct ~ method * image + period + (1 + method | participant)");
-  CHECK(contains(analysis::identification::mixed_model_script(two),
-                 "methods <- c(\"adaptive\", \"tv-gabor\")"));
+  CHECK(contains(script_of(two), "methods <- c(\"adaptive\", \"tv-gabor\")"));
   two.exemplars = {{"1", "2", "3", "4", "5"}, {"6", "7", "8", "9", "10"}};
   CHECK(analysis::identification::mixed_model_formula(two) ==
         "correct ~ method + period + (1 + method | participant) + (1 + method | image)");
@@ -59,19 +62,19 @@ TEST_CASE("In the mixed model people differ in what is compared, and few images 
   const analysis::Outcomes one = analysis::load_outcomes(single.store(), single.key());
   CHECK(analysis::identification::mixed_model_formula(one) ==
         "correct ~ image + (1 | participant)");
-  CHECK(contains(analysis::identification::mixed_model_script(one), "SIMULATED"));
+  CHECK(contains(script_of(one), "SIMULATED"));
 }
 
 TEST_CASE("The script of the mixed model holds all of its functions, and says what it leaves out") {
   FakeStudy study(study::identification::comparison());
   fill(study);
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
-  const std::string script = analysis::identification::mixed_model_script(outcomes);
-  CHECK(script.ends_with(std::string(analysis::identification::mixed_model_functions())));
+  const std::string script = script_of(outcomes);
+  CHECK(script.ends_with(analysis::identification::mixed_model_functions()));
   CHECK(script.ends_with("if (sys.nframe() == 0L) main(methods)\n"));
   // No fallback leaves people differing in their accuracy alone.
   CHECK_FALSE(contains(script, "(1 | participant)"));
-  analysis::identification::export_mixed_model(study.store(), outcomes, study.folder() / "r");
+  analysis::export_r_model(study.store(), outcomes, study.folder() / "r");
   const std::string notes = text_of_file(study.folder() / "r" / "mixed_model.md");
   CHECK(contains(notes, "(1 + method | participant)"));
 }

@@ -21,7 +21,7 @@ void add_sessions(FakeStudy& study, int first, int last) {
 }
 
 analysis::LookRecord record_of(FakeStudy& study) {
-  return analysis::load_outcomes(study.store(), study.key()).looked;
+  return analysis::load_outcomes(study.store(), study.key()).look_record;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "core/errors.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 
 #include <algorithm>
 
@@ -137,7 +138,7 @@ TEST_CASE("load_outcomes names the key that does not belong") {
 
   SeededEntropy other(12);
   const study::StudyKey foreign = study::make_study_key(study.key().study, other, true);
-  const std::string complaint = complaint_of<VerificationError>(
+  const std::string complaint = message_of<VerificationError>(
       [&] { static_cast<void>(analysis::load_outcomes(study.store(), foreign)); });
   CHECK(contains(complaint, foreign.study_id));
   CHECK(contains(complaint, study.key().study_id));
@@ -145,7 +146,7 @@ TEST_CASE("load_outcomes names the key that does not belong") {
   const study::Study renamed = study::parse_study(
       fake_study_text(study::identification::classification(), "brick"), ".", "x");
   const study::StudyKey changed = study::rekeyed(study.key(), renamed);
-  CHECK(contains(complaint_of<VerificationError>(
+  CHECK(contains(message_of<VerificationError>(
                      [&] { static_cast<void>(analysis::load_outcomes(study.store(), changed)); }),
                  "seal"));
 }

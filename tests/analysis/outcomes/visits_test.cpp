@@ -248,8 +248,8 @@ TEST_CASE("quality counts people by their last visit, and interim looks by compl
   CHECK(analysis::make_quality(study.store()).participants == 2);
   study.store().unblind(hours(8 * 24), "look", true);
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
-  REQUIRE(outcomes.looked.looks.size() == 1);
-  CHECK(outcomes.looked.looks[0].participants == 2);
+  REQUIRE(outcomes.look_record.looks.size() == 1);
+  CHECK(outcomes.look_record.looks[0].participants == 2);
 }
 
 }  // namespace touchtrial

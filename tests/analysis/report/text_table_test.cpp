@@ -69,13 +69,13 @@ TEST_CASE("wrapped breaks paragraphs at spaces and indents what follows") {
 }
 
 TEST_CASE("Numbers in text have signs where they differ and dashes where they do not exist") {
-  CHECK(analysis::percent_of({25, 20}) == "80.0%");
-  CHECK(analysis::percent_of({0, 0}) == "-");
+  CHECK(analysis::share_figure(0.8) == "80.0%");
+  CHECK(analysis::share_figure(std::nullopt) == analysis::kNoFigure);
   CHECK(analysis::share_range(analysis::Interval{0.0, 1.0}) == "[0.0, 100.0]");
   CHECK(analysis::points_figure(0.075) == "+7.5");
   CHECK(analysis::points_figure(-0.0001) == "0.0");
-  CHECK(analysis::signed_figure(std::nullopt, 2) == "-");
-  CHECK(analysis::signed_figure(0.4, 2) == "+0.40");
+  CHECK(analysis::signed_plain_figure(std::nullopt, 2) == analysis::kNoFigure);
+  CHECK(analysis::signed_plain_figure(0.4, 2) == "+0.40");
   CHECK(analysis::p_value(0.000244140625) == "0.000244");
 }
 

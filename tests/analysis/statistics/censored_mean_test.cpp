@@ -102,13 +102,14 @@ TEST_CASE("if all values are known the mean is Student's") {
   }
 }
 
-TEST_CASE("somebody of whom nothing is known changes neither interval nor p, but is counted") {
+TEST_CASE("somebody of whom nothing is known changes neither interval nor p, and has no share") {
   const std::vector<double> values = {-12.0, -5.0, -7.5, -3.0, -8.25};
   std::vector<Bounds> people = all_at(values);
   people.push_back({});
   const CensoredMean found = censored_mean(people);
   const MeanEstimate student = participant_mean(values, {-kOpen, kOpen});
-  CHECK(found.participants == 6);
+  CHECK(found.participants == 5);
+  CHECK(found.open == 1);
   CHECK(found.exact == 5);
   CHECK(found.mean.value() == Approx(*student.mean).epsilon(1e-9));
   CHECK(found.sd.value() == Approx(*student.sd).epsilon(1e-9));

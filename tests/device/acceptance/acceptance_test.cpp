@@ -60,14 +60,14 @@ class WatchedRehearsal final : public AcceptanceBench {
   explicit WatchedRehearsal(const DeviceModel& model) : rehearsal_(model) {}
   [[nodiscard]] DeviceInfo info() const override { return rehearsal_.info(); }
   [[nodiscard]] SafetyLimits limits() const override { return rehearsal_.limits(); }
-  void limit_force(double most_n) override { rehearsal_.limit_force(most_n); }
+  void limit_force(double max_n) override { rehearsal_.limit_force(max_n); }
   [[nodiscard]] ServoReport run(const std::string& name, Measurement& measurement) override {
     ServoReport report = rehearsal_.run(name, measurement);
-    double most_n = 0.0;
+    double max_n = 0.0;
     for (const ServoSample& sample : measurement.samples()) {
-      most_n = std::max(most_n, norm(sample.force_n));
+      max_n = std::max(max_n, norm(sample.force_n));
     }
-    greatest_n_.emplace_back(name, most_n);
+    greatest_n_.emplace_back(name, max_n);
     return report;
   }
   [[nodiscard]] Rehearsal& person() { return rehearsal_; }

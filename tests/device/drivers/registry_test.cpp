@@ -2,9 +2,9 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "study/refusal.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 
 #include <filesystem>
 #include <set>

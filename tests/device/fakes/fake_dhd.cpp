@@ -152,9 +152,9 @@ std::string calls() {
 }
 
 Vec3 within_max_force(Vec3 force_n) {
-  const double most_n = state->max_force_n;
+  const double max_n = state->max_force_n;
   const double norm_n = norm(force_n);
-  return most_n >= 0.0 && norm_n > most_n ? (most_n / norm_n) * force_n : force_n;
+  return max_n >= 0.0 && norm_n > max_n ? (max_n / norm_n) * force_n : force_n;
 }
 
 void give_m(Vec3 mm, double* x, double* y, double* z) {

@@ -141,10 +141,10 @@ void give_temperatures(double* values) {
   for (std::size_t i = 0; i < 6; ++i) values[i] = state->warmth[i];
 }
 
-void give_box(bool tells, Vec3 least_mm, Vec3 greatest_mm, double* values) {
+void give_box(bool tells, Vec3 min_mm, Vec3 max_mm, double* values) {
   if (!tells) return push_error(0x100);
-  copy(least_mm, values);
-  copy(greatest_mm, values + 3);
+  copy(min_mm, values);
+  copy(max_mm, values + 3);
 }
 
 }  // namespace

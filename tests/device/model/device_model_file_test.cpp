@@ -4,6 +4,7 @@
 #include "device/model/device_model.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 #include "support/temp_folder.hpp"
 
 #include <filesystem>
@@ -29,12 +30,7 @@ const fs::path& config() {
 
 /// \return the error for a model with this value; empty if it is accepted
 std::string refusal_of(const json& model) {
-  try {
-    static_cast<void>(parse_device_model(model.dump(), "model.json"));
-  } catch (const StudyError& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<StudyError>([&] { return parse_device_model(model.dump(), "model.json"); });
 }
 
 DeviceModel full_model() {
@@ -111,8 +107,8 @@ TEST_CASE("a model that was made in code is checked before it runs") {
       [](DeviceModel& m) -> double& { return m.structure.stiffness_n_per_mm; },
       [](DeviceModel& m) -> double& { return m.structure.tip_share; },
       [](DeviceModel& m) -> double& { return m.structure.damping_ratio; },
-      [](DeviceModel& m) -> double& { return m.workspace->greatest_mm.y; },
-      [](DeviceModel& m) -> double& { return m.workspace->least_mm.x; },
+      [](DeviceModel& m) -> double& { return m.workspace->max_mm.y; },
+      [](DeviceModel& m) -> double& { return m.workspace->min_mm.x; },
       [](DeviceModel& m) -> double& { return m.max_stiffness_n_per_mm; },
       [](DeviceModel& m) -> double& { return m.planted.force_sign_scale.z; },
       [](DeviceModel& m) -> double& { return m.planted.position_noise_mm; },

@@ -48,7 +48,7 @@ TEST_CASE("a modelled device reports its model's parameters") {
   CHECK(touch.info().continuous_force_n == 0.88);
   CHECK(touch.info().max_stiffness_n_per_mm == 0.4);
   REQUIRE(touch.info().workspace);
-  CHECK(touch.info().workspace->greatest_mm == Vec3{80.0, 60.0, 35.0});
+  CHECK(touch.info().workspace->max_mm == Vec3{80.0, 60.0, 35.0});
   const ModelledDevice ideal(device::device_model("ideal"));
   CHECK(ideal.info().max_force_n == device::SafetyLimits{}.max_force_n);
   CHECK_FALSE(ideal.info().workspace);
@@ -100,19 +100,19 @@ TEST_CASE("after halt no force acts until a person re-arms") {
 TEST_CASE("a handle that is pushed out of the workspace stops there") {
   const std::string name = GENERATE("falcon", "touch", "inverse3");
   device::DeviceModel model = device::device_model(name);
-  model.workspace->least_mm.z = -20.0;  // nearer than the others
+  model.workspace->min_mm.z = -20.0;  // nearer than the others
   ModelledDevice device(model);
   const Vec3 push_n = GENERATE(Vec3{2.5, 0.0, 0.0}, Vec3{0.0, 0.0, -2.5}, Vec3{1.5, -1.5, 1.5});
   for (int i = 0; i < 5000; ++i) REQUIRE(device.write(push_n) == device::DeviceStatus::ok);
   const device::Workspace& reach = *model.workspace;
   const Vec3 there_mm = device.dynamics().true_position_mm();
   constexpr double kGivesMm = 1.0;  // 2.6 N on 5 N/mm, and what the structure bends
-  CHECK(there_mm.x <= reach.greatest_mm.x + kGivesMm);
-  CHECK(there_mm.y >= reach.least_mm.y - kGivesMm);
-  CHECK(there_mm.z >= reach.least_mm.z - kGivesMm);
-  CHECK(there_mm.z <= reach.greatest_mm.z + kGivesMm);
+  CHECK(there_mm.x <= reach.max_mm.x + kGivesMm);
+  CHECK(there_mm.y >= reach.min_mm.y - kGivesMm);
+  CHECK(there_mm.z >= reach.min_mm.z - kGivesMm);
+  CHECK(there_mm.z <= reach.max_mm.z + kGivesMm);
   CHECK(norm(device.dynamics().true_velocity_mm_s()) < 1.0);
-  const Vec3 middle_mm = 0.5 * (reach.least_mm + reach.greatest_mm);
+  const Vec3 middle_mm = 0.5 * (reach.min_mm + reach.max_mm);
   CHECK(norm(there_mm - middle_mm) > 15.0);
 }
 

@@ -1,9 +1,9 @@
 #include "device/model/workspace_fit.hpp"
 
 #include "core/errors.hpp"
-#include "study/refusal.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 
 namespace touchtrial {
 namespace {

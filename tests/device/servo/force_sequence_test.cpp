@@ -55,7 +55,7 @@ TEST_CASE("a sequence of forces reports the hand's contact with each") {
   CHECK(sequence.first().contact_ticks == 0);
   CHECK(sequence.second().ticks == 20);
   CHECK(sequence.second().contact_ticks == 19);
-  CHECK(sequence.second().greatest_force_n == 2.0);
+  CHECK(sequence.second().max_force_n == 2.0);
 }
 
 TEST_CASE("the change from one force to the other counts the ticks that an overrun left out") {

@@ -36,7 +36,7 @@ class Recorder final : public HapticDevice {
   }
   [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override {
     told_n = force_n;
-    most_n = std::max(most_n, norm(force_n));
+    max_n = std::max(max_n, norm(force_n));
     return DeviceStatus::ok;
   }
   [[nodiscard]] Vec3 support_force_n(const DeviceSample& sample) noexcept override {
@@ -54,7 +54,7 @@ class Recorder final : public HapticDevice {
   DeviceSample at{{10.0, 20.0, -5.0}, {100.0, -50.0, 25.0}, 9};
   Vec3 told_n;
   Vec3 asked_mm;
-  double most_n = 0.0;
+  double max_n = 0.0;
   bool halted = false;
   int calibrated = 0;
   DeviceFault fault_now = DeviceFault::warm_motors;
@@ -105,8 +105,8 @@ TEST_CASE("limits of a scaled device apply to felt and commanded forces, in ever
   CHECK(info.continuous_force_n == Approx(0.5));
   CHECK(info.max_stiffness_n_per_mm == Approx(0.8 * 0.5 / 1.6));
   CHECK(info.max_damping_n_s_per_mm == Approx(0.004 * 0.5 / 1.6));
-  CHECK(info.workspace->greatest_mm == Vec3{32.0, 30.0, 32.0});
-  CHECK(info.workspace->least_mm == Vec3{-32.0, -30.0, -32.0});
+  CHECK(info.workspace->max_mm == Vec3{32.0, 30.0, 32.0});
+  CHECK(info.workspace->min_mm == Vec3{-32.0, -30.0, -32.0});
   // A device that delivers more than it is told gets no higher limit.
   const DeviceInfo strong = scaled(own, {{3.0, 2.0, 2.0}, {0.5, 0.5, 0.5}});
   CHECK(strong.max_force_n == own.max_force_n);
@@ -139,7 +139,7 @@ TEST_CASE("the safety chain's limits apply to true newtons") {
   options.limits.engage_force_n = 1000.0;
   options.limits.ramp_up_s = 0.0;
   static_cast<void>(device::run_servo_in_virtual_time(device, force, kept, options));
-  CHECK(recorder.most_n == Approx(1.5));
+  CHECK(recorder.max_n == Approx(1.5));
 }
 
 TEST_CASE("a driver is opened with the scales of its settings") {

@@ -81,7 +81,7 @@ TEST_CASE("the servo on a servo thread never begins a tick before its time") {
   ScriptedDevice device;
   ConstantForce force({0.0, 0.0, 0.5});
   KeptSamples kept;
-  device::PacedClock clock(device::PacedClock::usual_spin(servo.scheduling().policy));
+  device::PacedClock clock(device::PacedClock::default_spin(servo.scheduling().policy));
   device::ServoReport report;
   const device::ServoClock::Time before = clock.now();
   servo.run([&] {
@@ -103,7 +103,7 @@ TEST_CASE(
     ConstantForce force({0.0, 0.0, 0.4});
     KeptSamples kept;
     std::atomic<std::int64_t> beats{0};
-    device::PacedClock clock(device::PacedClock::usual_spin(device::SchedulingPolicy::other));
+    device::PacedClock clock(device::PacedClock::default_spin(device::SchedulingPolicy::other));
     // An hour, unless something ends it.
     device::RunningServo running(thread, control, [&] {
       report = device::run_servo(device, force, kept, {.limit_ticks = 3'600'000}, clock,

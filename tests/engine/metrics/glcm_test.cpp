@@ -2,9 +2,9 @@
 
 #include "engine/example_images.hpp"
 #include "engine/reference/glcm_reference.hpp"
-#include "engine/refusal.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -133,10 +133,15 @@ TEST_CASE("glcm_statistics turn with the image") {
 }
 
 TEST_CASE("glcm_statistics refuse an image in which a direction has no pair") {
-  CHECK_THAT(refusal_of([] { (void)engine::glcm_statistics(GreyImage(1, 9)); }),
-             names("glcm_statistics 1 9 2"));
-  CHECK_FALSE(refusal_of([] { (void)engine::glcm_statistics(GreyImage(9, 1)); }).empty());
-  CHECK_FALSE(refusal_of([] { (void)engine::glcm_statistics(GreyImage()); }).empty());
+  CHECK_THAT(
+      message_of<std::invalid_argument>([] { (void)engine::glcm_statistics(GreyImage(1, 9)); }),
+      names("glcm_statistics 1 9 2"));
+  CHECK_FALSE(message_of<std::invalid_argument>([] {
+                (void)engine::glcm_statistics(GreyImage(9, 1));
+              }).empty());
+  CHECK_FALSE(message_of<std::invalid_argument>([] {
+                (void)engine::glcm_statistics(GreyImage());
+              }).empty());
 }
 
 }  // namespace

@@ -4,9 +4,9 @@
 #include "engine/example_images.hpp"
 #include "engine/metrics/ssim_deficits.hpp"
 #include "engine/reference/ssim_reference.hpp"
-#include "engine/refusal.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -175,12 +175,12 @@ TEST_CASE("ms_ssim in floats keeps its precision on textures") {
 }
 
 TEST_CASE("ms_ssim refuses images of different or too small sizes") {
-  CHECK_THAT(
-      refusal_of([] { (void)engine::ms_ssim<float>(GreyImage(200, 210), GreyImage(210, 200)); }),
-      names("ms_ssim 200 210"));
-  CHECK_THAT(
-      refusal_of([] { (void)engine::ms_ssim<float>(GreyImage(500, 160), GreyImage(500, 160)); }),
-      names("ms_ssim 500 160 161"));
+  CHECK_THAT(message_of<std::invalid_argument>(
+                 [] { (void)engine::ms_ssim<float>(GreyImage(200, 210), GreyImage(210, 200)); }),
+             names("ms_ssim 200 210"));
+  CHECK_THAT(message_of<std::invalid_argument>(
+                 [] { (void)engine::ms_ssim<float>(GreyImage(500, 160), GreyImage(500, 160)); }),
+             names("ms_ssim 500 160 161"));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "support/catch.hpp"
 #include "support/guarded_bytes.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,12 +26,7 @@ Bytes with_value(Bytes file, std::size_t offset, Value value) {
 }
 
 std::string refusal_of(const Bytes& file) {
-  try {
-    static_cast<void>(engine::decode_field(file, kFieldPath));
-  } catch (const FileError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return message_of<FileError>([&] { return engine::decode_field(file, kFieldPath); });
 }
 
 TEST_CASE("encode_field lays the header and the samples out as documented") {
@@ -194,12 +190,7 @@ std::string with(const std::string& part, const std::string& other) {
 }
 
 std::string refusal_of(const std::string& text) {
-  try {
-    static_cast<void>(engine::manifest_from_json(text, kManifestPath));
-  } catch (const FileError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return message_of<FileError>([&] { return engine::manifest_from_json(text, kManifestPath); });
 }
 
 /// Whether a text is refused at these places.

@@ -50,7 +50,7 @@ std::vector<Felt> noisy_stroke(std::uint64_t seed, double scale) {
 TEST_CASE("a sine is felt in the band of its wavelength, with its root mean square") {
   const int band = GENERATE(0, 1, 2, 3, 4);
   const double speed_mm_s = GENERATE(80.0, 100.0);
-  const double wavelength_mm = engine::kLongestFeltMm / std::exp2(band + 0.5);
+  const double wavelength_mm = engine::kMaxFeltMm / std::exp2(band + 0.5);
   constexpr double kAmplitudeN = 0.1;
   const auto felt = stroke(speed_mm_s, 4096, [&](double x_mm) {
     const double wave = kAmplitudeN * std::sin(2.0 * kPi * x_mm / wavelength_mm);
@@ -157,7 +157,7 @@ TEST_CASE("felt bands agree with a slow Welch estimate") {
     for (std::size_t i = 0; i < 256; ++i) window.push_back(felt[first + i].force_n.z);
     const std::vector<double> power = slow_periodogram(window);
     for (int band = 0; band < engine::kFeltBands; ++band) {
-      const double low = 110.0 / engine::kLongestFeltMm * std::exp2(band) * 256.0 / kRateHz;
+      const double low = 110.0 / engine::kMaxFeltMm * std::exp2(band) * 256.0 / kRateHz;
       expected[band] += power_between(power, low, 2.0 * low);
     }
     ++windows;

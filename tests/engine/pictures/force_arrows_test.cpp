@@ -3,8 +3,8 @@
 #include "core/errors.hpp"
 #include "engine/example_images.hpp"
 #include "engine/image_file.hpp"
-#include "engine/refusal.hpp"
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 #include "support/temp_folder.hpp"
 
 #include <algorithm>
@@ -84,10 +84,10 @@ TEST_CASE("force arrows can be drawn for any size of texture") {
 
 TEST_CASE("force arrows refuse a field of another size and a missing folder") {
   const GreyImage image = noise_image({6, 7});
-  CHECK_FALSE(refusal_of([&] {
+  CHECK_FALSE(message_of<std::invalid_argument>([&] {
                 (void)write_force_arrows("x.png", image, force_of(noise_image({7, 6})));
               }).empty());
-  CHECK_FALSE(refusal_of([] { (void)engine::strongest_patch({}); }).empty());
+  CHECK_FALSE(message_of<std::invalid_argument>([] { (void)engine::strongest_patch({}); }).empty());
   CHECK_THROWS_AS(write_force_arrows("/no/such/folder/x.png", image, force_of(image)), FileError);
 }
 

@@ -1,9 +1,9 @@
 #include "engine/simd/targets.hpp"
 
 #include "engine/every_simd_target.hpp"
-#include "engine/refusal.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -43,8 +43,8 @@ TEST_CASE("force_simd_target leaves one target to choose from, and afterwards al
 }
 
 TEST_CASE("force_simd_target refuses a name that the machine does not have") {
-  CHECK_THAT(refusal_of([] { force_simd_target("AVX9"); }), names("AVX9"));
-  CHECK_FALSE(refusal_of([] { force_simd_target(""); }).empty());
+  CHECK_THAT(message_of<std::invalid_argument>([] { force_simd_target("AVX9"); }), names("AVX9"));
+  CHECK_FALSE(message_of<std::invalid_argument>([] { force_simd_target(""); }).empty());
 }
 
 }  // namespace

@@ -2,9 +2,9 @@
 #include "core/errors.hpp"
 #include "study/order_test_support.hpp"
 #include "study/protocol.hpp"
-#include "study/refusal.hpp"
 #include "study/study_examples.hpp"
 #include "study/study_key.hpp"
+#include "support/refusal.hpp"
 
 #include <algorithm>
 #include <set>

@@ -216,6 +216,14 @@ void print_unassumed(int runs) {
   print({.words = "unequal levels", .levels = {-40, -33, -28, -24, -21, -19, -17, -14, -11, -6, 0}},
         "quest-plus");
   print({.words = "levels 5 dB apart", .levels = decibels(-40, 0, 5)}, "quest-plus");
+  print({.words = "threshold -6 .. 0 dB, slope 1.17",
+         .threshold = {-6.0, 0.0},
+         .slope = {1.17, 1.17}},
+        "quest-plus");
+  print({.words = "threshold -40 .. -34 dB, lapse rate 0.10",
+         .threshold = {-40.0, -34.0},
+         .lapse = {0.1, 0.1}},
+        "quest-plus");
 }
 
 /// QUEST+ with those for whom 60 trials are too few.

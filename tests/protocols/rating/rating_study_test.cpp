@@ -16,6 +16,7 @@
 #include "support/as_recorded.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -68,12 +69,7 @@ study::Study study_of(const json& file) {
 }
 
 std::string refusal_of(const json& file) {
-  try {
-    static_cast<void>(study_of(file));
-  } catch (const StudyError& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<StudyError>([&] { return study_of(file); });
 }
 
 study::ScheduleDraw draw_of(std::uint64_t seed, int method_order = 0) {

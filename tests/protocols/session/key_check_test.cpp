@@ -5,6 +5,7 @@
 #include "protocols/session/tiny_study.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 
 #include <functional>
 #include <string>
@@ -22,17 +23,13 @@ TinyStudyOptions with_pictures() {
   return {.pictures = true};
 }
 
-/// What a station's file that was changed in one way is refused with.
+/// What a station's file that was changed in one way is refused with; empty if it is accepted.
 std::string fault_of(const TinyStudy& study,
                      const std::function<void(study::StationKey&)>& change) {
   study::StationKey station = station_of(study.key());
   change(station);
-  try {
-    session::require_opens(study.key(), station, study.pack());
-  } catch (const VerificationError& error) {
-    return error.what();
-  }
-  return "nothing";
+  return message_of<VerificationError>(
+      [&] { session::require_opens(study.key(), station, study.pack()); });
 }
 
 }  // namespace
@@ -52,10 +49,10 @@ TEST_CASE("a station's file with other codes of practice than the key is refused
   options.practised = 2;
   const TinyStudy study(options);
   using Key = study::StationKey;
-  CHECK(fault_of(study, [](Key&) {}) == "nothing");
-  CHECK(fault_of(study, [](Key& key) { std::swap(key.practice[0], key.practice[1]); }) !=
-        "nothing");
-  CHECK(fault_of(study, [](Key& key) { key.practice.pop_back(); }) != "nothing");
+  CHECK(fault_of(study, [](Key&) {}).empty());
+  CHECK_FALSE(
+      fault_of(study, [](Key& key) { std::swap(key.practice[0], key.practice[1]); }).empty());
+  CHECK_FALSE(fault_of(study, [](Key& key) { key.practice.pop_back(); }).empty());
 }
 
 TEST_CASE("every station of a divided study is proved, and an older file of one is not") {
@@ -83,7 +80,7 @@ TEST_CASE("every station of a divided study is proved, and an older file of one 
 TEST_CASE("a station's file that differs from the key in anything is refused") {
   const TinyStudy study(with_pictures());
   using Key = study::StationKey;
-  CHECK(fault_of(study, [](Key&) {}) == "nothing");
+  CHECK(fault_of(study, [](Key&) {}).empty());
   const std::vector<void (*)(Key&)> changes = {
       [](Key& key) { key.study_id = "0123"; },
       [](Key& key) { key.seal[0] ^= 1U; },
@@ -96,7 +93,7 @@ TEST_CASE("a station's file that differs from the key in anything is refused") {
       [](Key& key) { key.station.secret[0] ^= 1U; },
       [](Key& key) { key.station.ranges.front().first = 2; },
       [](Key& key) { key.certificate[63] ^= 1U; }};
-  for (const auto& change : changes) CHECK(fault_of(study, change) != "nothing");
+  for (const auto& change : changes) CHECK_FALSE(fault_of(study, change).empty());
 }
 
 TEST_CASE("another study's pack, an altered field and an altered picture are refused") {

@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 
 #include <set>
 
@@ -25,12 +26,7 @@ simulation::SubjectModel parsed(const json& subject) {
 
 /// The error that a subject is refused with; empty if it is accepted.
 std::string refusal(const json& subject) {
-  try {
-    static_cast<void>(parsed(subject));
-  } catch (const StudyError& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<StudyError>([&] { return parsed(subject); });
 }
 
 study::Study study_of(const std::vector<std::string>& labels) {
@@ -124,7 +120,7 @@ TEST_CASE("every key of a subject file is read, and written back to the last dig
                                           .hard_s = 2.25,
                                           .margin = 3.5,
                                           .spread = 0.42,
-                                          .longest_s = 29.0};
+                                          .max_s = 29.0};
   model.given_function = simulation::GivenFunction{-18.0, 2.0, 3.75, 0.024, 1.5, 0.5};
   const std::string written = simulation::subject_model_json(model);
   CHECK(json::parse(written) == file);

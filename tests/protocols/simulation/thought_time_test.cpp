@@ -56,7 +56,7 @@ TEST_CASE("thought above its shift is lognormal") {
 
 TEST_CASE("no thought is shorter than its shift or longer than the longest") {
   const simulation::ThoughtTime thought{
-      .shift_s = 0.5, .easy_s = 1.0, .hard_s = 4.0, .spread = 2.0, .longest_s = 6.0};
+      .shift_s = 0.5, .easy_s = 1.0, .hard_s = 4.0, .spread = 2.0, .max_s = 6.0};
   const std::vector<double> times = times_s(thought, 0.0);
   CHECK(times.front() >= 0.5);
   CHECK(times.front() < 0.6);

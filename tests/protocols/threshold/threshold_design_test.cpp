@@ -8,6 +8,7 @@
 #include "study/study_sections.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -48,12 +49,7 @@ study::Study study_of(const json& file) {
 }
 
 std::string refusal_of(const json& file) {
-  try {
-    static_cast<void>(study_of(file));
-  } catch (const StudyError& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<StudyError>([&] { return study_of(file); });
 }
 
 study::ScheduleDraw draw_of(std::uint64_t seed) {

@@ -179,14 +179,14 @@ TEST_CASE("an older copy of a file and one that forked are named, and send nothi
   other.send(forked);
   const TableInMemory::Row& last = other.table->kept.back();
   lab.table->put(last.row, last.chain, last.session);
-  CHECK(mentions(lab.fetch_refusal(), "4"));
+  CHECK(names(lab.fetch_refusal(), "4"));
 }
 
 TEST_CASE("a lost row is missed by merging, and sent again") {
   ServedLab lab;
   lab.send(lab.a);
   lab.table->kept.erase(lab.table->kept.begin());
-  CHECK(mentions(lab.fetch_refusal(), "2"));
+  CHECK(names(lab.fetch_refusal(), "2"));
   CHECK(lab.send(lab.a).sent == Names{"P1"});
   CHECK((lab.fetched() == lab.merged({lab.a})));
 }
@@ -197,7 +197,7 @@ TEST_CASE("sessions of another study are refused, at sending and at merging") {
   other.seal = digest_of("another seal");
   const fs::path strange = lab.station("strange.db", {{"P9", 9, minutes(9)}}, other);
   lab.send(lab.a);
-  CHECK(mentions(lab.send_refusal(strange), "1 lab_a"));
+  CHECK(names_in_order(lab.send_refusal(strange), "1 lab_a"));
   ServedLab elsewhere;
   elsewhere.send(strange);
   const TableInMemory::Row& row = elsewhere.table->kept.front();

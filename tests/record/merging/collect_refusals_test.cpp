@@ -25,14 +25,17 @@ std::string refused_after(const std::string& sql) {
 }  // namespace
 
 TEST_CASE("a station that was tampered with is refused by file, session and event") {
-  CHECK(mentions(refused_after("UPDATE events SET body = replace(body, '\"trial\":1', "
-                               "'\"trial\":2') WHERE session = 2 AND kind = 'answered'"),
-                 "2 4"));
-  CHECK(mentions(refused_after("DELETE FROM events WHERE session = 0 AND sequence = 2"), "2"));
-  CHECK(mentions(refused_after("UPDATE events SET own_session = 7 WHERE session = 2"), "2 0"));
-  CHECK(mentions(refused_after("DELETE FROM traces WHERE session = 1 AND trial = 1"), "1 5 1"));
-  CHECK(mentions(refused_after("UPDATE participant_keys SET wrapped = x'00' WHERE session = 2"),
-                 "2 0"));
+  CHECK(names_in_order(refused_after("UPDATE events SET body = replace(body, '\"trial\":1', "
+                                     "'\"trial\":2') WHERE session = 2 AND kind = 'answered'"),
+                       "2 4 [altered-event]"));
+  CHECK(names(refused_after("DELETE FROM events WHERE session = 0 AND sequence = 2"), "2"));
+  CHECK(names_in_order(refused_after("UPDATE events SET own_session = 7 WHERE session = 2"),
+                       "2 0 [other-chain]"));
+  CHECK(names_in_order(refused_after("DELETE FROM traces WHERE session = 1 AND trial = 1"),
+                       "1 5 1 [missing-trace]"));
+  CHECK(
+      names_in_order(refused_after("UPDATE participant_keys SET wrapped = x'00' WHERE session = 2"),
+                     "2 0 [altered-key]"));
 }
 
 TEST_CASE("tampering with a station gives another error than a station that cannot be merged") {
@@ -46,7 +49,7 @@ TEST_CASE("a file that is no station's database is refused with the remedy") {
   TwoStations lab;
   CHECK(contains(merge_refusal(lab, {lab.a, lab.file("none.db")}), "none.db"));
   fs::resize_file(lab.b, 20'000);
-  CHECK(mentions(merge_refusal(lab, {lab.a, lab.b}), "B.db"));
+  CHECK(names(merge_refusal(lab, {lab.a, lab.b}), "B.db"));
 }
 
 TEST_CASE("an existing file is never overwritten") {
@@ -59,25 +62,24 @@ TEST_CASE("an existing file is never overwritten") {
 TEST_CASE("stations of different studies, of pilots or of simulated people are not pooled") {
   Lab lab;
   const fs::path a = lab.station("A.db", {{"P1", 1, minutes(1)}});
-  const auto refused = [&](void (*change)(StudyCommitment&)) {
+  const auto refused = [&](const std::string& code, void (*change)(StudyCommitment&)) {
     StudyCommitment other = lab_commitment();
     change(other);
     static int number = 0;
     const fs::path b = lab.station("B" + std::to_string(++number), {{"P2", 2, minutes(2)}}, other);
     const std::string line = merge_refusal(lab, {a, b});
-    CHECK(contains(line, a.string()));
-    CHECK(contains(line, b.string()));
+    CHECK(names(line, a.string() + " " + b.string() + " " + code));
   };
   const auto is_other_study = [](StudyCommitment& c) {
     c.study_id = "ff";
     c.station = station_identity(c.study_id);
   };
-  refused(is_other_study);
-  refused([](StudyCommitment& c) { c.simulated = true; });
-  refused([](StudyCommitment& c) { c.pilot = true; });
-  refused([](StudyCommitment& c) { c.seal = digest_of("x"); });
-  refused([](StudyCommitment& c) { c.pack = digest_of("x"); });
-  refused([](StudyCommitment& c) { c.configuration = "{}"; });
+  refused("[other-study]", is_other_study);
+  refused("[simulated]", [](StudyCommitment& c) { c.simulated = true; });
+  refused("[pilot]", [](StudyCommitment& c) { c.pilot = true; });
+  refused("[other-seal]", [](StudyCommitment& c) { c.seal = digest_of("x"); });
+  refused("[other-pack]", [](StudyCommitment& c) { c.pack = digest_of("x"); });
+  refused("[other-configuration]", [](StudyCommitment& c) { c.configuration = "{}"; });
   CHECK(refusal_of([&] {
           StudyCommitment newer = lab_commitment();
           newer.program_version = "9.9";
@@ -97,21 +99,21 @@ TEST_CASE("pilots on a screen are not pooled with pilots by hand") {
     store.add_session(session_of(1, 3, stroking(20, 0.05), opening), wrapped_key_of(1),
                       kUtc + minutes(2));
   });
-  CHECK(mentions(merge_refusal(lab, {felt, seen}), "1"));
+  CHECK(names(merge_refusal(lab, {felt, seen}), "1"));
 }
 
 TEST_CASE("a participant id that was used at two stations is refused, and both are named") {
   TwoStations lab;
   const fs::path c = lab.station("D.db", {{"P8", 8, minutes(5)}, {"P3", 9, minutes(35)}});
   const std::string line = merge_refusal(lab, {lab.a, lab.b, c});
-  CHECK(mentions(line, "P3 2 " + lab.a.string() + " 2 " + c.string()));
+  CHECK(names_in_order(line, "P3 2 " + lab.a.string() + " 2 " + c.string()));
 }
 
 TEST_CASE("an enrolment number that was used at two stations is refused, and both are named") {
   TwoStations lab;
   const fs::path c = lab.station("D.db", {{"P9", 4, minutes(5)}});
-  CHECK(mentions(merge_refusal(lab, {lab.a, lab.b, c}),
-                 "4 P9 P4 1 " + c.string() + " 2 " + lab.b.string()));
+  CHECK(names_in_order(merge_refusal(lab, {lab.a, lab.b, c}),
+                       "4 P9 P4 1 " + c.string() + " 2 " + lab.b.string()));
 }
 
 TEST_CASE(
@@ -122,14 +124,14 @@ TEST_CASE(
   Lab::at(lab.a, [](StudyStore& store) { visit(store, {{"P5", 5, minutes(50)}}); });
   Lab::at(fork, [](StudyStore& store) { visit(store, {{"P6", 6, minutes(50)}}); });
   const std::string line = merge_refusal(lab, {lab.a, lab.b, fork});
-  CHECK(mentions(line, lab.a.string() + " " + fork.string() + " 5 3 P5"));
+  CHECK(names_in_order(line, lab.a.string() + " " + fork.string() + " 5 3 P5"));
 }
 
 TEST_CASE("a collected file with decisions of its own is not collected again") {
   TwoStations lab;
   merge({lab.a, lab.b}, lab.file("C.db"));
   Lab::at(lab.file("C.db"), [](StudyStore& store) { store.exclude(1, kUtc, "fell asleep"); });
-  CHECK(mentions(merge_refusal(lab, {lab.file("C.db"), lab.a}), "C.db participant-excluded"));
+  CHECK(names_in_order(merge_refusal(lab, {lab.file("C.db"), lab.a}), "C.db participant-excluded"));
 }
 
 TEST_CASE("a collected study takes no sessions and no replacements") {

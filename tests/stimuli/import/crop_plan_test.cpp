@@ -87,9 +87,9 @@ TEST_CASE(
   for (int round = 0; round < 300; ++round) {
     GreyImage opacity(1 + static_cast<int>(random.below(7)), 1 + static_cast<int>(random.below(7)));
     for (std::uint8_t& sample : opacity.samples()) sample = random.below(4) > 0 ? 255 : 0;
-    const int least_px = 1 + static_cast<int>(random.below(5));
+    const int min_px = 1 + static_cast<int>(random.below(5));
     const auto value = [&](PhotoSize size) {
-      return std::pair(std::min({size.height_px, size.width_px, least_px}),
+      return std::pair(std::min({size.height_px, size.width_px, min_px}),
                        size.height_px * size.width_px);
     };
     std::pair most(0, 0);
@@ -105,7 +105,7 @@ TEST_CASE(
         }
       }
     }
-    const PhotoPart found = opaque_part(opacity, least_px);
+    const PhotoPart found = opaque_part(opacity, min_px);
     CHECK(value(found.size_px) == most);
     CHECK(std::ranges::count(cut(opacity, found).samples(), 0) == 0);
   }

@@ -2,6 +2,7 @@
 
 #include "analysis/outcomes/outcomes.hpp"
 #include "analysis/outcomes/recorded_pack.hpp"
+#include "analysis/report/page/wording.hpp"
 #include "analysis/report/text_figures.hpp"
 #include "core/named.hpp"
 #include "protocols/identification/analysis/cues/cue_statistics.hpp"
@@ -183,24 +184,22 @@ MethodCues method_cues(const FeltStudy& study, int method, const std::string& la
   return cues;
 }
 
-using Warnings = std::vector<std::string>;
+using WarningTexts = std::vector<std::string>;
 
 constexpr int kMinTrials = 2;
 
-void warn_of_study(const Outcomes& outcomes, const CueReport& report, Warnings& warnings) {
+void warn_of_study(const Outcomes& outcomes, const CueReport& report, WarningTexts& warnings) {
   if (outcomes.visual) {
-    warnings.emplace_back(
-        "Seen on a screen, not felt: the observers use forces that no hand of this study had.");
+    warnings.emplace_back("Seen on a screen, not felt: the observers use forces that nobody felt.");
   }
   if (report.plane_source == kPlaneFromTraces) {
     warnings.emplace_back(
         "Neither the study's pack nor its images were found: the parts of the plane are inferred "
-        "from where hands had contact, so what `everything` learns from them is a little less "
-        "certain.");
+        "from where hands had contact, so `everything` is slightly less accurate.");
   }
 }
 
-void warn_of_trials(const MethodCues& cues, Warnings& warnings) {
+void warn_of_trials(const MethodCues& cues, WarningTexts& warnings) {
   if (cues.without_trace > 0) {
     warnings.push_back(
         fmt::format("{}: {} without a trace left out; accuracy here is that of the other trials.",
@@ -208,23 +207,22 @@ void warn_of_trials(const MethodCues& cues, Warnings& warnings) {
   }
   if (cues.unjudged > 0) {
     warnings.push_back(
-        fmt::format("{}: {} left out, because no other trial of the class tells an observer what "
-                    "it feels like.",
+        fmt::format("{}: {} left out, because no other trial of the class exists for the observers "
+                    "to learn from.",
                     cues.method, counted(cues.unjudged, "trial")));
   }
 }
 
-void warn_of_numbers(const MethodCues& cues, Warnings& warnings) {
+void warn_of_numbers(const MethodCues& cues, WarningTexts& warnings) {
   if (cues.trials == 0) {
     warnings.push_back(cues.method + ": no trial can be judged by the observers.");
     return;
   }
   if (cues.min_per_class < kMinTrials) {
-    warnings.push_back(
-        fmt::format("{}: somebody has fewer than {} trials of a class, so the observers know what "
-                    "that hand feels of it only from other hands, and the available accuracy is "
-                    "too low.",
-                    cues.method, kMinTrials));
+    warnings.push_back(fmt::format(
+        "{}: somebody has fewer than {} trials of a class, so the observers learn what it feels "
+        "like only from other participants, and the available accuracy is too low.",
+        cues.method, kMinTrials));
   }
   const auto participants = static_cast<int>(cues.participants.size());
   if (participants < kMinForVerdict) {
@@ -239,24 +237,23 @@ void warn_of_numbers(const MethodCues& cues, Warnings& warnings) {
   }
 }
 
-void warn_of_figures(const MethodCues& cues, double chance, Warnings& warnings) {
+void warn_of_figures(const MethodCues& cues, double chance, WarningTexts& warnings) {
   for (const ObserverFigures& one : cues.observers) {
     const std::string_view title = title_of(one.cue);
     if (one.mean.mean.value_or(0.0) <= chance) {
-      warnings.push_back(
-          fmt::format("{}: {} tells the classes apart no better than chance, so nothing can be "
-                      "said about how well it was used.",
-                      cues.method, title));
+      warnings.push_back(fmt::format(
+          "{}: {} tells the classes apart no better than chance, so its use cannot be judged.",
+          cues.method, title));
     } else if (one.wanted_accuracy > 0.0 && !one.is_as_uncertain()) {
       const bool less = one.matched_accuracy < one.wanted_accuracy;
       warnings.push_back(fmt::format(
-          "{}: {} cannot be as uncertain as participants: {} it is right in {} of trials, and they "
-          "in {}. {}",
+          "{}: {} cannot be as uncertain as participants: {} it is right in {} of trials, "
+          "participants in {}. {}",
           cues.method, title, less ? "even without noise" : "even with the most noise",
-          percent_of_share(one.matched_accuracy), percent_of_share(one.wanted_accuracy),
+          share_figure(one.matched_accuracy), share_figure(one.wanted_accuracy),
           less ? "They used something else as well, or the observer has too few trials to learn "
                  "from."
-               : "Something other than noise makes them err."));
+               : "Participants' errors have causes other than noise."));
     } else if (one.efficiency.value.value_or(0.0) > 1.0) {
       warnings.push_back(
           fmt::format("{}: participants did better than {} alone allows: they used something else "
@@ -268,7 +265,7 @@ void warn_of_figures(const MethodCues& cues, double chance, Warnings& warnings) 
 
 /// \param report  complete except for its warnings
 std::vector<std::string> cue_warnings(const Outcomes& outcomes, const CueReport& report) {
-  Warnings warnings;
+  WarningTexts warnings;
   warn_of_study(outcomes, report, warnings);
   for (const MethodCues& cues : report.methods) {
     warn_of_trials(cues, warnings);

@@ -95,6 +95,12 @@ class Sums {
   std::vector<double> values_;
 };
 
+Sums sum_of(const std::vector<Sums>& each, int classes) {
+  Sums together(classes);
+  for (const Sums& one : each) together.add(one);
+  return together;
+}
+
 /// Indices into the numbers of a study: kObservers of each kind.
 enum : std::size_t {
   kEfficiencyAt = 0,
@@ -203,7 +209,7 @@ CueFigure jackknifed(const Numbers& observed, const std::vector<Numbers>& withou
 }
 
 /// The two matched observers with the smallest divergences.
-std::optional<CueMatch> match_of(const Numbers& observed, const std::vector<Numbers>& without) {
+std::optional<CueMatch> cue_match_of(const Numbers& observed, const std::vector<Numbers>& without) {
   std::array<std::size_t, kObservers> order{};
   std::array<double, kObservers> divergence{};
   for (std::size_t i = 0; i < kObservers; ++i) {
@@ -255,24 +261,33 @@ std::optional<double> answer_divergence(std::span<const double> a, std::span<con
   return sum / presented;
 }
 
-CueStatistics cue_statistics(std::span<const ParticipantAnswers> participants, std::uint64_t index,
-                             int jobs) {
+CueStatistics cue_divergences(std::span<const ParticipantAnswers> participants) {
   if (participants.empty()) return {};
+  const std::vector<Sums> each(participants.begin(), participants.end());
   const int classes = participants.front().classes;
-  std::vector<Sums> each;
-  Sums together(classes);
-  for (const ParticipantAnswers& one : participants) together.add(each.emplace_back(one));
-  const Numbers observed = divergences_of(together);
-  const Draws draws = drawn(each, classes, index, jobs);
+  const Numbers observed = divergences_of(sum_of(each, classes));
   const std::vector<Numbers> without = without_each(each, classes);
   CueStatistics statistics;
   for (std::size_t i = 0; i < kObservers; ++i) {
-    statistics.efficiency[i] = number_at(kEfficiencyAt + i, observed, draws);
-    statistics.corrected[i] = number_at(kCorrectedAt + i, observed, draws);
     statistics.divergence[i] = jackknifed(observed, without, kBits, kDivergenceAt + i);
     statistics.matched_divergence[i] = jackknifed(observed, without, kBits, kMatchedAt + i);
   }
-  statistics.match = match_of(observed, without);
+  statistics.match = cue_match_of(observed, without);
+  return statistics;
+}
+
+CueStatistics cue_statistics(std::span<const ParticipantAnswers> participants, std::uint64_t index,
+                             int jobs) {
+  CueStatistics statistics = cue_divergences(participants);
+  if (participants.empty()) return statistics;
+  const std::vector<Sums> each(participants.begin(), participants.end());
+  const int classes = participants.front().classes;
+  const Numbers observed = efficiencies_of(sum_of(each, classes));
+  const Draws draws = drawn(each, classes, index, jobs);
+  for (std::size_t i = 0; i < kObservers; ++i) {
+    statistics.efficiency[i] = number_at(kEfficiencyAt + i, observed, draws);
+    statistics.corrected[i] = number_at(kCorrectedAt + i, observed, draws);
+  }
   return statistics;
 }
 

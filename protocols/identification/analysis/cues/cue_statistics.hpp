@@ -92,4 +92,7 @@ struct CueStatistics {
 [[nodiscard]] CueStatistics cue_statistics(std::span<const ParticipantAnswers> participants,
                                            std::uint64_t index, int jobs = 0);
 
+/// The divergences and the match of cue_statistics, without efficiencies and without draws.
+[[nodiscard]] CueStatistics cue_divergences(std::span<const ParticipantAnswers> participants);
+
 }  // namespace touchtrial::analysis::identification

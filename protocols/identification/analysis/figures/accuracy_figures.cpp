@@ -66,7 +66,7 @@ Layer class_layer(const StudyReport& report, std::size_t number) {
 }
 
 std::string alt_of_methods(const StudyReport& report) {
-  std::string alt = "Accuracy by class and method, with 95 % " + interval_name(report) + ".";
+  std::string alt = "Accuracy by class and method, with 95% " + interval_name(report) + ".";
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
     const MethodReport& method = report.methods[i];
     alt += fmt::format(" {}:", method.method);
@@ -112,7 +112,7 @@ std::vector<Datum> paper_rows(std::span<const std::string> classes) {
 }
 
 std::string alt_of_accuracy(const StudyReport& report) {
-  std::string alt = "Accuracy by class, with 95 % " + interval_name(report) + ":";
+  std::string alt = "Accuracy by class, with 95% " + interval_name(report) + ":";
   const MethodReport& method = report.methods.front();
   for (std::size_t i = 0; i < method.accuracy.size(); ++i) {
     const ClassAccuracy& at = method.accuracy[i];
@@ -145,8 +145,8 @@ std::optional<Figure> methods_figure(const StudyReport& report) {
   figure.panels = {std::move(panel)};
   figure.alt = alt_of_methods(report);
   figure.caption =
-      stamped(report.simulated, "accuracy by presented class and method with its 95 % " +
-                                    interval_name(report) + ".");
+      stamped(report.simulated,
+              "accuracy by presented class and method with its 95% " + interval_name(report) + ".");
   return figure;
 }
 
@@ -180,7 +180,7 @@ std::optional<Figure> accuracy_figure(const StudyReport& report, bool paper_valu
   }
   figure.panels = {std::move(panel)};
   figure.alt = alt_of_accuracy(report);
-  figure.caption = stamped(report.simulated, "accuracy by presented class with its 95 % " +
+  figure.caption = stamped(report.simulated, "accuracy by presented class with its 95% " +
                                                  interval_name(report) +
                                                  ". Trials without a response are wrong.");
   if (paper_values) {

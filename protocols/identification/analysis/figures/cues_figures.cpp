@@ -157,7 +157,7 @@ std::optional<Figure> cues_figure(const CueReport& cues) {
   figure.across = 2;
   figure.alt =
       "Accuracy of ideal observers that feel what the participants felt, beside the participants', "
-      "with 95 % intervals:";
+      "with 95% intervals:";
   for (const MethodCues& method : cues.methods) {
     if (method.observers.empty()) continue;
     figure.panels.push_back(cues_panel(cues, method));
@@ -174,7 +174,7 @@ std::optional<Figure> cues_figure(const CueReport& cues) {
       cues.simulated,
       "what was there to feel, and what participants made of it. Ideal observers (squares) judge "
       "each participant's own traces by force strength alone (rms), by the spectrum's shape alone, "
-      "or by everything felt; means with 95 % t intervals over participants, and each "
+      "or by everything felt; means with 95% t intervals over participants, and each "
       "participant.");
   return figure;
 }

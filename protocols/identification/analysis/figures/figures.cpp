@@ -106,7 +106,7 @@ std::optional<Figure> confusion_and_accuracy_figure(const StudyReport& report) {
   figure.caption = stamped(
       report.simulated,
       "left: answers to each presented class, per cent of its trials, all participants. Right: "
-      "each participant's accuracy, and the mean with its 95 % t interval over participants.");
+      "each participant's accuracy, and the mean with its 95% t interval over participants.");
   figure.alt = alt_of_confusions(report, method);
   if (method.mean.mean) {
     figure.alt += fmt::format(" Accuracy of {} participants: mean {}.", method.mean.participants,

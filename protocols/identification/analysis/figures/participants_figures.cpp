@@ -53,7 +53,7 @@ Layer lines_of(const Accuracies& all) {
 Panel people_panel(const StudyReport& report, const Accuracies& all) {
   Layer means{.kind = LayerKind::line, .name = "means", .size = 1.8};
   Layer marks{.kind = LayerKind::interval,
-              .name = "mean, 95 % interval",
+              .name = "mean, 95% interval",
               .size = 1.3,
               .glyph = Glyph::diamond,
               .in_key = true};
@@ -77,7 +77,8 @@ Panel people_panel(const StudyReport& report, const Accuracies& all) {
     const Datum& row = marks.rows[i];
     const bool between = i > 0 && i + 1 < marks.rows.size();
     const Anchor anchor = i == 0 ? Anchor::end : between ? Anchor::middle : Anchor::start;
-    panel.layers.push_back(direct_label(row.x, between ? row.high + 4.0 : row.y,
+    const double aside = i == 0 ? -0.06 : between ? 0.0 : 0.06;
+    panel.layers.push_back(direct_label(row.x + aside, between ? row.high + 4.0 : row.y,
                                         fmt::format("{:.0f}", row.y), std::string(kInk), anchor));
   }
   return panel;
@@ -122,7 +123,10 @@ Panel differences_panel(const StudyReport& report, const Accuracies& all) {
     }
   }
   const double room = std::max(0.05 * (seen.high - seen.low), 1.0);
-  Layer zero{.kind = LayerKind::rule, .name = "no difference", .rows = {{.y = 0.0}}};
+  Layer zero{.kind = LayerKind::rule,
+             .name = "no difference",
+             .rows = {{.y = 0.0}},
+             .colour = std::string(kPale)};
   panel.y = {
       .label = "difference, percentage points", .low = seen.low - room, .high = seen.high + room};
   panel.height_cm = 0.0;
@@ -235,7 +239,7 @@ std::optional<Figure> people_figure(const StudyReport& report) {
   figure.caption = stamped(
       report.simulated,
       std::string(paired ? "left: each" : "each") +
-          " participant's accuracy with each method, and the means with their 95 % t intervals "
+          " participant's accuracy with each method, and the means with their 95% t intervals "
           "over participants." +
           (paired ? " Right: each participant's difference, and the mean with its interval." : ""));
   return figure;
@@ -276,7 +280,7 @@ std::optional<Figure> trials_figure(const StudyReport& report) {
       report.simulated,
       fmt::format("accuracy over a participant's trials of the method: each participant's answers "
                   "smoothed by a Gaussian kernel (standard deviation {:.2g} trials), the mean over "
-                  "participants and its pointwise 95 % t interval.",
+                  "participants and its pointwise 95% t interval.",
                   width));
   return figure;
 }

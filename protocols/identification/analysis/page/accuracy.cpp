@@ -99,9 +99,9 @@ Section accuracy_section(const StudyReport& report) {
     (is_one ? section.blocks : section.more).emplace_back(class_table(report, i));
   }
   if (auto swaps = swaps_table(report)) section.blocks.emplace_back(std::move(*swaps));
-  section.more.emplace_back(
-      table_of("ability", "Whether at least one participant can, and how many would show it",
-               report.methods, ability_measures()));
+  section.more.emplace_back(table_of(
+      "ability", "Whether at least one participant performs above chance, and how many would",
+      report.methods, ability_measures()));
   section.more.emplace_back(participant_table(report));
   return section;
 }

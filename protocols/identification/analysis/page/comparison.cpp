@@ -15,7 +15,7 @@ Table pair_table(const StudyReport& report) {
                          pair_measures(report));
   const auto decides = [&](const MethodPair& pair) { return pair.overall.p == report.primary->p; };
   if (report.primary && std::ranges::none_of(report.pairs, decides)) {
-    table.notes.push_back({"The deciding test is another one; it stands under \"Result\"."});
+    table.notes.push_back({"The primary test is another one; see \"Result\"."});
   }
   return table;
 }
@@ -31,12 +31,12 @@ Table class_table(const StudyReport& report, const MethodPair& pair, std::size_t
 
 Cited together_of(const MethodsTogether& together) {
   std::string text = fmt::format(
-      "All methods at once: Cochran's Q = {} on {} degrees of freedom, {} under chi-square, which "
-      "takes occasions as independent",
+      "All methods together: Cochran's Q = {} on {} degrees of freedom, {} under chi-square, which "
+      "treats trials as independent",
       plain_figure(together.cochran.q, 2), together.cochran.degrees_of_freedom,
       p_phrase(together.cochran.p));
   if (together.permuted_p) {
-    text += fmt::format("; {} when methods are exchanged within whole participants",
+    text += fmt::format("; {} with methods permuted within participants",
                         p_phrase(*together.permuted_p));
   }
   return {text + ".", {Source::cochran, Source::phipson_smyth}};

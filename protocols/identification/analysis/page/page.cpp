@@ -29,7 +29,7 @@ bool explores(const Pictures& pictures) {
   return std::ranges::find(pictures, kExplorations, &Picture::section) != pictures.end();
 }
 
-/// Tells whether an earlier method has the same slug.
+/// Whether an earlier method has the same slug.
 bool is_taken(const StudyReport& report, std::size_t method, const std::string& slug) {
   for (std::size_t i = 0; i < method; ++i) {
     if (slug_of(report.methods[i].method) == slug) return true;

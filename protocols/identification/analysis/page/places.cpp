@@ -17,20 +17,13 @@ Table places_table(const choices::AnswersByPlace& places) {
   table.notes = {
       {fmt::format("Difference: mean over participants of the share of answers less {}, in "
                    "percentage points, with Student's t interval and p{}. All places together: {}, "
-                   "of layouts dealt anew {} times, because every participant has the pictures in "
-                   "an order of their own.",
+                   "by {} permutations of layouts, because every participant has a different order "
+                   "of pictures.",
                    share_figure(1.0 / static_cast<double>(places.places.size())),
                    alike ? " (by sign flips where all participants are alike)" : "",
                    p_phrase(places.p), places.deals),
        {Source::student, Source::phipson_smyth}}};
   return table;
-}
-
-std::string preferences_sentence(const StudyReport& report) {
-  const choices::Preferences& own = report.places->own;
-  const std::string who = choices::preference_words(own, report.classes);
-  return fmt::format("Preferences of participants' own ({}, by people): {}.",
-                     p_phrase(own.anybody.p), who.empty() ? "no sign" : who);
 }
 
 }  // namespace
@@ -40,7 +33,8 @@ Section places_section(const StudyReport& report) {
   if (!report.places) return section;
   const bool found = report.places->own.anybody.found() || report.places->p <= kUsualLevel;
   std::vector<Block>& blocks = found ? section.blocks : section.more;
-  blocks = {Cited{preferences_sentence(report)}, places_table(*report.places)};
+  blocks = {Cited{choices::preferences_sentence(report.places->own, report.classes)},
+            places_table(*report.places)};
   return section;
 }
 

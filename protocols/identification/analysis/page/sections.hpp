@@ -14,7 +14,7 @@
 
 namespace touchtrial::analysis::identification {
 
-/// What stands above the figure that shows the result, besides the verdict.
+/// The sentences above the figure of the result, after the verdict.
 [[nodiscard]] Section result_section(const StudyReport& report);
 [[nodiscard]] Section accuracy_section(const StudyReport& report);
 /// \param drawn  whether a figure shows the confusions, so that their tables are folded

@@ -35,8 +35,7 @@ std::string slope_figure(std::optional<double> slope) {
 
 Table order_table(const StudyReport& report, std::size_t index, const OrderEffects& order) {
   auto [id, caption] = method_table_name(
-      report, index, "order",
-      "whether answers depend on when a texture came, and on what came just before");
+      report, index, "order", "dependence of answers on trial number and on the previous trial");
   Table table{std::move(id), std::move(caption),
               columns_of({"question", "found", "t 95%", "at random", "p"})};
   const auto interval = order.slope.known_interval();
@@ -48,8 +47,8 @@ Table order_table(const StudyReport& report, std::size_t index, const OrderEffec
       dependence_row("wrong answers that repeat the answer before", order.answer_before)};
   table.notes = {
       {fmt::format("p two-sided, of {} orders that the design could have produced, in which each "
-                   "answer stays with its presentation. More than at random: drawn to what came "
-                   "before; less: driven from it. Three tests, not adjusted for each other.",
+                   "answer keeps its presentation. More than at random: attraction to the previous "
+                   "trial; fewer: repulsion. The three tests are not adjusted.",
                    order.draws),
        {Source::phipson_smyth, Source::fischer_whitney}},
       {"Learning: least squares within blocks, mean of participants' own slopes with Student's t "
@@ -62,10 +61,9 @@ Cited area_sentence(const StudyReport& report, std::size_t index,
                     const ConfidenceReport& confidence) {
   const MeanEstimate& area = confidence.area;
   if (!area.mean) {
-    return {
-        method_prefix(report, index) +
-        "no participant has both a right and a wrong answer, so that nobody's confidence can be "
-        "compared between the two."};
+    return {method_prefix(report, index) +
+            "no participant has both a right and a wrong answer, so confidence cannot be compared "
+            "between the two."};
   }
   std::string text = fmt::format("{}area under the type-2 ROC curve {}",
                                  method_prefix(report, index), plain_figure(area.mean, 2));
@@ -73,8 +71,8 @@ Cited area_sentence(const StudyReport& report, std::size_t index,
     text += ", 95% t interval " + plain_range(interval, 2);
   }
   text += fmt::format(
-      " (mean of the own areas of {}). It is the probability that somebody was surer of a right "
-      "answer than of a wrong one; .50 if confidence tells nothing.",
+      " (mean of the own areas of {}). It is the probability of higher confidence in a right "
+      "answer than in a wrong one; .50 if confidence is uninformative.",
       counted(area.participants, "participant"));
   if (confidence.without_area > 0) {
     text += fmt::format(
@@ -124,8 +122,7 @@ Section confidence_section(const StudyReport& report) {
     add_method_heading(report, i, section);
     section.blocks.emplace_back(area_sentence(report, i, *confidence));
     if (confidence->ratings.empty()) continue;
-    section.blocks.emplace_back(method_table(report, i, "confidence",
-                                             "right answers by how sure participants were",
+    section.blocks.emplace_back(method_table(report, i, "confidence", "right answers by confidence",
                                              confidence->ratings, rating_measures(*confidence)));
   }
   return section;
@@ -155,13 +152,12 @@ Section robustness_section(const StudyReport& report) {
     section.more.emplace_back(*servo);
   } else {
     section.more.emplace_back(
-        Cited{"No trial ran in real time. In virtual time every tick is on time by construction, "
-              "and says nothing about a device."});
+        Cited{"No trial ran in real time. In virtual time every tick is on time by construction."});
   }
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
     if (report.methods[i].robustness.empty()) continue;
     section.more.emplace_back(method_table(report, i, "with-and-without",
-                                           "the mean accuracy with other choices of trials",
+                                           "mean accuracy with other selections of trials",
                                            report.methods[i].robustness, subset_measures()));
   }
   return section;

@@ -41,7 +41,7 @@ Table without_table(const ThresholdReport& report) {
        column_of<Row>("all (dB)", [=](const Row& one) { return threshold(one.all->mean, one); }),
        count_of<Row>("", "n, without", [](const Row& one) { return one.others->participants; }),
        column_of<Row>("without (dB)", [=](const Row& one) { return threshold(*one.others, one); })
-           .with(fmt::format("Left out: {}. The result includes them.",
+           .with(fmt::format("Excluded here: {}. The result includes them.",
                              listed(report.control->hearers, " and ")))});
 }
 
@@ -51,12 +51,12 @@ std::string detectable_words(const SoundReport& control) {
   const std::string people =
       counted(static_cast<std::int64_t>(control.people.size()), "participant");
   if (!one.share) {
-    return fmt::format(" {} are too few to find anybody among {}.", counted(one.trials, "trial"),
+    return fmt::format(" {} are too few to detect anybody among {}.", counted(one.trials, "trial"),
                        people);
   }
   return fmt::format(
-      " Among {}, somebody who is right in {} of {} is found with a probability of {}; who hears "
-      "less may pass.",
+      " Among {}, a participant with {} right in {} would be detected with a probability of {}; "
+      "weaker hearing may go undetected.",
       people, share_figure(one.share), counted(one.trials, "trial"), choices::kFoundWith);
 }
 
@@ -76,9 +76,9 @@ std::string without_words(const ThresholdReport& report) {
 
 std::string control_meaning(const ThresholdReport& report) {
   return fmt::format(
-      "In the control block the hand was off the device, which moved by itself: only its sound was "
-      "left. Guessing gives {} right. More than that means that people could hear which plane it "
-      "was, and thresholds may reflect hearing.",
+      "In the control block the hand was off the moving device, so only its sound remained. "
+      "Guessing gives {} right. A higher share means that participants could hear the difference, "
+      "and thresholds may reflect hearing.",
       share_figure(report.guess));
 }
 
@@ -90,8 +90,7 @@ std::string test_words(bool alike) {
 
 Table choices_table(const ThresholdReport& report) {
   Table table =
-      table_of("named-choices",
-               "How often each answer was given, and how often it was right; trials of tracks",
+      table_of("named-choices", "Frequency of each answer, and of it being right; trials of tracks",
                report.choice_use, choice_measures());
   const bool alike =
       std::ranges::any_of(report.choice_use, [](const ChoiceUse& one) { return one.excess.alike; });
@@ -103,30 +102,19 @@ Table choices_table(const ThresholdReport& report) {
   return table;
 }
 
-std::string preferences_sentence(const ThresholdReport& report) {
-  const choices::GlobalNullResult& anybody = report.preferences.anybody;
-  const std::string who = choices::preference_words(report.preferences, report.choices);
-  if (who.empty()) {
-    return fmt::format("Preferences of participants' own: no sign ({}, by people).",
-                       p_phrase(anybody.p));
-  }
-  return fmt::format("Preferences of participants' own ({}, by people): {}.", p_phrase(anybody.p),
-                     who);
-}
-
 std::string learning_sentence(const ThresholdReport& report) {
   const MeanEstimate& mean = report.learning_db.mean;
   if (!mean.mean) return "";
   std::string text = fmt::format(
-      "Learning: from the first to the last trial of a track the threshold changed by {} dB on "
-      "average",
+      "Learning: the threshold changed by {} dB on average from the first to the last trial of a "
+      "track",
       signed_plain_figure(mean.mean, 1));
   if (mean.known_interval()) {
     text += fmt::format(" {}, {} ({})", plain_range(mean.known_interval(), 1),
                         p_phrase(report.learning_db.p.value_or(1.0)),
                         counted(mean.participants, "participant"));
   }
-  return text + ". Below 0 participants became better.";
+  return text + ". A negative change is an improvement.";
 }
 
 }  // namespace
@@ -148,22 +136,23 @@ std::string sound_sentence(const ThresholdReport& report) {
       share_range(pooled.interval), share_figure(report.guess));
   const std::string p = p_phrase(control.anybody.p);
   if (!control.anybody.found()) {
-    return fmt::format("{}: by people no sign that anybody could hear it ({}).{}", counts, p,
+    return fmt::format("{}: no evidence that any participant could hear it ({}).{}", counts, p,
                        detectable_words(control));
   }
   if (control.hearers.empty()) {
     return fmt::format(
-        "{}: more than by guessing ({}, by people), though nobody stands out. Participants could "
+        "{}: more than by guessing ({}), though no single participant stands out. Participants "
+        "could "
         "hear something, and every threshold may reflect hearing.",
         counts, p);
   }
   return fmt::format(
-      "{}. Somebody could hear it ({}, by people): {}. Their thresholds may reflect hearing{}.",
+      "{}. Some participants could hear it ({}): {}. Their thresholds may reflect hearing{}.",
       counts, p, hearers_words(control), without_words(report));
 }
 
 Section control_section(const ThresholdReport& report) {
-  Section section{"control", "Sound alone, and attention", {}};
+  Section section{"control", "Sound and attention", {}};
   if (report.tracks.empty()) return section;
   // What could be heard stands in the result.
   if (!was_heard(report)) section.blocks.emplace_back(Cited{sound_sentence(report)});
@@ -176,13 +165,15 @@ Section control_section(const ThresholdReport& report) {
 }
 
 Section habits_section(const ThresholdReport& report) {
-  Section section{"habits", "Habits and learning", {}};
+  Section section{"habits", "Response bias and learning", {}};
   if (report.tracks.empty()) return section;
   const auto add = [&](Block block) { section.more.emplace_back(std::move(block)); };
   const std::string learning = learning_sentence(report);
   if (!learning.empty()) add(Cited{learning});
   add(choices_table(report));
-  if (!report.preferences.people.empty()) add(Cited{preferences_sentence(report)});
+  if (!report.preferences.people.empty()) {
+    add(Cited{choices::preferences_sentence(report.preferences, report.choices)});
+  }
   return section;
 }
 

@@ -57,13 +57,15 @@ std::string criterion_words(const ThresholdReport& report) {
 
 /// Empty if everybody's threshold is known.
 std::string censored_words(const StandardReport& one) {
-  if (one.mean.exact == one.mean.participants) return "";
+  const int known = one.number_of(Censored::no);
+  if (known == std::ssize(one.people)) return "";
+  const std::string taken = taken_words(one);
   return fmt::format(
       " Of {} {} {} a threshold inside the levels; {} above the highest, {} below the lowest, {} "
-      "not determined.",
-      counted(one.mean.participants, "participant"), one.mean.exact,
-      one.mean.exact == 1 ? "has" : "have", one.number_of(Censored::above),
-      one.number_of(Censored::below), one.number_of(Censored::undetermined));
+      "not determined.{}",
+      counted(std::ssize(one.people), "participant"), known, known == 1 ? "has" : "have",
+      one.number_of(Censored::above), one.number_of(Censored::below),
+      one.number_of(Censored::undetermined), taken.empty() ? "" : " " + taken + ".");
 }
 
 std::string lack_words(Lack lack) {
@@ -75,7 +77,7 @@ std::string lack_words(Lack lack) {
     case Lack::most:
       return "more than half of the thresholds are not known";
     case Lack::spread:
-      return "those that are known are all alike";
+      return "the known thresholds are all equal";
   }
   return "";
 }
@@ -85,7 +87,7 @@ std::string people_words(const CensoredMean& mean) {
   const std::string people = "mean of " + counted(mean.participants, "participant");
   if (!mean.interval) return people + ", without an interval: " + lack_words(mean.lack);
   const char* kind = mean.exact == mean.participants ? "t" : "likelihood";
-  return fmt::format("{} with its 95 % {} interval, standard deviation {}, median {}", people, kind,
+  return fmt::format("{} with its 95% {} interval, standard deviation {}, median {}", people, kind,
                      plain_figure(mean.sd, 1), median_text(mean));
 }
 
@@ -124,10 +126,9 @@ Table standards_table(const ThresholdReport& report) {
                                      study::threshold::unit_of_level(report.options())),
                          report.standards, standard_measures(report));
   table.notes.push_back(
-      {"Levels are logarithms, so their mean is that of a geometric mean. Mean and SD are of the "
-       "normal distribution that is most likely for everybody, of those beyond the levels by "
-       "the probability to lie there (Tobin 1958). The interval is by likelihood ratio, with "
-       "the degrees of freedom of those who are known. If everybody is, that is Student's.",
+      {"Levels are logarithmic, so their mean is a geometric mean. Mean and SD: maximum likelihood "
+       "of a normal distribution censored at the levels (Tobin 1958). Interval: likelihood ratio, "
+       "with the degrees of freedom of the known thresholds; Student's if all are known.",
        {Source::student, Source::tobin}});
   return table;
 }
@@ -212,6 +213,21 @@ Section tracks_section(const ThresholdReport& report, bool drawn) {
 }
 
 }  // namespace
+
+std::string taken_words(const StandardReport& one) {
+  if (!one.mean.mean || one.number_of(Censored::undetermined) == 0) return "";
+  int values = 0;
+  int sides = 0;
+  int open = 0;
+  for (const PersonThreshold& person : one.thresholds) {
+    if (person.censored != Censored::undetermined) continue;
+    ++(person.bounds.exact() ? values : person.bounds == Bounds{} ? open : sides);
+  }
+  return fmt::format(
+      "Of those not determined, the mean takes {} by the likeliest threshold and {} by the side on "
+      "which it lies; {} {} no share in it",
+      values, sides, open, open == 1 ? "has" : "have");
+}
 
 Document threshold_document(const ThresholdReport& report, const Provenance& provenance,
                             const Pictures& pictures) {

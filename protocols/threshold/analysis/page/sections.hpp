@@ -17,6 +17,9 @@ namespace touchtrial::analysis::threshold {
                                          const std::vector<double>& levels);
 /// "−12.5", "above 0.0" or "between −5.0 and −2.5"; empty if nothing is known of it.
 [[nodiscard]] std::string median_text(const CensoredMean& mean);
+/// How the mean takes people who are not determined, without a full stop; empty without a mean or
+/// without such people.
+[[nodiscard]] std::string taken_words(const StandardReport& one);
 /// "11.5% [9.8, 13.4]", or the change of an order: "0.120 [0.101, 0.140]"
 [[nodiscard]] std::string quantity_text(const Quantity& quantity,
                                         const study::threshold::ThresholdOptions& options);

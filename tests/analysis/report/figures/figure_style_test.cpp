@@ -26,7 +26,7 @@ Rgb colour_of(const std::string& text) {
 
 /// The colours of each scheme of the page, by name; later schemes change some of the first's.
 std::vector<std::map<std::string, Rgb>> schemes() {
-  const std::string style = analysis::kPageStyle;
+  const std::string style(analysis::page_style());
   std::vector<std::map<std::string, Rgb>> all;
   for (std::size_t at = style.find(":root {"); at != std::string::npos;
        at = style.find(":root {", at + 1)) {

@@ -5,6 +5,7 @@
 #include "core/files.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 #include "support/temp_folder.hpp"
 
 #include <cstdlib>
@@ -52,13 +53,8 @@ std::string complaint_about(const std::string& script) {
   replace_file(program, "#!/bin/sh\n" + script + "\n");
   std::filesystem::permissions(program, std::filesystem::perms::owner_all);
   const Variable path("PATH", folder.path().string() + ":/usr/bin:/bin");
-  try {
-    const Figure figure{.id = "x", .caption = {}, .alt = {}};
-    static_cast<void>(drawn(figure, FigureFormat::svg));
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  const Figure figure{.id = "x", .caption = {}, .alt = {}};
+  return message_of<Error>([&] { return drawn(figure, FigureFormat::svg); });
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ class BringUpRig final : public AcceptanceBench, public AcceptancePerson {
     return info;
   }
   [[nodiscard]] SafetyLimits limits() const override { return rehearsal_.limits(); }
-  void limit_force(double most_n) override { rehearsal_.limit_force(most_n); }
+  void limit_force(double max_n) override { rehearsal_.limit_force(max_n); }
   [[nodiscard]] ServoReport run(const std::string& name, Measurement& measurement) override {
     count();
     const ServoReport report = rehearsal_.run(name, measurement);
@@ -80,10 +80,10 @@ class BringUpRig final : public AcceptanceBench, public AcceptancePerson {
     if (carries_elsewhere && prompt.axis == DeviceAxis::z) done.axis = DeviceAxis::x;
     return rehearsal_.ready(done);
   }
-  [[nodiscard]] std::optional<double> weight_n(DeviceAxis axis, double least_n,
-                                               double most_n) override {
+  [[nodiscard]] std::optional<double> weight_n(DeviceAxis axis, double min_n,
+                                               double max_n) override {
     count();
-    return rehearsal_.weight_n(axis, least_n, most_n);
+    return rehearsal_.weight_n(axis, min_n, max_n);
   }
   [[nodiscard]] std::optional<double> temperature_c(const std::string& /*question*/) override {
     return std::nullopt;

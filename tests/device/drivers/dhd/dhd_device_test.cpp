@@ -144,13 +144,13 @@ TEST_CASE(
     fake->system_type = 60;
   }
   device::DhdDevice device = opened(fake, settings);
-  double most_n = 0.0;
+  double max_n = 0.0;
   REQUIRE(eventually([&] {
-    most_n = std::max(most_n, up_n(fake));
+    max_n = std::max(max_n, up_n(fake));
     return fake.calls() == "open force_off force_on ";
   }));
   (void)ready_sample(device);
-  CHECK(most_n == 0.0);
+  CHECK(max_n == 0.0);
   CHECK(up_n(fake) == 0.0);
   CHECK(write_until(device, {0.0, 1.0, 0.0}, [&] { return up_n(fake) == 1.0; }));
 }
@@ -263,8 +263,8 @@ TEST_CASE("dhd: the device describes itself, and its model gives size and streng
   CHECK(info.continuous_force_n == 12.0);
   CHECK(info.max_stiffness_n_per_mm == 5.0);
   REQUIRE(info.workspace);
-  CHECK(info.workspace->least_mm == Vec3{-80.0, -80.0, -55.0});
-  CHECK(info.workspace->greatest_mm == Vec3{80.0, 80.0, 55.0});
+  CHECK(info.workspace->min_mm == Vec3{-80.0, -80.0, -55.0});
+  CHECK(info.workspace->max_mm == Vec3{80.0, 80.0, 55.0});
   CHECK(info.workspace->shape == WorkspaceShape::ellipsoid);
   CHECK_FALSE(info.simulated);
 }
@@ -272,7 +272,7 @@ TEST_CASE("dhd: the device describes itself, and its model gives size and streng
 TEST_CASE("dhd: size and strength differ by model, and the settings come first") {
   LoadedDhd fake;
   fake->system_type = 63;  // delta.3: 400 mm, 260 mm long; 20 N
-  CHECK(device::DhdDevice(settings_of_fake()).info().workspace->greatest_mm ==
+  CHECK(device::DhdDevice(settings_of_fake()).info().workspace->max_mm ==
         Vec3{200.0, 200.0, 130.0});
   DhdSettings settings = settings_of_fake();
   settings.max_force_n = 10.0;
@@ -281,7 +281,7 @@ TEST_CASE("dhd: size and strength differ by model, and the settings come first")
   const DeviceInfo info = device::DhdDevice(settings).info();
   CHECK(info.max_force_n == 10.0);
   CHECK(info.continuous_force_n == 5.0);
-  CHECK(info.workspace->greatest_mm == Vec3{150.0, 100.0, 50.0});
+  CHECK(info.workspace->max_mm == Vec3{150.0, 100.0, 50.0});
 }
 
 TEST_CASE("dhd: a force that the model does not have, or a model without numbers, is refused") {

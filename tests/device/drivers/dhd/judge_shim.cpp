@@ -431,9 +431,9 @@ int dhdSetTimeGuard(int us, char id) {
   return call_noted("guard", us, maker<int(int, char)>("dhdSetTimeGuard")(us, id));
 }
 
-int dhdSetMaxForce(double most_n, char id) {
+int dhdSetMaxForce(double max_n, char id) {
   const Entry entry;
-  return call_noted("max_force", most_n, maker<int(double, char)>("dhdSetMaxForce")(most_n, id));
+  return call_noted("max_force", max_n, maker<int(double, char)>("dhdSetMaxForce")(max_n, id));
 }
 
 /// The hand needs the expert's functions all the time.

@@ -184,17 +184,17 @@ TEST_CASE("force and gravity bias each stay within their own limit on a Falcon")
   device::FalconSettings settings{.gravity_bias_n = {0.0, 1.0, 0.0}};
   Rig rig(true, settings);
   ConstantForce force({0.0, 0.0, 0.4});
-  Vec3 most_n;
+  Vec3 max_n;
   rig.emulator.set_hand([&](Vec3 force_n) {
-    most_n = {most_n.x, std::max(most_n.y, force_n.y), std::max(most_n.z, force_n.z)};
+    max_n = {max_n.x, std::max(max_n.y, force_n.y), std::max(max_n.z, force_n.z)};
     return Vec3{};
   });
   device::ServoOptions options{.limit_ticks = 300};
   options.limits.max_force_n = 0.3;
   const device::ServoReport report = run_on(rig, force, options);
   CHECK(report.end == device::ServoEnd::time_limit);
-  CHECK(most_n.y == Approx(1.0).margin(0.01));
-  CHECK(most_n.z == Approx(0.3).margin(0.01));
+  CHECK(max_n.y == Approx(1.0).margin(0.01));
+  CHECK(max_n.z == Approx(0.3).margin(0.01));
 }
 
 TEST_CASE(
@@ -275,9 +275,9 @@ TEST_CASE("late and lost replies in any order leave the loop of a Falcon in step
     rig.emulator.delay_replies(static_cast<int>(random.below(3)));
     rig.emulator.drop_replies(static_cast<int>(random.below(2)));
     // What is lost is given up after some exchanges; what is late has come by then.
-    rig.lockstep.steps(3 + FalconExchange::kGivenUpAfter);
+    rig.lockstep.steps(3 + FalconExchange::kLostAfterOverdue);
     rig.emulator.delay_replies(0);
-    rig.lockstep.steps(FalconExchange::kGivenUpAfter);
+    rig.lockstep.steps(FalconExchange::kLostAfterOverdue);
     REQUIRE(rig.device->fault() == device::DeviceFault::none);
     for (int i = 0; i < 3; ++i) {
       rig.lockstep.step();
@@ -430,7 +430,7 @@ TEST_CASE("a Falcon describes itself") {
   CHECK_FALSE(info.simulated);
   REQUIRE(info.workspace);
   REQUIRE(info.workspace->shape == device::WorkspaceShape::ellipsoid);
-  CHECK(info.workspace->least_mm == Vec3{-40.0, -40.0, -40.0});
+  CHECK(info.workspace->min_mm == Vec3{-40.0, -40.0, -40.0});
   // Every place on the ball is in reach.
   for (double turn = 0.0; turn < 6.3; turn += 0.1) {
     for (double rise = -1.5; rise < 1.6; rise += 0.1) {

@@ -5,6 +5,7 @@
 #include "device/drivers/falcon/rig/falcon_rig.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 #include "support/temp_folder.hpp"
 
 #include <functional>
@@ -61,12 +62,7 @@ class Meddler final : public FtdiTransport {
 };
 
 std::string failure_of(FtdiTransport& transport) {
-  try {
-    load_falcon_firmware(transport, dummy_firmware());
-  } catch (const DeviceError& error) {
-    return error.what();
-  }
-  return {};
+  return message_of<DeviceError>([&] { load_falcon_firmware(transport, dummy_firmware()); });
 }
 
 TEST_CASE("firmware is loaded byte for byte and then runs") {

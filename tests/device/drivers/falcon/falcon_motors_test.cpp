@@ -70,7 +70,7 @@ TEST_CASE("falcon motors: the force of a value is the least in the ball of 40 mm
     const Vec3 any = {random.normal(), random.normal(), random.normal()};
     return (1.0 / norm(any)) * any;
   };
-  double least_n = kInfinity;
+  double min_n = kInfinity;
   for (int i = 0; i < 4000; ++i) {
     const double radius_mm = 40.0 * std::cbrt(i % 4 == 0 ? random.uniform() : 1.0);
     const Vec3 place_m = to_native_m(radius_mm * direction());
@@ -86,10 +86,10 @@ TEST_CASE("falcon motors: the force of a value is the least in the ball of 40 mm
                                   std::abs(triple(rows[0], force, rows[2])),
                                   std::abs(triple(rows[0], rows[1], force))}) /
                         std::abs(all);
-    least_n = std::min(least_n, 1.0 / 6616.0 / most);
+    min_n = std::min(min_n, 1.0 / 6616.0 / most);
   }
-  CHECK(least_n >= kForcePerMotorValueN);
-  CHECK(least_n < 1.1 * kForcePerMotorValueN);
+  CHECK(min_n >= kForcePerMotorValueN);
+  CHECK(min_n < 1.1 * kForcePerMotorValueN);
 }
 
 /// \return the fading mean of the squares of what one motor got, a value each millisecond

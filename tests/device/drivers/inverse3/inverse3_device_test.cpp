@@ -10,6 +10,7 @@
 #include "device/servo/servo.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 
 #include <cmath>
 #include <limits>
@@ -37,12 +38,7 @@ std::unique_ptr<Inverse3Device> opened(const HaplyService& service) {
 
 /// \return the error with which it does not open
 std::string refusal(const device::Inverse3Settings& settings) {
-  try {
-    const Inverse3Device device(settings, patient_options());
-  } catch (const DeviceError& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<DeviceError>([&] { const Inverse3Device device(settings, patient_options()); });
 }
 
 std::string refusal_by(std::vector<std::string> options) {
@@ -119,7 +115,7 @@ TEST_CASE("inverse3: filters are off, the frame is centred, and the session has 
   CHECK_FALSE(info.simulated);
   REQUIRE(info.workspace);
   CHECK(info.workspace->shape == device::WorkspaceShape::ellipsoid);
-  CHECK(info.workspace->greatest_mm == Vec3{100.0, 100.0, 100.0});
+  CHECK(info.workspace->max_mm == Vec3{100.0, 100.0, 100.0});
 }
 
 TEST_CASE("inverse3: a session's record distinguishes left and right arms") {
@@ -166,7 +162,7 @@ TEST_CASE("inverse3: a Minverse reaches less far, and a grip has buttons") {
   HaplyService service({"--type", "minverse", "--grip"});
   const auto device = opened(service);
   CHECK(device->info().model == "Haply Minverse");
-  CHECK(device->info().workspace->least_mm == Vec3{-40.0, -40.0, -40.0});
+  CHECK(device->info().workspace->min_mm == Vec3{-40.0, -40.0, -40.0});
   CHECK(next_sample(*device).buttons == 5);
 }
 

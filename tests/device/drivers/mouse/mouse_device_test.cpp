@@ -75,7 +75,7 @@ TEST_CASE("no force displaces the stylus beyond its bound, however it alternates
     return Vec3{++tick / 37 % 2 == 0 ? -3.0 : 3.0, 1.0, 0.0};
   });
   const MouseOptions defaults;
-  const double bound_mm = defaults.greatest_pull_n / defaults.pull_n_per_mm;
+  const double bound_mm = defaults.max_pull_n / defaults.pull_n_per_mm;
   double farthest_mm = 0.0;
   for (const ServoSample& sample : run([](double) { return at(0.0, 0.0); }, force, 5000)) {
     farthest_mm = std::max(farthest_mm, norm(Vec2{sample.position_mm.x, sample.position_mm.y}));

@@ -55,8 +55,8 @@ TEST_CASE("openhaptics: the device describes itself") {
   CHECK(info.max_rate_hz == 1000.0);
   CHECK_FALSE(info.simulated);
   REQUIRE(info.workspace);
-  CHECK(info.workspace->least_mm == Vec3{-80.0, -60.0, -40.0});
-  CHECK(info.workspace->greatest_mm == Vec3{80.0, 60.0, 30.0});
+  CHECK(info.workspace->min_mm == Vec3{-80.0, -60.0, -40.0});
+  CHECK(info.workspace->max_mm == Vec3{80.0, 60.0, 30.0});
 }
 
 TEST_CASE("openhaptics: values that the library does not report get defaults") {
@@ -65,11 +65,11 @@ TEST_CASE("openhaptics: values that the library does not report get defaults") {
   fake->tells_damping = false;
   CHECK(info().max_damping_n_s_per_mm == 0.0);
   fake->tells_usable_workspace = false;
-  CHECK(info().workspace.value().least_mm == Vec3{-210.0, -110.0, -85.0});
-  CHECK(info().workspace.value().greatest_mm == Vec3{210.0, 205.0, 130.0});
+  CHECK(info().workspace.value().min_mm == Vec3{-210.0, -110.0, -85.0});
+  CHECK(info().workspace.value().max_mm == Vec3{210.0, 205.0, 130.0});
   fake->tells_max_workspace = false;
   const device::Workspace usual = info().workspace.value();
-  CHECK(usual.greatest_mm - usual.least_mm == Vec3{160.0, 120.0, 70.0});
+  CHECK(usual.max_mm - usual.min_mm == Vec3{160.0, 120.0, 70.0});
 }
 
 TEST_CASE("openhaptics: position and buttons arrive as the library gives them") {

@@ -67,8 +67,8 @@ TEST_CASE("a plug-in describes its device, and the driver's name stands before t
   CHECK(info.max_stiffness_n_per_mm == 1.0);
   CHECK_FALSE(info.simulated);
   REQUIRE(info.workspace);
-  CHECK(info.workspace->least_mm == Vec3{-60.0, -60.0, -60.0});
-  CHECK(info.workspace->greatest_mm == Vec3{60.0, 60.0, 60.0});
+  CHECK(info.workspace->min_mm == Vec3{-60.0, -60.0, -60.0});
+  CHECK(info.workspace->max_mm == Vec3{60.0, 60.0, 60.0});
   CHECK(info.workspace->shape == device::WorkspaceShape::ellipsoid);
 }
 

@@ -133,7 +133,7 @@ TEST_CASE(
   CHECK(pushed.info().max_force_n == 2.0);
   device::DeviceSample at;
   device::DeviceSample otherwise;
-  double greatest_mm = 0.0;
+  double max_mm = 0.0;
   for (int tick = 0; tick < 2500; ++tick) {
     // The device delivers 2 N of these 4 N, on a spring of 0.2 N/mm with friction of 0.1 N.
     REQUIRE(pushed.write({4.0, 0.0, 0.0}) == device::DeviceStatus::ok);
@@ -142,11 +142,11 @@ TEST_CASE(
     REQUIRE(free.read(otherwise) == device::DeviceStatus::ok);
     REQUIRE(std::abs(at.position_mm.x / 0.05 - std::round(at.position_mm.x / 0.05)) < 1e-9);
     if (tick > 2000) {
-      greatest_mm = std::max(greatest_mm, at.position_mm.x - otherwise.position_mm.x);
+      max_mm = std::max(max_mm, at.position_mm.x - otherwise.position_mm.x);
     }
   }
-  CHECK(greatest_mm > 2.0 / 0.2 - 2.0 * 0.1 / 0.2 - 0.05);
-  CHECK(greatest_mm < 2.0 / 0.2 + 2.0 * 0.1 / 0.2 + 0.05);
+  CHECK(max_mm > 2.0 / 0.2 - 2.0 * 0.1 / 0.2 - 0.05);
+  CHECK(max_mm < 2.0 / 0.2 + 2.0 * 0.1 / 0.2 + 0.05);
 }
 
 TEST_CASE("a hand refuses impossible options") {

@@ -4,7 +4,7 @@
 #include "analysis/outcomes/outcomes.hpp"
 #include "core/errors.hpp"
 #include "core/random.hpp"
-#include "protocols/identification/analysis/cues/cues_json.hpp"
+#include "protocols/identification/analysis/cues/cue_measures.hpp"
 #include "protocols/identification/analysis/felt_fixtures.hpp"
 #include "support/catch.hpp"
 

@@ -8,6 +8,7 @@
 #include "protocols/identification/analysis/fake_report.hpp"
 #include "protocols/identification/analysis/page/sections.hpp"
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 #include "support/temp_folder.hpp"
 
 #include <algorithm>
@@ -357,6 +358,6 @@ TEST_CASE("matplotlib and ggplot2 redraw every figure from the data beside it") 
 TEST_CASE("figures without gnuplot say what to install") {
   const Figure figure = report_figures(fake_report()).front();
   const EmptyPath without;
-  CHECK(contains(complaint_of<Error>([&] { static_cast<void>(drawn(figure, FigureFormat::svg)); }),
+  CHECK(contains(message_of<Error>([&] { static_cast<void>(drawn(figure, FigureFormat::svg)); }),
                  "install gnuplot-nox"));
 }

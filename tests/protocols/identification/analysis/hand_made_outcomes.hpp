@@ -1,6 +1,7 @@
 /// \file Outcomes for which a test gives every trial.
 #pragma once
 
+#include "analysis/hand_made_study.hpp"
 #include "analysis/outcomes/outcomes.hpp"
 #include "protocols/identification/study/identification.hpp"
 
@@ -36,16 +37,7 @@ class HandMadeOutcomes {
     outcomes.state.unblinded = true;
   }
 
-  analysis::SessionOutcome& session(bool counted = true) {
-    const int number = static_cast<int>(outcomes.sessions.size()) + 1;
-    analysis::SessionOutcome& added = outcomes.sessions.emplace_back();
-    added.row.session = number;
-    added.row.participant = "P" + std::to_string(number);
-    added.row.enrolment = number;
-    added.row.state = record::SessionState::completed;
-    added.counted = counted;
-    return added;
-  }
+  analysis::SessionOutcome& session(bool counted = true) { return add_session(outcomes, counted); }
 
   /// Each method is a block of its own.
   void trial(const HandMadeTrial& of) {

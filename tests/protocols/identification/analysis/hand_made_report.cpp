@@ -155,7 +155,7 @@ analysis::PrimaryResult primary_of() {
       .sides = analysis::Sides::two,
       .p = 0.125,
       .choices = {{"registered", "as registered", 6, 150, -0.083, analysis::Interval{-0.2, 0.034}},
-                  {"all", "all excluded sessions put back", 7, 175, -0.06,
+                  {"all", "with all excluded sessions", 7, 175, -0.06,
                    analysis::Interval{-0.17, 0.05}}},
       .verdict = analysis::Verdict::undecided,
       .because = "Collecting ended with 7 of 20 planned participants."};

@@ -14,6 +14,8 @@
 
 #include <variant>
 
+#include <fmt/format.h>
+
 namespace touchtrial {
 namespace {
 
@@ -73,6 +75,21 @@ TEST_CASE("methods: what the study file sets stands there, and only then") {
   check_only_in(plain, rich, {"K = 2,", "0.4 N/mm", "60 s", "300 mm", "without damping"});
 }
 
+TEST_CASE("methods: the mask of the fractional differential has its formula") {
+  const auto with_mask = [](const char* mask) {
+    return methods_text({.sections = fmt::format(
+                             R"({{"methods": [{{"name": "adaptive", "norm": "{}"}}]}})", mask)});
+  };
+  check_only_in(with_mask("sum"), with_mask("additive"), {"T / P"});
+  check_only_in(with_mask("none"), with_mask("sum"), {"T + P (I − mean of I)"});
+}
+
+TEST_CASE("methods: trials that were not valid are counted") {
+  check_only_in(methods_text({}, {.participant = {}, .valid = false}), methods_text({}),
+                {"24 of 24 scored trials"});
+  CHECK(contains(methods_text({}), "0 of 24 scored trials"));
+}
+
 TEST_CASE("methods: what was registered stands there, and only then") {
   const std::string without = methods_text({});
   const std::string with = methods_text({.registration = R"({
@@ -93,6 +110,8 @@ TEST_CASE("methods: what was recorded stands there, and only then") {
   station.firmware = "fw9";
   station.max_force_n = 8.75;
   station.rate_hz = 1000.0;
+  station.scheduling = "fifo 80, memory locked";
+  station.screen = record::ScreenRecord{0.2731, "measured"};
   station.calibration = std::string(64, 'c');
   station.force_scale = {1.03, 1.0, 1.0};
   record::ServoHealth servo;
@@ -100,9 +119,10 @@ TEST_CASE("methods: what was recorded stands there, and only then") {
   servo.lateness_p99_us = 37.0;
   const std::string with = methods_text({.simulated = false, .with_pack = true},
                                         {.participant = {}, .station = station, .servo = servo});
-  check_only_in(with, without,
-                {"Novint Falcon", "fw9", "8.75 N", "cccccccccccccccc", "998.4", "37 µs", "1.03",
-                 "0.01 N", "0.02 N", "0.4 mm x 0.4 mm"});
+  check_only_in(
+      with, without,
+      {"Novint Falcon", "fw9", "8.75 N", "cccccccccccccccc", "998.4", "37 µs", "1.03", "0.01 N",
+       "0.02 N", "0.4 mm x 0.4 mm", "an rms of", "fifo 80, memory locked", "0.273 mm (measured)"});
   CHECK(contains(with, "Touchtrial 0.0.0"));
   CHECK(contains(with, std::string(program_version())));
   station.calibration = study::kUnverifiedDevice;
@@ -168,20 +188,43 @@ TEST_CASE("methods: a look at the registered question has none") {
   CHECK(methods_markdown(question->document(provenance, {})).empty());
 }
 
-TEST_CASE("methods: an author and a year name a publication") {
+namespace {
+
+/// The methods of a shipped threshold study without data.
+std::string shipped_threshold_text(const char* file) {
   Outcomes outcomes;
   outcomes.design =
-      study::load_study(std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) / "config" / "detection.json");
+      study::load_study(std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) / "config" / file);
   threshold::ThresholdReport report;
   report.design = outcomes.design;
   report.criterion = 0.816;
-  const std::string text =
-      text_of(methods_section(report, outcomes, {}, threshold::protocol_methods(report)));
-  for (const char* fact : {"QUEST+", "(Watson, 2017)", "60 trials", "-40 to 0 in steps of 1",
-                           "6 catch", "20 trials", "2.5 s", "81.6 %", "0.15 to 2.5 N", "15 s"}) {
+  return text_of(methods_section(report, outcomes, {}, threshold::protocol_methods(report)));
+}
+
+void check_facts(const std::string& text, const std::vector<std::string>& facts) {
+  for (const std::string& fact : facts) {
     INFO(fact);
     CHECK(contains(text, fact));
   }
+}
+
+}  // namespace
+
+TEST_CASE("methods: an author and a year name a publication") {
+  check_facts(shipped_threshold_text("detection.json"),
+              {"QUEST+",        "(Watson, 2017)", "60 trials",    "-40 to 0 in steps of 1",
+               "6 catch",       "20 trials",      "2.5 s",        "81.6 %",
+               "0.15 to 2.5 N", "15 s",           "2 to 60 dB",   "up to 0.5",
+               "w^0.5",         "Beta(1, 3)",     "median 10 dB", "Beta(1, 10)",
+               "100 mm/s",      "0.7 N",          "100 ms",       "“Which surface had a texture?”",
+               "MT19937-64"});
+}
+
+TEST_CASE("methods: every standard has its own levels") {
+  check_facts(shipped_threshold_text("discrimination.json"),
+              {"-20 to 16 in steps of 1 dB for bark, standard -18 dB",
+               "-20 to 9 in steps of 1 dB for bark, standard -12 dB",
+               "-20 to -1 in steps of 1 dB for bark, standard -6 dB"});
 }
 
 }  // namespace touchtrial

@@ -5,6 +5,7 @@
 #include "protocols/identification/planning/rehearsed_tiny_study.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 
 #include <algorithm>
 #include <set>
@@ -19,12 +20,7 @@ planning::PowerPlan plan_of(const std::vector<int>& sizes, int runs = 1000) {
 }
 
 std::string refusal(planning::PowerPlan plan) {
-  try {
-    planning::validate_plan(plan);
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<UsageError>([&] { planning::validate_plan(plan); });
 }
 
 TEST_CASE("sizes may be in any order, but each only once") {

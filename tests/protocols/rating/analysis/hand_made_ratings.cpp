@@ -1,9 +1,9 @@
 #include "protocols/rating/analysis/hand_made_ratings.hpp"
 
+#include "analysis/hand_made_study.hpp"
 #include "core/strict_json.hpp"
 #include "protocols/rating/study/rating.hpp"
 
-#include <chrono>
 #include <variant>
 
 namespace touchtrial {
@@ -25,44 +25,18 @@ HandMadeRatings::HandMadeRatings(const std::string& section,
   outcomes.design.name = "fits";
   outcomes.design.protocol = &study::rating::protocol();
   outcomes.design.task = study::rating::protocol().read(parse_strict_json(section, "ratings"));
-  for (const std::string& label : classes) {
-    study::StudyClass& added = outcomes.design.classes.emplace_back();
-    added.label = label;
-    added.images.emplace_back(label + ".png");
-    outcomes.exemplars.push_back({label + ".png"});
-  }
+  set_classes(outcomes, classes);
   for (const std::string& label : methods) outcomes.design.methods.emplace_back().label = label;
-  outcomes.classes = classes;
   outcomes.methods = methods;
-  outcomes.state.closed = true;
-  outcomes.state.unblinded = true;
 }
 
 void HandMadeRatings::session(bool counted) {
-  const int number = static_cast<int>(outcomes.sessions.size()) + 1;
-  analysis::SessionOutcome& added = outcomes.sessions.emplace_back();
-  added.row.session = number;
-  added.row.participant = "P" + std::to_string(number);
-  added.row.enrolment = number;
-  added.row.state = record::SessionState::completed;
-  added.counted = counted;
-}
-
-analysis::TrialOutcome& HandMadeRatings::presented(int session) {
-  const auto place = static_cast<int>(outcomes.trials.size()) + 1;
-  analysis::TrialOutcome& trial = outcomes.trials.emplace_back();
-  trial.participant = "P" + std::to_string(session);
-  trial.row.session = session;
-  trial.row.trial = place;
-  trial.row.state = record::TrialState::answered;
-  trial.row.presented_at = std::chrono::seconds(20 * place);
-  trial.row.answered_at = trial.row.presented_at + std::chrono::seconds(8);
-  return trial;
+  add_session(outcomes, counted);
 }
 
 void HandMadeRatings::rated(int session, int texture_class, int method,
                             const std::vector<double>& values) {
-  analysis::TrialOutcome& trial = presented(session);
+  analysis::TrialOutcome& trial = add_trial(outcomes, session);
   trial.stimulus = {texture_class, 0, method};
   trial.has_stimulus = true;
   trial.scored = true;
@@ -71,7 +45,7 @@ void HandMadeRatings::rated(int session, int texture_class, int method,
 }
 
 void HandMadeRatings::caught(int session, const std::vector<double>& values) {
-  analysis::TrialOutcome& trial = presented(session);
+  analysis::TrialOutcome& trial = add_trial(outcomes, session);
   trial.role = study::Role::catch_trial;
   trial.row.answer = Rated{values};
 }

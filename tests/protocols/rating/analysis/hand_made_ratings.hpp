@@ -41,9 +41,6 @@ class HandMadeRatings {
   void missed(int session, int texture_class, int method);
 
   analysis::Outcomes outcomes;
-
- private:
-  analysis::TrialOutcome& presented(int session);
 };
 
 }  // namespace touchtrial

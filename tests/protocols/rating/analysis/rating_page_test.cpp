@@ -1,6 +1,5 @@
-#include "analysis/checkers/checkers.hpp"
+#include "analysis/checkers/whole_page.hpp"
 #include "analysis/report/figures/figure.hpp"
-#include "analysis/report/results.hpp"
 #include "protocols/rating/analysis/figures.hpp"
 #include "protocols/rating/analysis/hand_made_ratings.hpp"
 #include "protocols/rating/analysis/page.hpp"
@@ -9,7 +8,6 @@
 #include "support/names.hpp"
 
 #include <algorithm>
-#include <variant>
 
 namespace touchtrial {
 namespace {
@@ -45,29 +43,7 @@ std::vector<HandMadeRatings> kinds_of_rated_studies() {
 TEST_CASE("every page of ratings is whole, with figures described in words") {
   for (HandMadeRatings& made : kinds_of_rated_studies()) {
     made.outcomes.simulated = true;
-    const auto results = own::rating_analysis().results(made.outcomes, {});
-    analysis::Pictures pictures;
-    for (const analysis::Figure& figure : results->figures("PILOT")) {
-      CHECK(figure.alt.starts_with("PILOT. "));
-      CHECK(figure.alt.size() > 40);
-      CHECK_FALSE(figure.caption.empty());
-      pictures.push_back({figure.id, figure.caption, figure.alt, {}, figure.section});
-    }
-    REQUIRE_FALSE(pictures.empty());
-    const analysis::Document document = results->document({}, pictures);
-    CHECK(faults_of_page(analysis::page_html(document)).empty());
-    CHECK_THAT(analysis::document_text(document), holds_text("SIMULATED"));
-    std::size_t shown = 0;
-    for (const analysis::Section& section : document.sections) {
-      shown += static_cast<std::size_t>(
-          std::ranges::count_if(all_blocks(section), [](const analysis::Block* block) {
-            return std::holds_alternative<analysis::Picture>(*block);
-          }));
-    }
-    // The participants' flow is for papers.
-    CHECK(std::cmp_equal(shown, std::ranges::count_if(pictures, [](const analysis::Picture& one) {
-                           return !one.section.empty();
-                         })));
+    check_whole_page(*own::rating_analysis().results(made.outcomes, {}));
   }
 }
 

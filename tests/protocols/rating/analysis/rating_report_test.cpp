@@ -429,7 +429,7 @@ TEST_CASE("tables of trials have a column for each scale, whose meaning is known
 }
 
 TEST_CASE("the script of the model of ratings has the study's methods and all functions") {
-  const std::string script = own::rating_model_script(four_people().outcomes);
+  const std::string script = own::rating_model(four_people().outcomes).script;
   CHECK_THAT(script, holds_text("methods <- c(\"adaptive\", \"fixed\")\n"));
   CHECK(script.ends_with(std::string(own::rating_model_functions())));
 }

@@ -11,6 +11,7 @@
 #include "record/study_store.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -137,12 +138,7 @@ planning::PowerOptions options_with(std::vector<int> participants,
 
 /// Nothing is made for what is refused.
 std::string refusal_of(const TinyStudy& tiny, const planning::PowerOptions& options) {
-  try {
-    static_cast<void>(rating_planner().power(tiny.key().study, options, {}));
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<Error>([&] { return rating_planner().power(tiny.key().study, options, {}); });
 }
 
 }  // namespace

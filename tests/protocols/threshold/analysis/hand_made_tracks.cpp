@@ -1,8 +1,8 @@
 #include "protocols/threshold/analysis/hand_made_tracks.hpp"
 
+#include "analysis/hand_made_study.hpp"
 #include "protocols/procedures/procedure.hpp"
 
-#include <chrono>
 #include <utility>
 
 namespace touchtrial {
@@ -66,19 +66,11 @@ HandMadeTracks::HandMadeTracks(const ThresholdOptions& options,
   outcomes.design.name = "weak";
   outcomes.design.protocol = &study::threshold::protocol();
   outcomes.design = study::threshold::with_options(outcomes.design, options);
-  for (const std::string& label : classes) {
-    study::StudyClass& added = outcomes.design.classes.emplace_back();
-    added.label = label;
-    added.images.emplace_back(label + ".png");
-    outcomes.exemplars.push_back({label + ".png"});
-  }
-  outcomes.classes = classes;
+  set_classes(outcomes, classes);
   outcomes.methods = {"adaptive"};
   for (const study::Choice& choice : study::choices_of(outcomes.design)) {
     outcomes.choices.push_back(choice.label);
   }
-  outcomes.state.closed = true;
-  outcomes.state.unblinded = true;
 }
 
 const ThresholdOptions& HandMadeTracks::options() const {
@@ -86,26 +78,12 @@ const ThresholdOptions& HandMadeTracks::options() const {
 }
 
 void HandMadeTracks::session(bool counted) {
-  const int number = static_cast<int>(outcomes.sessions.size()) + 1;
-  analysis::SessionOutcome& added = outcomes.sessions.emplace_back();
-  added.row.session = number;
-  added.row.participant = "P" + std::to_string(number);
-  added.row.enrolment = number;
-  added.row.state = record::SessionState::completed;
-  added.counted = counted;
+  add_session(outcomes, counted);
 }
 
 void HandMadeTracks::answer(const HandMadeAnswer& of) {
-  const auto place = static_cast<int>(outcomes.trials.size()) + 1;
-  const bool is_control = of.role == study::Role::control;
-  analysis::TrialOutcome& trial = outcomes.trials.emplace_back();
-  trial.participant = "P" + std::to_string(of.session);
-  trial.row.session = of.session;
-  trial.row.trial = place;
-  trial.row.block = is_control ? 1 : 0;
-  trial.row.state = record::TrialState::answered;
-  trial.row.presented_at = std::chrono::seconds(20 * place);
-  trial.row.answered_at = trial.row.presented_at + std::chrono::seconds(8);
+  analysis::TrialOutcome& trial = add_trial(outcomes, of.session);
+  trial.row.block = of.role == study::Role::control ? 1 : 0;
   trial.role = of.role;
   trial.chosen = {of.track, of.level, of.target};
   trial.scored = of.role == study::Role::scored;

@@ -1,7 +1,6 @@
-#include "analysis/checkers/checkers.hpp"
+#include "analysis/checkers/whole_page.hpp"
 #include "analysis/exports/dataset.hpp"
 #include "analysis/report/figures/figure.hpp"
-#include "analysis/report/results.hpp"
 #include "protocols/threshold/analysis/exports.hpp"
 #include "protocols/threshold/analysis/figures.hpp"
 #include "protocols/threshold/analysis/hand_made_tracks.hpp"
@@ -55,30 +54,7 @@ TEST_CASE("every page of thresholds is whole, with figures described in words") 
   for (const auto& options : kinds_of_studies()) {
     HandMadeTracks made = small_study(options);
     made.outcomes.simulated = true;
-    const auto results = own::threshold_analysis().results(made.outcomes, {});
-    analysis::Pictures pictures;
-    for (const analysis::Figure& figure : results->figures("PILOT")) {
-      CHECK(figure.alt.starts_with("PILOT. "));
-      CHECK(figure.alt.size() > 40);
-      CHECK_FALSE(figure.caption.empty());
-      pictures.push_back({figure.id, figure.caption, figure.alt, {}, figure.section});
-    }
-    REQUIRE_FALSE(pictures.empty());
-    const analysis::Document document = results->document({}, pictures);
-    CHECK(faults_of_page(analysis::page_html(document)).empty());
-    CHECK(document.stamp.find("SIMULATED") != std::string::npos);
-    CHECK_THAT(analysis::document_text(document), holds_text("SIMULATED"));
-    std::size_t shown = 0;
-    for (const analysis::Section& section : document.sections) {
-      shown += static_cast<std::size_t>(
-          std::ranges::count_if(all_blocks(section), [](const analysis::Block* block) {
-            return std::holds_alternative<analysis::Picture>(*block);
-          }));
-    }
-    // The participants' flow is for papers.
-    CHECK(std::cmp_equal(shown, std::ranges::count_if(pictures, [](const analysis::Picture& one) {
-                           return !one.section.empty();
-                         })));
+    check_whole_page(*own::threshold_analysis().results(made.outcomes, {}));
   }
 }
 
@@ -234,7 +210,7 @@ TEST_CASE("tables of trials have the track and the level where an order chose th
 }
 
 TEST_CASE("the model's script has the study's guess rate, its criterion and all functions") {
-  const std::string script = own::threshold_model_script(small_study(detection_options()).outcomes);
+  const std::string script = own::threshold_model(small_study(detection_options()).outcomes).script;
   CHECK_THAT(script, holds_text("guess <- 0.5\n") && holds_text("scale_db <- 5\n") &&
                          holds_text("shape <- \"weibull\"\n"));
   CHECK_THAT(script, holds_text("(1 + x | participant) + (1 + x | participant:standard)"));

@@ -51,7 +51,7 @@ void exclude_late(HandMadeTracks& made, int session) {
   analysis::SessionOutcome& left = made.outcomes.sessions.at(static_cast<std::size_t>(session - 1));
   left.counted = false;
   left.row.excluded = true;
-  made.outcomes.looked.excluded_afterwards.insert(session);
+  made.outcomes.look_record.excluded_afterwards.insert(session);
 }
 
 const RegisteredAnalysis kBarkAlone{
@@ -162,6 +162,20 @@ TEST_CASE("who misses more catch trials than registered is left out, which is no
   exclude_late(made, 2);
   CHECK(own::make_report(made.outcomes).departures.empty());
   CHECK(choice_of(own::make_report(made.outcomes), "registered").participants == 5);
+}
+
+TEST_CASE("the verdict says by what everybody was left out") {
+  HandMadeTracks made = two_textures(kBark, kAlike);
+  RegisteredAnalysis analysis = kDifference;
+  analysis.exclusion_rules = {.missed_catch = 2};
+  register_question(made, analysis);
+  for (int session = 1; session <= 6; ++session) {
+    made.outside(session, study::Role::catch_trial, 3, 3);
+  }
+  const own::ThresholdReport report = own::make_report(made.outcomes);
+  CHECK(choice_of(report, "registered").participants == 0);
+  CHECK(report.primary->verdict == Verdict::undecided);
+  CHECK_THAT(report.primary->because, names("6 2"));
 }
 
 }  // namespace touchtrial

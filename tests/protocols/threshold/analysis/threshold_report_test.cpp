@@ -135,9 +135,14 @@ TEST_CASE("a censored track has no number, and no mean of people leaves it out")
   CHECK(bark.at("n") == 3);
   CHECK(bark.at("tracks") == 3);
   CHECK(bark.at("known") == 1);
-  CHECK(bark.at("above") == 1);
-  CHECK(bark.at("below") == 1);
-  CHECK(bark.at("undetermined") == 0);
+  const auto tracks_that_are = [&](const char* censored) {
+    return std::ranges::count_if(json.at("tracks"), [&](const auto& track) {
+      return track.at("estimate").at("censored") == censored;
+    });
+  };
+  CHECK(bark.at("above") == tracks_that_are("above"));
+  CHECK(bark.at("below") == tracks_that_are("below"));
+  CHECK(bark.at("undetermined") == tracks_that_are("undetermined"));
   CHECK(bark.at("interval").is_null());
   CHECK(bark.at("mean").is_null());
   CHECK(bark.at("lack") == "most censored");
@@ -176,7 +181,9 @@ TEST_CASE("if every track is censored there is no threshold, and no comparison f
   const auto json = json_of(made);
   CHECK(json.at("standards").at(0).at("mean").is_null());
   CHECK(json.at("standards").at(0).at("n") == 2);
-  CHECK(json.at("standards").at(0).at("above") == 2);
+  // A participant of whom one track is undetermined is undetermined.
+  CHECK(json.at("standards").at(0).at("above") == 1);
+  CHECK(json.at("standards").at(0).at("undetermined") == 1);
   CHECK(json.at("standards").at(0).at("median_within") == nlohmann::json::parse("[0.0, null]"));
   CHECK_NOTHROW(analysis::document_text(
       own::threshold_analysis().results(made.outcomes, {})->document({}, {})));
@@ -220,7 +227,9 @@ TEST_CASE("a difference from a threshold beyond the levels is a bound, and peopl
   const own::DifferenceReport& one = report.differences.at(0);
   CHECK(one.difference.participants == 5);
   CHECK(one.difference.exact == 4);
-  CHECK(report.standards[1].number_of(Censored::above) == 1);
+  CHECK(one.known == 4);
+  CHECK(report.standards[1].number_of(Censored::no) == 4);
+  CHECK(report.standards[1].number_of(Censored::below) == 0);
   CHECK(one.difference.mean.has_value());
   CHECK(one.p.has_value());
 }
@@ -245,12 +254,71 @@ TEST_CASE("a person's threshold is the mean of tracks, and of bounds where one i
   CHECK(person({inside, other}) == own::PersonThreshold{{-12.0, -12.0}, Censored::no});
   CHECK(person({above}) == own::PersonThreshold{{0.0, kOpen}, Censored::above});
   CHECK(person({below, below}) == own::PersonThreshold{{-kOpen, -40.0}, Censored::below});
-  CHECK(person({near_end}) == own::PersonThreshold{{-1.5, -1.5}, Censored::no});
-  CHECK(person({just_beyond}) == own::PersonThreshold{{0.0, kOpen}, Censored::above});
+  CHECK(person({near_end}) == own::PersonThreshold{{-1.5, -1.5}, Censored::undetermined});
+  CHECK(person({just_beyond}) == own::PersonThreshold{{0.0, kOpen}, Censored::undetermined});
   CHECK(person({guesser}) == own::PersonThreshold{});
-  CHECK(person({hardly_feels}) == own::PersonThreshold{{0.0, kOpen}, Censored::above});
+  CHECK(person({hardly_feels}) == own::PersonThreshold{{0.0, kOpen}, Censored::undetermined});
   CHECK(person({inside, above}) == own::PersonThreshold{{-5.0, kOpen}, Censored::undetermined});
   CHECK(person({above, below}) == own::PersonThreshold{});
+}
+
+TEST_CASE("there is no mean and no median of people most of whom are not determined") {
+  constexpr double kOpen = std::numeric_limits<double>::infinity();
+  const own::PersonThreshold known{{-10.0, -10.0}, Censored::no};
+  const own::PersonThreshold other{{-12.0, -12.0}, Censored::no};
+  const own::PersonThreshold likely{{-3.0, -3.0}, Censored::undetermined};
+  const own::PersonThreshold side{{0.0, kOpen}, Censored::undetermined};
+  const own::PersonThreshold nothing{};
+  const std::vector some{known, other, likely, nothing};
+  const analysis::CensoredMean mean = own::mean_of(some);
+  CHECK(mean.mean.has_value());
+  CHECK(mean.participants == 3);
+  CHECK(mean.exact == 3);
+  CHECK(mean.open == 1);
+  const std::vector most{known, other, likely, likely, side};
+  const analysis::CensoredMean none = own::mean_of(most);
+  CHECK(none.lack == analysis::Lack::most);
+  CHECK_FALSE(none.mean);
+  CHECK_FALSE(none.interval);
+  CHECK(none.median_within == analysis::Bounds{});
+  CHECK_FALSE(own::p_of(most, 0.0, analysis::Sides::two));
+  CHECK(own::difference_of(known, other).censored == Censored::no);
+  CHECK(own::difference_of(known, likely).censored == Censored::undetermined);
+  CHECK(own::difference_of({{0.0, kOpen}, Censored::above}, known).censored == Censored::above);
+  CHECK(own::difference_of(known, {{0.0, kOpen}, Censored::above}).censored == Censored::below);
+}
+
+TEST_CASE("one trial of each person, or one level, tells neither a side nor a median") {
+  const bool one_level = GENERATE(false, true);
+  study::threshold::ThresholdOptions options = detection_options();
+  if (one_level) {
+    options.track.procedure = "constant-stimuli";
+    options.track.levels = {-10.0};
+  }
+  HandMadeTracks made(options);
+  for (int person = 1; person <= 4; ++person) {
+    made.session();
+    // 16 or 17 of 20 right: the share at the threshold.
+    for (int i = 0; i < (one_level ? 20 : 1); ++i) {
+      const bool right = one_level ? i < 16 + person % 2 : person != 4;
+      made.answer({person, 1, one_level ? 0 : 22, i % 2, right ? i % 2 : 1 - i % 2});
+    }
+  }
+  const auto json = json_of(made);
+  for (const auto& track : json.at("tracks")) {
+    CHECK(track.at("estimate").at("censored") == "undetermined");
+  }
+  const auto& bark = json.at("standards").at(0);
+  CHECK(bark.at("known") == 0);
+  CHECK(bark.at("below") == 0);
+  CHECK(bark.at("above") == 0);
+  CHECK(bark.at("undetermined") == 4);
+  CHECK(bark.at("mean").is_null());
+  CHECK(bark.at("median").is_null());
+  CHECK(bark.at("median_within") == nlohmann::json::parse("[null, null]"));
+  CHECK(bark.at("lack") == "most censored");
+  CHECK_NOTHROW(analysis::document_text(
+      own::threshold_analysis().results(made.outcomes, {})->document({}, {})));
 }
 
 TEST_CASE("the control block's p is the exact tail of guessing") {
@@ -352,7 +420,7 @@ TEST_CASE("nobody who attends but for one slip is said not to") {
   CHECK(std::none_of(report.attention.begin(), report.attention.end(),
                      [](const choices::Attention& one) { return one.is_doubtful(); }));
   const std::string warnings = json_of(made).at("warnings").dump();
-  CHECK_THAT(warnings, !holds_text("not attending"));
+  CHECK_THAT(warnings, !holds_text("inattention"));
 }
 
 TEST_CASE("preferences for different intervals are named, with what they do to right answers") {

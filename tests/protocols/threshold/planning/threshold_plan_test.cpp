@@ -186,7 +186,10 @@ TEST_CASE("a pool has the tracks of simulated sessions, with the trials that are
       ++found;
     }
   }
-  CHECK(found == pool.tracks - pool.below - pool.above - pool.undetermined);
+  // Undetermined thresholds whose likeliest value lies within the levels enter with this value.
+  const int known = pool.tracks - pool.below - pool.above - pool.undetermined;
+  CHECK(known <= found);
+  CHECK(found <= known + pool.undetermined);
   const ThresholdPool again =
       simulated_thresholds(tiny.key(), source, subject, 12, {.people = 3, .seed = 4, .jobs = 1});
   CHECK(again.people == pool.people);

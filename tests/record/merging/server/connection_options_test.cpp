@@ -2,6 +2,7 @@
 #include "record/merging/postgres/server_connection.hpp"
 #include "support/catch.hpp"
 #include "support/environment.hpp"
+#include "support/refusal.hpp"
 
 #include <cstdlib>
 
@@ -11,12 +12,7 @@ using namespace touchtrial::merging;
 namespace {
 
 std::string refusal_of(const std::string& where) {
-  try {
-    static_cast<void>(connection_options(where));
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<UsageError>([&] { return connection_options(where); });
 }
 
 bool verifies(const std::string& where) {

@@ -2,6 +2,7 @@
 #include "core/errors.hpp"
 #include "record/merging/postgres/server_connection.hpp"
 #include "support/catch.hpp"
+#include "support/refusal.hpp"
 
 #include <array>
 #include <atomic>
@@ -134,12 +135,8 @@ class FakeServer {
 };
 
 std::string refusal_by(const FakeServer& server, const AnswerLimits& limits) {
-  try {
-    const ServerConnection connection(server.options(), limits);
-  } catch (const StoreError& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<StoreError>(
+      [&] { const ServerConnection connection(server.options(), limits); });
 }
 
 long max_memory_mib() {

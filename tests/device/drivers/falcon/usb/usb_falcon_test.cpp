@@ -5,6 +5,7 @@
 #include "device/drivers/falcon/usbfs_shim/usbfs_shim.hpp"
 #include "support/catch.hpp"
 #include "support/names.hpp"
+#include "support/refusal.hpp"
 
 #include <algorithm>
 #include <deque>
@@ -48,12 +49,7 @@ class Collector final : public FtdiStreamSink {
 };
 
 std::string refusal(const std::string& serial = "") {
-  try {
-    const auto opened = open_usb_falcon(serial);
-  } catch (const DeviceError& error) {
-    return error.what();
-  }
-  return {};
+  return message_of<DeviceError>([&] { return open_usb_falcon(serial); });
 }
 
 /// Serves the stream until a condition holds; gives up after half a minute.
